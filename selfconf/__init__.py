@@ -1,0 +1,1 @@
+"""selfconf: components of a robot ecology that wire themselves."""

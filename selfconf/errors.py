@@ -1,0 +1,57 @@
+"""What can go wrong, sorted by whose fault it is.
+
+An error carries its facts as attributes; its text is one sentence that says what is wrong, then what to try.
+A refusal, a lost component, a SHACL violation or a late message is not here: those are values and events.
+"""
+
+from __future__ import annotations
+
+
+class SelfconfError(Exception):
+    """Anything that selfconf raises on purpose."""
+
+
+class AuthorError(SelfconfError):
+    """The author of an advertisement, a template, a task or a command line wrote something that cannot be read."""
+
+    def __init__(
+        self, message: str, *, file: str | None = None, line: int | None = None, column: int | None = None
+    ) -> None:
+        super().__init__(message)
+        self.message, self.file, self.line, self.column = message, file, line, column
+
+    def __str__(self) -> str:
+        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
+        return f"{place}: {self.message}" if place else self.message
+
+
+class TurtleError(AuthorError):
+    """A file is not Turtle; `line` and `column` count from one."""
+
+
+class TemplateError(AuthorError):
+    """A template or task is Turtle, but not a template or task."""
+
+
+class BindingError(AuthorError):
+    """A value cannot stand for a parameter: unknown name, wrong kind of term, bound twice, or not bound at all."""
+
+
+class QueryError(AuthorError):
+    """A SPARQL query cannot be read or is not allowed here."""
+
+
+class ProgrammerError(SelfconfError):
+    """A program uses the SDK in a way it does not allow, such as emitting on an output that was never advertised."""
+
+
+class PeerError(SelfconfError):
+    """Another process of the ecology said something that the protocol does not allow."""
+
+
+class NetworkError(SelfconfError):
+    """The ecology cannot be reached: no site answers, an endpoint is taken, the session was lost."""
+
+
+class InstallationError(SelfconfError):
+    """This installation lacks something that the command needs; the text says what to install."""

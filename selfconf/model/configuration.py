@@ -1,0 +1,55 @@
+"""A configuration <B, S>: the running components and the connections between them (section 2 of the paper)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from selfconf.model.term import IRI, Term
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Connection:
+    """An input of one component follows an output of another."""
+
+    source: IRI
+    output: str
+    sink: IRI
+    input: str
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """The components that play a role, in the order in which they were chosen."""
+
+    role: IRI
+    components: tuple[IRI, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterSetting:
+    """An operational parameter of a component and the value it is given."""
+
+    component: IRI
+    name: str
+    value: Term
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """Who plays which role (in template order), every connection, every setting, and the values of parameters by name."""
+
+    template: IRI
+    assignments: tuple[Assignment, ...]
+    connections: tuple[Connection, ...] = ()
+    settings: tuple[ParameterSetting, ...] = ()
+    bindings: Mapping[str, Term] = field(default_factory=dict)
+
+    @property
+    def components(self) -> tuple[IRI, ...]:
+        """B, the components of the configuration, in the order of the roles."""
+        return tuple(component for assignment in self.assignments for component in assignment.components)
+
+    def role_of(self, component: IRI) -> IRI | None:
+        """The role that a component plays, if it plays one."""
+        return next((a.role for a in self.assignments if component in a.components), None)

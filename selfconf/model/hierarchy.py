@@ -1,0 +1,78 @@
+"""The hierarchy of classes and properties that a reasoning mode adds to what the advertisements say.
+
+*Offered matches wanted* iff wanted is offered itself or lies above it. In OWL-S terms (Paolucci et al., 2002) an
+equal pair is *exact* and an offered subclass *plug-in*; *subsumes* and *overlap* are never accepted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import Enum
+
+from selfconf.model.term import IRI
+
+
+class Reasoning(str, Enum):
+    """Which triples the shape of a role sees: the advertisements alone, or more."""
+
+    SYNTACTIC = "syntactic"
+    SUBCLASS = "subclass"
+    OWL_RL = "owl-rl"
+
+
+class Upward:
+    """The reflexive and transitive closure of a relation *lies directly below*; cycles are equivalences.
+
+    Closed lazily and remembered per term: an ecology offers few of the terms that an ontology has.
+    """
+
+    __slots__ = ("_closed", "_parents")
+
+    def __init__(self, edges: Iterable[tuple[IRI, IRI]] = ()) -> None:
+        parents: dict[IRI, set[IRI]] = {}
+        for below, above in edges:
+            parents.setdefault(below, set()).add(above)
+        self._parents = parents
+        self._closed: dict[IRI, frozenset[IRI]] = {}
+
+    def above(self, term: IRI) -> frozenset[IRI]:
+        """`term` and everything above it."""
+        closed = self._closed.get(term)
+        if closed is None:
+            seen, waiting = {term}, [term]
+            while waiting:
+                for parent in self._parents.get(waiting.pop(), ()):
+                    if parent not in seen:
+                        seen.add(parent)
+                        waiting.append(parent)
+            closed = self._closed[term] = frozenset(seen)
+        return closed
+
+    def __bool__(self) -> bool:
+        return bool(self._parents)
+
+
+class Hierarchy:
+    """What lies above a class or a property; with no edges, each term lies below itself only."""
+
+    __slots__ = ("_classes", "_properties")
+
+    def __init__(self, classes: Iterable[tuple[IRI, IRI]] = (), properties: Iterable[tuple[IRI, IRI]] = ()) -> None:
+        """Edges run from the lower term to the higher one, in any order, cycles allowed."""
+        self._classes, self._properties = Upward(classes), Upward(properties)
+
+    def superclasses(self, offered: IRI) -> frozenset[IRI]:
+        """`offered` and every class above it."""
+        return self._classes.above(offered)
+
+    def superproperties(self, offered: IRI) -> frozenset[IRI]:
+        """`offered` and every property above it."""
+        return self._properties.above(offered)
+
+    def matches(self, offered: IRI, wanted: IRI) -> bool:
+        """Whether a class (of components, signals or parameters) that is offered serves where another is wanted."""
+        return offered == wanted or (bool(self._classes) and wanted in self._classes.above(offered))
+
+
+NOTHING_ABOVE = Hierarchy()
+"""The hierarchy of the syntactic mode: types match iff they are equal (section 2.3 of the paper)."""

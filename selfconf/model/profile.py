@@ -1,0 +1,75 @@
+"""The profile of a component: what its advertisement says about it (section 2.2 of the paper).
+
+The functional part is the inputs and the outputs, each a named and typed signal; the non-functional part is the
+component types and the properties. Operational parameters set or tune the running mode (footnote 1 of the paper).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from selfconf.model.term import IRI, Term
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something was said: a file or other source, and the line in it, counted from one, where known."""
+
+    source: str
+    line: int | None = None
+
+    def __str__(self) -> str:
+        return self.source if self.line is None else f"{self.source}:{self.line}"
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A port that accepts signals of one type."""
+
+    name: str
+    signal: IRI
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A port that issues signals of one type; `rate` is the least rate it promises, in hertz, if it promises one."""
+
+    name: str
+    signal: IRI
+    rate: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class OperationalParameter:
+    """A parameter that a configurator may set on a component."""
+
+    name: str
+    type: IRI
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """What a component is. Ports and parameters are sorted by name, properties by predicate and value."""
+
+    component: IRI
+    types: frozenset[IRI] = frozenset()
+    properties: tuple[tuple[IRI, Term], ...] = ()
+    inputs: tuple[Input, ...] = ()
+    outputs: tuple[Output, ...] = ()
+    parameters: tuple[OperationalParameter, ...] = ()
+    preference: float = 0.0
+    command: str | None = None
+    place: Place | None = field(default=None, compare=False)
+
+    def output(self, name: str) -> Output | None:
+        """The output of that name, if there is one."""
+        return next((port for port in self.outputs if port.name == name), None)
+
+    def values(self, predicate: IRI) -> tuple[Term, ...]:
+        """The values of a property, in order."""
+        return tuple(value for key, value in self.properties if key == predicate)
+
+
+def candidate_order(profile: Profile) -> tuple[float, str]:
+    """The order in which candidates are tried: higher preference first, then by IRI, never by time of arrival."""
+    return -profile.preference, profile.component

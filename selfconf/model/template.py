@@ -1,0 +1,87 @@
+"""A template: the roles of a task, who feeds whom, and the parameters that tailor it (section 3.1 of the paper).
+
+A role is a SHACL node shape, and a component is eligible for it iff it conforms. The shape itself stays in RDF;
+what is here is all that a search needs to know of a role.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from selfconf.model.profile import Place
+from selfconf.model.term import IRI, Term
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A role sets an operational parameter, known by its type, to a value or to what a template parameter stands for."""
+
+    type: IRI
+    value: Term
+
+
+@dataclass(frozen=True, slots=True)
+class Role:
+    """A part to be played by `minimum` to `maximum` distinct components; no maximum means as many as fit."""
+
+    iri: IRI
+    minimum: int = 1
+    maximum: int | None = 1
+    settings: tuple[Setting, ...] = ()
+    types: tuple[IRI, ...] = ()
+    """The component types that the shape asks for by `sh:class`, for people to read."""
+    place: Place | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Interaction:
+    """One role feeds another; ports are paired by type, and by name too where a name is given."""
+
+    source: IRI
+    sink: IRI
+    output: str | None = None
+    input: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a template; `in_shape` tells that some role's shape mentions it, so that it may stay free."""
+
+    iri: IRI
+    name: str
+    default: Term | None = None
+    in_shape: bool = False
+    is_set: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A task-level specification: roles in their order, interactions in theirs, parameters by IRI."""
+
+    iri: IRI
+    roles: tuple[Role, ...]
+    interactions: tuple[Interaction, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    label: str | None = None
+
+    def role(self, iri: IRI) -> Role:
+        """The role of that IRI; KeyError if the template has none."""
+        for role in self.roles:
+            if role.iri == iri:
+                return role
+        raise KeyError(iri)
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A template with values for some of its parameters, by parameter IRI; the rest stays free."""
+
+    template: Template
+    bindings: Mapping[IRI, Term] = field(default_factory=dict)
+    iri: IRI | None = None
+
+    def by_name(self) -> dict[str, Term]:
+        """The bindings by the parameters' names."""
+        names = {parameter.iri: parameter.name for parameter in self.template.parameters}
+        return {names[iri]: value for iri, value in self.bindings.items()}

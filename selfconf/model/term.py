@@ -1,0 +1,53 @@
+"""RDF terms as plain values, so that the core needs no RDF library (RDF 1.1 Concepts, section 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+XSD = "http://www.w3.org/2001/XMLSchema#"
+
+
+class IRI(str):
+    """An absolute IRI, without the angle brackets."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"<{self}>"
+
+    @property
+    def short(self) -> str:
+        """The last segment, for people: `MotorDrive` of `https://w3id.org/selfconf/robotics#MotorDrive`."""
+        tail = self.rstrip("/#").replace("#", "/").replace(":", "/").rsplit("/", 1)[-1]
+        return tail or str(self)
+
+
+class BlankNode(str):
+    """A blank node; its label, which starts with `_:` so that it never equals an IRI, holds inside one document."""
+
+    __slots__ = ()
+
+
+STRING = IRI(XSD + "string")
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A literal: lexical form, datatype and, for `rdf:langString`, a language tag."""
+
+    lexical: str
+    datatype: IRI = STRING
+    language: str | None = None
+
+    def __str__(self) -> str:
+        return self.lexical
+
+
+Term = IRI | BlankNode | Literal
+
+
+def sort_key(term: Term) -> tuple[int, str, str, str]:
+    """A total order on terms: IRIs, then blank nodes, then literals by lexical form, datatype and language."""
+    if isinstance(term, Literal):
+        return 2, term.lexical, term.datatype, term.language or ""
+    return int(isinstance(term, BlankNode)), str(term), "", ""

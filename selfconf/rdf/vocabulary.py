@@ -1,0 +1,33 @@
+"""The terms of selfconf's ontology and of the vocabularies it stands on, as IRIs.
+
+The ontology's word is the code's word; a test compares this module with `ontology/selfconf.ttl`, both ways.
+"""
+
+from __future__ import annotations
+
+from selfconf.model.term import IRI
+
+
+class Namespace(str):
+    """The start of a family of IRIs; indexing gives a member."""
+
+    __slots__ = ()
+
+    def __getitem__(self, name: object) -> IRI:
+        return IRI(f"{str(self)}{name}")
+
+
+SC = Namespace("https://w3id.org/selfconf#")
+ROB = Namespace("https://w3id.org/selfconf/robotics#")
+SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
+RDF = Namespace("http://www.w3.org/1999/02/22-rdf-syntax-ns#")
+RDFS = Namespace("http://www.w3.org/2000/01/rdf-schema#")
+OWL = Namespace("http://www.w3.org/2002/07/owl#")
+SH = Namespace("http://www.w3.org/ns/shacl#")
+XSD = Namespace("http://www.w3.org/2001/XMLSchema#")
+PROV = Namespace("http://www.w3.org/ns/prov#")
+UNIT = Namespace("http://qudt.org/vocab/unit/")
+
+TYPE = RDF["type"]
+LABEL = RDFS["label"]
+HERTZ = UNIT["HZ"]
