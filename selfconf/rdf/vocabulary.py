@@ -8,13 +8,22 @@ from __future__ import annotations
 from selfconf.model.term import IRI
 
 
-class Namespace(str):
-    """The start of a family of IRIs; indexing gives a member."""
+class Namespace:
+    """The start of a family of IRIs: attribute access and indexing give a member."""
 
-    __slots__ = ()
+    __slots__ = ("base",)
 
-    def __getitem__(self, name: object) -> IRI:
-        return IRI(f"{str(self)}{name}")
+    def __init__(self, base: str) -> None:
+        self.base = base
+
+    def __getattr__(self, name: str) -> IRI:
+        return IRI(self.base + name)
+
+    def __getitem__(self, name: str) -> IRI:
+        return IRI(self.base + name)
+
+    def __contains__(self, iri: object) -> bool:
+        return isinstance(iri, str) and iri.startswith(self.base)
 
 
 SC = Namespace("https://w3id.org/selfconf#")
@@ -28,6 +37,6 @@ XSD = Namespace("http://www.w3.org/2001/XMLSchema#")
 PROV = Namespace("http://www.w3.org/ns/prov#")
 UNIT = Namespace("http://qudt.org/vocab/unit/")
 
-TYPE = RDF["type"]
-LABEL = RDFS["label"]
-HERTZ = UNIT["HZ"]
+TYPE = RDF.type
+LABEL = RDFS.label
+FIRST, REST, NIL = RDF.first, RDF.rest, RDF.nil

@@ -1,0 +1,200 @@
+"""Advertisements: from triples to the profile of each component, and what an advertisement may say.
+
+A document may hold several components. The advertisement of one is every statement that can be reached from it,
+through blank nodes and through named things that are not themselves components (a place, a robot), but not through
+its types: what a class means is for ontologies to say. An advertisement therefore speaks for its own component
+alone, and statements that would change what shapes or classes mean are left out of it, whoever serves it.
+
+`shapes/advertisement.ttl` is the authority on which advertisements conform. Reading builds the profile and notices
+on its way everything that the shape forbids; a test holds the two verdicts together.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
+from selfconf.rdf.turtle import Document, Node, Triple
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE, XSD
+
+NUMBERS = frozenset(
+    XSD[name]
+    for name in (
+        "integer", "decimal", "double", "float", "int", "long", "short", "byte", "nonNegativeInteger",
+        "positiveInteger", "nonPositiveInteger", "negativeInteger", "unsignedInt", "unsignedLong", "unsignedShort",
+        "unsignedByte",
+    )
+)  # fmt: skip
+STRUCTURE = frozenset(
+    (TYPE, SC.hasInput, SC.hasOutput, SC.hasParameter, SC.preference, SC.grounding, SC.name, SC.signalType)
+)
+AXIOMS = frozenset((RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range))
+
+
+@dataclass(frozen=True, slots=True)
+class Advertisement:
+    """The profile of one component with the triples it was read from."""
+
+    profile: Profile
+    triples: tuple[Triple, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Malformed:
+    """An advertisement that does not conform, and why: one sentence for each problem."""
+
+    component: IRI | BlankNode
+    place: Place
+    problems: tuple[str, ...]
+
+
+def read(document: Document) -> tuple[list[Advertisement], list[Malformed]]:
+    """Every advertisement of a document, in the order of the text, and those that do not conform."""
+    good: list[Advertisement] = []
+    bad: list[Malformed] = []
+    components = document.instances(SC.Component)
+    others = frozenset(components)
+    for component in components:
+        reader = _Reader(document, component)
+        profile = reader.profile()
+        if reader.problems or profile is None:
+            bad.append(Malformed(component, Place(document.source), tuple(reader.problems)))
+        else:
+            good.append(Advertisement(profile, tuple(about(document, component, others))))
+    return good, bad
+
+
+def about(document: Document, component: Node, components: frozenset[Node]) -> Iterator[Triple]:
+    """The statements that the advertisement of a component makes."""
+    waiting: list[Node] = [component]
+    seen: set[Term] = {component}
+    while waiting:
+        subject = waiting.pop()
+        for predicate, value in document.statements.get(subject, ()):
+            if not allowed(predicate, value):
+                continue
+            yield subject, predicate, value
+            if predicate == TYPE or isinstance(value, Literal) or value in seen or value in components:
+                continue
+            seen.add(value)
+            waiting.append(value)
+
+
+def allowed(predicate: IRI, value: Term) -> bool:
+    """Whether an advertisement may say so: no axioms, no shapes, no ontology terms of its own making."""
+    if predicate in AXIOMS or predicate in OWL or predicate in SH:
+        return False
+    return predicate != TYPE or not (value in OWL or value in SH or value in RDFS or value == RDF.Property)
+
+
+class _Reader:
+    """Reads one component and notes every problem instead of stopping at the first."""
+
+    def __init__(self, document: Document, component: Node) -> None:
+        self.document, self.component = document, component
+        self.problems: list[str] = []
+
+    def profile(self) -> Profile | None:
+        if not isinstance(self.component, IRI):
+            self.problems.append("a component needs an IRI, so that others can speak of it")
+            return None
+        statements = self.document.statements[self.component]
+        types = frozenset(o for p, o in statements if p == TYPE and isinstance(o, IRI))
+        if len({o for p, o in statements if p == TYPE}) < 2:
+            self.problems.append("a component needs a type of its own besides sc:Component")
+        inputs = [Input(name, signal) for name, signal, _ in self._ports(SC.hasInput, SC.signalType)]
+        outputs = [
+            Output(name, signal, self._rate(node, name))
+            for name, signal, node in self._ports(SC.hasOutput, SC.signalType)
+        ]
+        parameters = [
+            OperationalParameter(name, kind) for name, kind, _ in self._ports(SC.hasParameter, SC.parameterType)
+        ]
+        return Profile(
+            component=self.component,
+            types=types,
+            properties=tuple(
+                sorted(
+                    {(p, o) for p, o in statements if p not in STRUCTURE and allowed(p, o)},
+                    key=lambda pair: (pair[0], sort_key(pair[1])),
+                )
+            ),
+            inputs=tuple(sorted(inputs, key=lambda port: port.name)),
+            outputs=tuple(sorted(outputs, key=lambda port: port.name)),
+            parameters=tuple(sorted(parameters, key=lambda parameter: parameter.name)),
+            preference=self._preference(),
+            command=self._command(),
+            place=Place(self.document.source),
+        )
+
+    def _ports(self, link: IRI, kind: IRI) -> Iterator[tuple[str, IRI, Term]]:
+        """Name and type of each port or parameter; a problem for each that lacks one or doubles a name."""
+        names: set[str] = set()
+        for node in self.document.values(self.component, link):
+            name = self._one(node, SC.name, f"{_word(link)} needs exactly one sc:name, a string that is not empty")
+            type_ = self._one(node, kind, f"{_word(link)} needs exactly one {_word(kind)}, an IRI")
+            if not isinstance(name, Literal) or name.datatype != STRING or not name.lexical:
+                self._problem(f"{_word(link)} needs exactly one sc:name, a string that is not empty")
+            elif not isinstance(type_, IRI):
+                self._problem(f"{_word(link)} {name.lexical!r} needs exactly one {_word(kind)}, an IRI")
+            else:
+                if name.lexical in names:
+                    self._problem(f"the name {name.lexical!r} stands for two values of {_word(link)}")
+                names.add(name.lexical)
+                yield name.lexical, type_, node
+
+    def _one(self, node: Term, predicate: IRI, problem: str) -> Term | None:
+        values = self.document.values(node, predicate)
+        if len(values) > 1:
+            self._problem(problem)
+        return values[0] if len(values) == 1 else None
+
+    def _problem(self, problem: str) -> None:
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+    def _preference(self) -> float:
+        values = self.document.values(self.component, SC.preference)
+        if not values:
+            return 0.0
+        number = _number(values[0])
+        if len(values) > 1 or number is None:
+            self._problem("sc:preference is one number, if it is there at all")
+            return 0.0
+        return number
+
+    def _rate(self, port: Term, name: str) -> float | None:
+        rates = self.document.values(port, SC.rate)
+        if not rates:
+            return None
+        value = self._one(rates[0], SC.value, "") if len(rates) == 1 else None
+        unit = self._one(rates[0], SC.unit, "") if len(rates) == 1 else None
+        number = _number(value) if value is not None else None
+        if number is None or number <= 0 or not isinstance(unit, IRI):
+            self._problem(f"the sc:rate of output {name!r} is [ sc:value NUMBER ; sc:unit unit:HZ ], above zero")
+            return None
+        return number
+
+    def _command(self) -> str | None:
+        for grounding in self.document.values(self.component, SC.grounding):
+            command = self.document.value(grounding, SC.command)
+            if isinstance(command, Literal):
+                return command.lexical
+        return None
+
+
+def _number(value: Term) -> float | None:
+    if not isinstance(value, Literal) or value.datatype not in NUMBERS:
+        return None
+    try:
+        number = float(value.lexical)
+    except ValueError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def _word(term: IRI) -> str:
+    return f"sc:{term.short}"

@@ -1,0 +1,122 @@
+"""Values for the parameters of a template: reading them from a command line, checking them, filling in defaults."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+import pyoxigraph as ox
+import rdflib
+
+from selfconf.errors import BindingError
+from selfconf.model.template import Parameter, Task, Template
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf import turtle
+from selfconf.rdf.shacl import violations
+from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import SH, TYPE
+
+_CURIE = re.compile(r"([A-Za-z][\w.-]*)?:[^\s\"'<>()]*")
+_NUMBER_OR_BOOLEAN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|true|false")
+
+
+def read_term(text: str, prefixes: Mapping[str, str]) -> Term:
+    """A CURIE in those prefixes, an `<IRI>` or a Turtle literal; plain words are a string. Raises BindingError."""
+    words = text.strip()
+    if _NUMBER_OR_BOOLEAN.fullmatch(words) or words[:1] in ("<", '"', "'"):
+        return _turtle_term(words, prefixes)
+    if _CURIE.fullmatch(words):
+        prefix = words.partition(":")[0]
+        if prefix in prefixes:
+            return _turtle_term(words, prefixes)
+        if prefix in ("http", "https", "urn", "file", "mailto", "tag"):
+            raise BindingError(f"{words} looks like an IRI; write it in angle brackets: '<{words}>'")
+        known = ", ".join(f"{name}:" for name in sorted(prefixes)) or "none"
+        raise BindingError(
+            f"the template declares no prefix {prefix}: (it has {known}); for a string write '\"{words}\"'"
+        )
+    return Literal(text)
+
+
+def _turtle_term(words: str, prefixes: Mapping[str, str]) -> Term:
+    head = "".join(f"@prefix {name}: <{iri}> .\n" for name, iri in prefixes.items())
+    try:
+        quads = list(ox.parse(f"{head}<urn:s> <urn:p> {words} .", format=ox.RdfFormat.TURTLE))
+    except SyntaxError:
+        quads = []
+    if len(quads) != 1:
+        raise BindingError(f"{words} is no Turtle term; write a CURIE, an <IRI>, a literal or plain words")
+    return turtle.term(quads[0].object)
+
+
+def bind(given: TaskDocument, assignments: Iterable[tuple[str, str]]) -> TaskDocument:
+    """The task with values for its parameters by name, as text; raises BindingError for what cannot be bound."""
+    task, document = given.task, given.document
+    by_name = {parameter.name: parameter for parameter in task.template.parameters}
+    bindings = dict(task.bindings)
+    for name, text in assignments:
+        parameter = by_name.get(name)
+        if parameter is None:
+            known = ", ".join(sorted(by_name)) or "none"
+            raise BindingError(f"the template has no parameter {name!r}; it has: {known}")
+        if parameter.iri in bindings:
+            raise BindingError(f"the parameter {name!r} is bound twice")
+        bindings[parameter.iri] = read_term(text, document.prefixes)
+    return TaskDocument(Task(task.template, bindings, task.iri), document)
+
+
+def complete(given: TaskDocument) -> TaskDocument:
+    """The task with defaults filled in and every value checked against its parameter. Raises BindingError."""
+    task, document = given.task, given.document
+    bindings = dict(task.bindings)
+    for parameter in task.template.parameters:
+        if parameter.iri not in bindings:
+            if parameter.default is not None:
+                bindings[parameter.iri] = parameter.default
+            elif parameter.is_set and not parameter.in_shape:
+                raise BindingError(
+                    f"the parameter {parameter.name!r} needs a value; give it with --bind {parameter.name}=..."
+                )
+        if parameter.iri in bindings:
+            _check(parameter, bindings[parameter.iri], document)
+    return TaskDocument(Task(task.template, bindings, task.iri), document)
+
+
+def _check(parameter: Parameter, value: Term, document: Document) -> None:
+    """A parameter is a shape for its value (`sh:nodeKind`, `sh:datatype`, `sh:in` ...); pySHACL judges."""
+    constraints = [p for p, _ in document.statements.get(parameter.iri, ()) if p in SH and p != SH.defaultValue]
+    if not constraints:
+        return
+    probe, probe_shape = IRI("urn:selfconf:probe"), IRI("urn:selfconf:probe-shape")
+    shapes = turtle.to_rdflib(document.triples())
+    node, path = rdflib.URIRef(probe_shape), rdflib.BNode()
+    shapes.add((node, rdflib.URIRef(TYPE), rdflib.URIRef(SH.NodeShape)))
+    shapes.add((node, rdflib.URIRef(SH.property), path))
+    shapes.add((path, rdflib.URIRef(SH.path), rdflib.URIRef(probe)))
+    for predicate, constraint in document.statements[parameter.iri]:
+        if predicate in SH and predicate != SH.defaultValue:
+            shapes.add((path, rdflib.URIRef(predicate), turtle.rdflib_term(constraint)))
+    subjects = rdflib.Graph()
+    subjects.add((rdflib.URIRef(probe), rdflib.URIRef(probe), turtle.rdflib_term(value)))
+    problems = violations(subjects, shapes, probe_shape, [probe], document.source)
+    if problems:
+        raise BindingError(
+            f"{show(value)} cannot stand for the parameter {parameter.name!r}: {_plain(problems[probe])}"
+        )
+
+
+def show(value: Term) -> str:
+    """A term as an author would write it."""
+    if isinstance(value, IRI):
+        return f"<{value}>"
+    return f'"{value}"'
+
+
+def _plain(message: str) -> str:
+    return message[0].lower() + message[1:] if message else "it does not conform"
+
+
+def free_parameters(template: Template, bindings: Mapping[IRI, Term]) -> frozenset[IRI]:
+    """The parameters that are left unbound: the variables of the search."""
+    return frozenset(parameter.iri for parameter in template.parameters if parameter.iri not in bindings)

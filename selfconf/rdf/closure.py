@@ -1,0 +1,55 @@
+"""From ontologies to the hierarchy that a reasoning mode lets a role's shape see.
+
+`subclass` reads `rdfs:subClassOf`, `rdfs:subPropertyOf`, `owl:equivalentClass` and `owl:equivalentProperty` and
+closes them itself. `owl-rl` first lets owlrl infer what it can from the ontology alone: it never sees a property
+value of a component, because owlrl gives values that it takes for equal to subjects that never had them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+import rdflib
+
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
+from selfconf.model.term import IRI, Term
+from selfconf.rdf.turtle import Document, Triple, from_rdflib, to_rdflib
+from selfconf.rdf.vocabulary import OWL, RDFS
+
+
+def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning) -> Hierarchy:
+    """The hierarchy that the ontologies state (`subclass`) or entail (`owl-rl`); empty for `syntactic`."""
+    if reasoning is Reasoning.SYNTACTIC:
+        return NOTHING_ABOVE
+    triples: Iterable[Triple] = [triple for document in ontologies for triple in document.triples()]
+    if reasoning is Reasoning.OWL_RL:
+        triples = list(owl_rl(triples))
+    return Hierarchy(
+        edges(triples, RDFS.subClassOf, OWL.equivalentClass),
+        edges(triples, RDFS.subPropertyOf, OWL.equivalentProperty),
+    )
+
+
+def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IRI, IRI]]:
+    """The pairs (lower, higher) between named terms; an equivalence is a pair in each direction."""
+    for subject, predicate, value in triples:
+        if predicate not in (below, same) or not isinstance(subject, IRI) or not isinstance(value, IRI):
+            continue
+        if value in (OWL.Thing, RDFS.Resource):
+            continue
+        yield subject, value
+        if predicate == same:
+            yield value, subject
+
+
+def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
+    """The OWL 2 RL closure of an ontology by owlrl, without the literal subjects that it emits."""
+    from owlrl import DeductiveClosure, OWLRL_Semantics
+
+    graph = to_rdflib(triples)
+    DeductiveClosure(OWLRL_Semantics).expand(graph)
+    for subject, predicate, value in graph:
+        if isinstance(subject, rdflib.Literal) or not isinstance(predicate, rdflib.URIRef):
+            continue
+        left: Term = from_rdflib(subject)
+        yield left, IRI(predicate), from_rdflib(value)  # type: ignore[misc]

@@ -1,0 +1,79 @@
+"""The discovered ecology as an RDF dataset, one named graph per advertisement, for SPARQL.
+
+The name of an advertisement's graph is the component's IRI; the default graph is the union of all. Queries run on
+Oxigraph. They read the dataset and nothing else: SERVICE is refused, and FROM only chooses among the graphs there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+import pyoxigraph as ox
+
+from selfconf.errors import QueryError
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.turtle import Triple
+from selfconf.rdf.vocabulary import PROV, RDF, RDFS, ROB, SC, SH, XSD
+from selfconf.rdf.write import ox_term
+
+PREFIXES = {
+    "sc": SC.base,
+    "rob": ROB.base,
+    "home": "https://w3id.org/selfconf/peis-home#",
+    "sh": SH.base,
+    "rdf": RDF.base,
+    "rdfs": RDFS.base,
+    "xsd": XSD.base,
+    "prov": PROV.base,
+}
+_STRINGS_IRIS_COMMENTS = re.compile(
+    r'"""(?:[^"\\]|\\.|"(?!""))*"""'
+    r"|'''(?:[^'\\]|\\.|'(?!''))*'''"
+    r'|"(?:[^"\\\n]|\\.)*"'
+    r"|'(?:[^'\\\n]|\\.)*'"
+    r"|<[^<>\"{}|^`\\\s]*>"
+    r"|\#[^\n]*"
+)
+_SERVICE = re.compile(r"(?<![\w?$:@.-])service(?![\w:-])", re.IGNORECASE)
+
+Answer = ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples
+
+
+class Dataset:
+    """Named graphs, and questions to them."""
+
+    def __init__(self) -> None:
+        self._store = ox.Store()
+
+    def add_advertisements(self, found: Iterable[Advertisement]) -> None:
+        """Add each advertisement as the graph that its component names."""
+        for advertisement in found:
+            self.add(advertisement.profile.component, advertisement.triples)
+
+    def add(self, name: IRI, triples: Iterable[Triple]) -> None:
+        """Add triples to a named graph."""
+        graph = ox.NamedNode(name)
+        self._store.extend(
+            ox.Quad(ox_term(s), ox.NamedNode(p), ox_term(o), graph)  # type: ignore[arg-type]
+            for s, p, o in triples
+        )
+
+    def query(self, text: str, prefixes: Mapping[str, str] | None = None) -> Answer:
+        """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it."""
+        if _SERVICE.search(_STRINGS_IRIS_COMMENTS.sub(" ", text)):
+            raise QueryError("SERVICE is not allowed: a query reads the ecology and nothing else")
+        try:
+            return self._store.query(
+                text,
+                prefixes={**PREFIXES, **(prefixes or {})},
+                use_default_graph_as_union=not _names_graphs(text),
+            )
+        except (SyntaxError, ValueError, OSError) as error:
+            raise QueryError(f"not a SPARQL query: {' '.join(str(error).split())}") from None
+
+
+def _names_graphs(text: str) -> bool:
+    """Whether a query chooses its own default graph by FROM."""
+    return re.search(r"(?<![\w?$:-])from(?![\w:-])", _STRINGS_IRIS_COMMENTS.sub(" ", text), re.IGNORECASE) is not None

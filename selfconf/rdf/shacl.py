@@ -1,0 +1,58 @@
+"""pySHACL behind one function: which of these nodes conform to that shape, and what the others lack.
+
+pySHACL is always handed graphs in rdflib's memory store, never text: a shapes text that does not parse would leave
+rdflib with literal normalisation off for the whole process, and any other store is fifty times slower.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import rdflib
+from pyshacl import validate
+from pyshacl.errors import ConstraintLoadError, ReportableRuntimeError, ShapeLoadError, ValidationFailure
+
+from selfconf.errors import TemplateError
+from selfconf.model.term import IRI
+
+_SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
+
+
+def violations(
+    subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
+) -> dict[IRI, str]:
+    """The nodes of `focus` that do not conform to `shape`, each with the message of its first violation.
+
+    Conformance is that of SHACL, section 3.4: a result of any severity counts. Raises TemplateError, blaming
+    `source`, where the shape itself is not well-formed.
+    """
+    if not focus:
+        return {}
+    try:
+        _, report, text = validate(
+            subjects,
+            shacl_graph=shapes,
+            focus_nodes=[str(node) for node in focus],
+            use_shapes=[str(shape)],
+            inference="none",
+            advanced=False,
+        )
+    except (ShapeLoadError, ConstraintLoadError, ReportableRuntimeError) as error:
+        raise TemplateError(
+            f"the shape {shape!r} is not well-formed: {_first_line(str(error))}", file=source
+        ) from error
+    if isinstance(report, ValidationFailure) or not isinstance(report, rdflib.Graph):
+        raise TemplateError(f"the shape {shape!r} cannot be judged: {_first_line(text)}", file=source)
+    wanted = set(focus)
+    found: dict[IRI, str] = {}
+    for result in report.objects(predicate=_SH.result):
+        node = IRI(str(report.value(result, _SH.focusNode)))
+        if node in wanted:
+            message = str(report.value(result, _SH.resultMessage) or "does not conform")
+            found[node] = min(message, found.get(node, message))
+    return found
+
+
+def _first_line(text: str) -> str:
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return lines[0] if lines else "no reason given"

@@ -1,0 +1,225 @@
+"""Templates and tasks: from triples to the roles, interactions and parameters of a task.
+
+The shape of each role stays where it is, in the document; `selfconf.rdf.roles` compiles it. What makes a template
+readable is checked here, with one sentence per mistake; the authority is `shapes/template.ttl`, and a test holds
+the two together.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from selfconf.errors import TemplateError
+from selfconf.model.profile import Place
+from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.turtle import Document, Node
+from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE
+
+ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount))
+
+
+@dataclass(frozen=True, slots=True)
+class TaskDocument:
+    """A task with the document that holds the shapes of its roles."""
+
+    task: Task
+    document: Document
+
+
+def read(document: Document, wanted: IRI | None = None) -> TaskDocument:
+    """The task or template of a document; `wanted` names one where there are several. Raises TemplateError."""
+    tasks, templates = document.instances(SC.Task), document.instances(SC.Template)
+    if wanted is not None:
+        if wanted not in tasks and wanted not in templates:
+            raise TemplateError(f"there is no template or task {wanted!r} in it", file=document.source)
+        chosen: Node = wanted
+    elif len(tasks or templates) == 1:
+        chosen = (tasks or templates)[0]
+    elif not templates and not tasks:
+        raise TemplateError("no sc:Template and no sc:Task in it; is it the right file?", file=document.source)
+    else:
+        names = ", ".join(sorted(repr(node) for node in tasks or templates))
+        raise TemplateError(f"it holds several; say which with --template: {names}", file=document.source)
+    if chosen in tasks:
+        return TaskDocument(_Reader(document).task(chosen), document)
+    return TaskDocument(Task(_Reader(document).template(chosen)), document)
+
+
+def mentions(document: Document, role: IRI, parameters: frozenset[IRI]) -> set[IRI]:
+    """The parameters that stand somewhere in the shape of a role."""
+    found: set[IRI] = set()
+    for _, value in shape_statements(document, role):
+        if value in parameters and isinstance(value, IRI):
+            found.add(value)
+    return found
+
+
+def shape_statements(document: Document, role: IRI) -> Iterator[tuple[IRI, Term]]:
+    """Predicate and object of each statement of a role's shape, nested and named shapes included."""
+    waiting: list[Node] = [role]
+    seen: set[Term] = {role}
+    while waiting:
+        subject = waiting.pop()
+        for predicate, value in document.statements.get(subject, ()):
+            if subject == role and predicate in ROLE_STRUCTURE:
+                continue
+            yield predicate, value
+            if not isinstance(value, Literal) and value not in seen:
+                seen.add(value)
+                waiting.append(value)
+
+
+class _Reader:
+    """Reads one document; every method raises TemplateError with a sentence for the author."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    def task(self, task: Node) -> Task:
+        template_iri = self._only(task, SC.template, "a task names exactly one template by sc:template")
+        if template_iri not in self.document.instances(SC.Template):
+            raise self._error(f"the template {_show(template_iri)} of the task is not in this file")
+        template = self.template(template_iri)
+        known = {parameter.iri for parameter in template.parameters}
+        bindings: dict[IRI, Term] = {}
+        for binding in self.document.values(task, SC.binding):
+            parameter = self._only(binding, SC.parameter, "a binding names exactly one sc:parameter")
+            value = self._only(binding, SC.value, "a binding has exactly one sc:value")
+            if parameter not in known or not isinstance(parameter, IRI):
+                raise self._error(f"the task binds {_show(parameter)}, which is no parameter of its template")
+            if parameter in bindings:
+                raise self._error(f"the task binds the parameter {_show(parameter)} twice")
+            bindings[parameter] = value
+        return Task(template, bindings, task if isinstance(task, IRI) else None)
+
+    def template(self, template: Node | Term) -> Template:
+        if not isinstance(template, IRI):
+            raise self._error("a template needs an IRI")
+        head = self._only(template, SC.roles, "a template has exactly one list of roles, sc:roles ( ... )")
+        names = self.document.items(head)
+        if not names:
+            raise self._error("the list sc:roles is empty; a template needs at least one role")
+        for name, times in Counter(names).items():
+            if times > 1:
+                raise self._error(f"the role {_show(name)} stands {times} times in sc:roles")
+        known = frozenset(name for name in names if isinstance(name, IRI))
+        roles = tuple(self._role(name) for name in names)
+        interactions = (*self._feeds(roles, known), *self._interactions(known))
+        return Template(
+            iri=template,
+            roles=roles,
+            interactions=tuple(dict.fromkeys(interactions)),
+            parameters=self._parameters(template, roles),
+            label=self._label(template),
+        )
+
+    def _role(self, name: Term) -> Role:
+        if not isinstance(name, IRI):
+            raise self._error("every role needs an IRI")
+        if SC.Role not in self.document.values(name, TYPE):
+            raise self._error(f"{_show(name)} stands in sc:roles, but is not described as a sc:Role")
+        minimum, maximum = self._count(name, SC.minCount), self._count(name, SC.maxCount)
+        least = 1 if minimum is None else minimum
+        most = 1 if minimum is None and maximum is None else maximum
+        if most is not None and least > most:
+            raise self._error(f"the role {_show(name)} asks for at least {least} and at most {most} components")
+        settings = tuple(
+            Setting(
+                self._iri(node, SC.parameterType, f"what {_show(name)} sets needs one sc:parameterType, an IRI"),
+                self._only(node, SC.value, f"what {_show(name)} sets needs exactly one sc:value"),
+            )
+            for node in self.document.values(name, SC.sets)
+        )
+        types = tuple(value for value in self.document.values(name, SH["class"]) if isinstance(value, IRI))
+        return Role(name, least, most, settings, types, Place(self.document.source))
+
+    def _count(self, role: IRI, predicate: IRI) -> int | None:
+        values = self.document.values(role, predicate)
+        if not values:
+            return None
+        value = values[0]
+        if len(values) > 1 or not isinstance(value, Literal) or not value.lexical.lstrip("+").isdecimal():
+            raise self._error(f"sc:{predicate.short} of the role {_show(role)} is one whole number, zero or more")
+        return int(value.lexical)
+
+    def _feeds(self, roles: tuple[Role, ...], known: frozenset[IRI]) -> Iterator[Interaction]:
+        for role in roles:
+            for sink in self.document.values(role.iri, SC.feeds):
+                if sink not in known or not isinstance(sink, IRI):
+                    raise self._error(
+                        f"the role {_show(role.iri)} feeds {_show(sink)}, which is no role of the template"
+                    )
+                yield Interaction(role.iri, sink)
+
+    def _interactions(self, known: frozenset[IRI]) -> Iterator[Interaction]:
+        every_role = {
+            role
+            for template in self.document.instances(SC.Template)
+            for role in self.document.items(self.document.value(template, SC.roles) or template)
+        }
+        for node in self.document.instances(SC.Interaction):
+            source = self._only(node, SC["from"], "an interaction has exactly one sc:from")
+            sink = self._only(node, SC.to, "an interaction has exactly one sc:to")
+            unknown = [end for end in (source, sink) if end not in known]
+            if len(unknown) == 2 and source in every_role and sink in every_role:
+                continue  # it belongs to another template of the same file
+            if unknown or not isinstance(source, IRI) or not isinstance(sink, IRI):
+                raise self._error(f"an interaction speaks of {_show(unknown[0])}, which is no role of the template")
+            yield Interaction(source, sink, self._port(node, SC.output), self._port(node, SC.input))
+
+    def _port(self, node: Node, predicate: IRI) -> str | None:
+        values = self.document.values(node, predicate)
+        if not values:
+            return None
+        if len(values) > 1 or not isinstance(values[0], Literal):
+            raise self._error(f"sc:{predicate.short} of an interaction is the name of one port, a string")
+        return values[0].lexical
+
+    def _parameters(self, template: IRI, roles: tuple[Role, ...]) -> tuple[Parameter, ...]:
+        listed = self.document.values(template, SC.parameter)
+        iris = frozenset(value for value in listed if isinstance(value, IRI))
+        in_shapes: set[IRI] = set()
+        for role in roles:
+            in_shapes |= mentions(self.document, role.iri, iris)
+        is_set = {setting.value for role in roles for setting in role.settings}
+        parameters: list[Parameter] = []
+        for value in listed:
+            if not isinstance(value, IRI):
+                raise self._error("a parameter of a template needs an IRI")
+            name = self._only(value, SC.name, f"the parameter {_show(value)} needs exactly one sc:name")
+            if not isinstance(name, Literal) or not name.lexical:
+                raise self._error(f"the sc:name of the parameter {_show(value)} is a string that is not empty")
+            default = self.document.value(value, SH.defaultValue)
+            parameters.append(Parameter(value, name.lexical, default, value in in_shapes, value in is_set))
+        for name_, times in Counter(parameter.name for parameter in parameters).items():
+            if times > 1:
+                raise self._error(f"two parameters have the name {name_!r}")
+        return tuple(sorted(parameters, key=lambda parameter: parameter.name))
+
+    def _label(self, subject: IRI) -> str | None:
+        label = self.document.value(subject, LABEL)
+        return label.lexical if isinstance(label, Literal) else None
+
+    def _only(self, subject: Term, predicate: IRI, problem: str) -> Term:
+        values = self.document.values(subject, predicate)
+        if len(values) != 1:
+            raise self._error(problem)
+        return values[0]
+
+    def _iri(self, subject: Term, predicate: IRI, problem: str) -> IRI:
+        value = self._only(subject, predicate, problem)
+        if not isinstance(value, IRI):
+            raise self._error(problem)
+        return value
+
+    def _error(self, message: str) -> TemplateError:
+        return TemplateError(message, file=self.document.source)
+
+
+def _show(term: Term) -> str:
+    if isinstance(term, IRI):
+        return repr(term)
+    return "a blank node" if isinstance(term, BlankNode) else f'"{term.lexical}"'

@@ -1,0 +1,118 @@
+"""Triples out: advertisements as N-Triples for the wire, a configuration as Turtle with its provenance (PROV-O)."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import datetime, timezone
+
+import pyoxigraph as ox
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.rdf.turtle import Triple
+from selfconf.rdf.vocabulary import PROV, ROB, SC, TYPE, XSD
+
+PREFIXES = {"sc": SC.base, "rob": ROB.base, "prov": PROV.base, "xsd": XSD.base}
+
+
+def ox_term(value: Term) -> ox.NamedNode | ox.BlankNode | ox.Literal:
+    """A value of the model as one of Oxigraph's terms."""
+    if isinstance(value, IRI):
+        return ox.NamedNode(value)
+    if isinstance(value, Literal):
+        if value.language:
+            return ox.Literal(value.lexical, language=value.language)
+        return ox.Literal(value.lexical, datatype=ox.NamedNode(value.datatype))
+    return ox.BlankNode(value[2:])
+
+
+def _ox_triples(triples: Iterable[Triple]) -> Iterator[ox.Triple]:
+    for subject, predicate, value in triples:
+        yield ox.Triple(ox_term(subject), ox.NamedNode(predicate), ox_term(value))  # type: ignore[arg-type]
+
+
+def ntriples(triples: Iterable[Triple]) -> bytes:
+    """The triples as N-Triples, which is Turtle too."""
+    return ox.serialize(_ox_triples(triples), format=ox.RdfFormat.N_TRIPLES) or b""
+
+
+def turtle(triples: Iterable[Triple], prefixes: Mapping[str, str] | None = None) -> str:
+    """The triples as Turtle for people."""
+    prefixes = {**PREFIXES, **(prefixes or {})}
+    return (ox.serialize(_ox_triples(triples), format=ox.RdfFormat.TURTLE, prefixes=prefixes) or b"").decode()
+
+
+def moment(seconds: float) -> Literal:
+    """A time, in seconds of the Unix epoch, as xsd:dateTime."""
+    return Literal(datetime.fromtimestamp(seconds, timezone.utc).isoformat(timespec="milliseconds"), XSD.dateTime)
+
+
+def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
+    """A name for a deployed configuration: what it is and when."""
+    digest = hashlib.blake2s(repr((configuration, epoch)).encode(), digest_size=8).hexdigest()
+    return IRI(f"urn:selfconf:configuration:{digest}")
+
+
+def configuration_triples(
+    configuration: Configuration,
+    name: IRI,
+    *,
+    epoch: int | None = None,
+    generated: float | None = None,
+    revises: IRI | None = None,
+    configurator: str | None = None,
+    failures: Iterable[tuple[IRI, str, str, float]] = (),
+) -> Iterator[Triple]:
+    """A configuration as the ontology describes it; `failures` are (component, cause, detail, seconds) behind it."""
+    yield name, TYPE, SC.Configuration
+    yield name, TYPE, PROV.Entity
+    yield name, SC.template, configuration.template
+    counter = 0
+
+    def blank() -> BlankNode:
+        nonlocal counter
+        counter += 1
+        return BlankNode(f"_:n{counter}")
+
+    for assignment in configuration.assignments:
+        for component in assignment.components:
+            node = blank()
+            yield name, SC.assignment, node
+            yield node, TYPE, SC.Assignment
+            yield node, SC.role, assignment.role
+            yield node, SC.component, component
+    for connection in configuration.connections:
+        node = blank()
+        yield name, SC.connection, node
+        yield node, TYPE, SC.Connection
+        yield node, SC["from"], connection.source
+        yield node, SC.output, Literal(connection.output, STRING)
+        yield node, SC.to, connection.sink
+        yield node, SC.input, Literal(connection.input, STRING)
+    for setting in configuration.settings:
+        node = blank()
+        yield name, SC.setting, node
+        yield node, TYPE, SC.Setting
+        yield node, SC.component, setting.component
+        yield node, SC.name, Literal(setting.name)
+        yield node, SC.value, setting.value
+    if epoch is not None:
+        yield name, SC.epoch, Literal(str(epoch), XSD.integer)
+    if generated is not None:
+        yield name, PROV.generatedAtTime, moment(generated)
+    if configurator is not None:
+        agent = IRI(f"urn:selfconf:configurator:{configurator}")
+        yield name, PROV.wasAttributedTo, agent
+        yield agent, TYPE, PROV.SoftwareAgent
+    if revises is not None:
+        yield name, PROV.wasRevisionOf, revises
+    for component, cause, detail, seconds in failures:
+        node = blank()
+        yield name, PROV.wasInfluencedBy, node
+        yield node, TYPE, SC.Failure
+        yield node, SC.component, component
+        yield node, SC.cause, Literal(cause)
+        if detail:
+            yield node, SC.detail, Literal(detail)
+        yield node, PROV.atTime, moment(seconds)
