@@ -1,0 +1,68 @@
+"""Act 3, composition: from a task and the advertisements, a configuration or a refusal.
+
+Roles are compiled once for a task. The partition is kept as long as the advertisements stay the same, so that after
+a failure only the lost components leave it and the search alone runs again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from enum import Enum
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.partition import Partition
+from selfconf.model.refusal import Refusal, TooFewEligible
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.partition import Partitioner
+from selfconf.rdf.templates import TaskDocument
+from selfconf.search import paper, solve
+from selfconf.search.problem import Problem
+
+
+class Strategy(str, Enum):
+    """How to search; all but `BEST` give the lexicographically first configuration."""
+
+    FIRST = "first"
+    PAPER = "paper"
+    BEST = "best"
+
+
+class Composer:
+    """Composes one task, again and again as the ecology changes."""
+
+    def __init__(
+        self, task: TaskDocument, hierarchy: Hierarchy = NOTHING_ABOVE, strategy: Strategy = Strategy.FIRST
+    ) -> None:
+        self.task, self.hierarchy, self.strategy = task, hierarchy, strategy
+        self.partitioner = Partitioner(task, hierarchy)
+        self._ecology: Mapping[IRI, Advertisement] | None = None
+        self._partition = Partition(())
+
+    def partition(self, ecology: Mapping[IRI, Advertisement]) -> Partition:
+        """F1 ... Fn of an ecology."""
+        if self._ecology is None or self._ecology != ecology:
+            self._ecology, self._partition = dict(ecology), self.partitioner.partition(list(ecology.values()))
+        return self._partition
+
+    def compose(
+        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Configuration | Refusal:
+        """The configuration without the lost components, keeping what runs where that can be; or why there is none."""
+        partition = self.partition(ecology)
+        problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
+        outcome: Configuration | Refusal | None
+        if self.strategy is Strategy.PAPER:
+            outcome = paper.search(problem)
+            if outcome is None:
+                outcome = solve.search(problem)
+        else:
+            outcome = solve.search(problem)
+        if isinstance(outcome, Refusal) and not outcome.near_misses:
+            present = [a for component, a in ecology.items() if component not in lost]
+            short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
+            misses = tuple(miss for miss in self.partitioner.near_misses(present) if not short or miss.role in short)
+            outcome = replace(outcome, near_misses=misses)
+        return outcome

@@ -1,0 +1,326 @@
+"""The four acts and the monitoring as one pure function: `step(state, event) -> (state, effects)`.
+
+    IDLE ──accepted──▶ DISCOVERING ──discovered──▶ COMPOSING ──configuration──▶ DEPLOYING ──all applied──▶ SETTING
+                            ▲                        ▲   │                         │                         │
+                            │                        │   └─refusal──▶ DISMANTLING ─┴──▶ REFUSED              ▼
+                            └── something appeared ──┼──────────────────(patient)───────┘                 RUNNING
+                                                     └──────────────── a component is lost ──────────────────┘
+
+Deployment is a transaction: FAIL is watched before anything is activated; components are activated and connected;
+parameters are set when everything is connected. Whatever ends it (a loss, a refusal, a stop) releases all that was
+touched, so that nothing is left half deployed.
+
+Two policies for a loss. `REPAIR` keeps what runs and changes what must change; `DISMANTLE` first takes everything
+down, as the paper does (section 4.2). Either way the lost component is turned off and its profile dropped, and the
+search runs again.
+
+Invariants, each a test: a component is watched before it is applied to; epochs grow; what is *held* is a superset of
+what may be active because of us; in IDLE, REFUSED and STOPPED nothing is held; an answer to an older epoch, or the
+result of an older search, changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+from selfconf.configurator.effects import (
+    ApplyTo,
+    Compose,
+    Discover,
+    Effect,
+    Finish,
+    ReleaseFrom,
+    Running,
+    SetOn,
+    Unwatch,
+    Watch,
+)
+from selfconf.configurator.events import (
+    Accepted,
+    Answered,
+    Appeared,
+    Call,
+    Composed,
+    Discovered,
+    Event,
+    Failed,
+    Stopped,
+)
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI, Term
+from selfconf.protocol.messages import Cause, Verdict, Wire
+
+Inputs = Mapping[str, tuple[Wire, ...]]
+Step = tuple["State", tuple[Effect, ...]]
+
+
+class Phase(str, Enum):
+    """Where the configurator is."""
+
+    IDLE = "idle"
+    DISCOVERING = "discovering"
+    COMPOSING = "composing"
+    DEPLOYING = "deploying"
+    SETTING = "setting"
+    RUNNING = "running"
+    DISMANTLING = "dismantling"
+    REFUSED = "refused"
+    STOPPED = "stopped"
+
+
+class Policy(str, Enum):
+    """What to do with the rest of a configuration when a component is lost."""
+
+    REPAIR = "repair"
+    DISMANTLE = "dismantle"
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A component that we have told to act: its life and inputs, whether it has confirmed, what was set on it."""
+
+    inputs: Inputs
+    life: str = ""
+    confirmed: bool = False
+    values: Mapping[str, Term] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """Why a component was dropped, and in which life."""
+
+    cause: Cause
+    detail: str = ""
+    life: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """All that a configurator knows about its task, apart from the advertisements."""
+
+    policy: Policy = Policy.REPAIR
+    patient: bool = False
+    """Whether a refusal is waited out instead of ending the task."""
+    phase: Phase = Phase.IDLE
+    epoch: int = 0
+    attempt: int = 0
+    target: Configuration | None = None
+    held: Mapping[IRI, Held] = field(default_factory=dict)
+    pending: frozenset[tuple[IRI, Call]] = frozenset()
+    watched: frozenset[IRI] = frozenset()
+    lost: Mapping[IRI, Loss] = field(default_factory=dict)
+    afterwards: Phase = Phase.STOPPED
+    """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""
+    refusal: Refusal | None = None
+
+
+def step(state: State, event: Event) -> Step:
+    """What an event does. Total: every state answers every event, if only by staying as it is."""
+    match event:
+        case Accepted():
+            return _accepted(state, event)
+        case Discovered():
+            return _compose(state) if state.phase is Phase.DISCOVERING else (state, ())
+        case Composed():
+            return _composed(state, event)
+        case Answered():
+            return _answered(state, event)
+        case Failed():
+            return _failed(state, event)
+        case Appeared():
+            return _appeared(state, event)
+        case Stopped():
+            return _stopped(state)
+
+
+def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
+    """For each component of a configuration, which outputs each of its inputs follows."""
+    wires: dict[IRI, dict[str, tuple[Wire, ...]]] = {component: {} for component in configuration.components}
+    for connection in configuration.connections:
+        inputs = wires[connection.sink]
+        inputs[connection.input] = (
+            *inputs.get(connection.input, ()),
+            Wire(connection.source, connection.output),
+        )
+    return wires
+
+
+def _accepted(state: State, event: Accepted) -> Step:
+    if state.phase is not Phase.IDLE:
+        return state, ()
+    return replace(state, phase=Phase.DISCOVERING, epoch=event.epoch), (Discover(),)
+
+
+def _compose(state: State) -> Step:
+    attempt = state.attempt + 1
+    running = state.target if state.policy is Policy.REPAIR else None
+    return (
+        replace(state, phase=Phase.COMPOSING, attempt=attempt, pending=frozenset()),
+        (Compose(attempt, frozenset(state.lost), running),),
+    )
+
+
+def _composed(state: State, event: Composed) -> Step:
+    if state.phase is not Phase.COMPOSING or event.attempt != state.attempt:
+        return state, ()
+    if isinstance(event.outcome, Configuration):
+        return _deploy(replace(state, target=event.outcome, refusal=None))
+    return _dismantle(replace(state, refusal=event.outcome), Phase.REFUSED)
+
+
+def _deploy(state: State) -> Step:
+    """Watch, then apply to every component that is new or wired differently, and release those not needed any more."""
+    target = state.target
+    assert target is not None
+    epoch = state.epoch + 1
+    wires = wiring(target)
+    surplus = [component for component in state.held if component not in wires]
+    changed = [component for component, inputs in wires.items() if not _as_wanted(state.held.get(component), inputs)]
+    held = {component: state.held[component] for component in state.held if component in wires}
+    for component in changed:
+        before = held.get(component)
+        held[component] = (
+            replace(before, inputs=wires[component], confirmed=False) if before else Held(wires[component])
+        )
+    effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
+    effects += [ApplyTo(component, epoch, wires[component]) for component in changed]
+    effects += [ReleaseFrom(component, epoch) for component in surplus]
+    effects += [Unwatch(component) for component in surplus if component in state.watched]
+    deployed = replace(
+        state,
+        phase=Phase.DEPLOYING,
+        epoch=epoch,
+        held=held,
+        pending=frozenset((component, Call.APPLY) for component in changed),
+        watched=(state.watched | wires.keys()) - frozenset(surplus),
+    )
+    return _then(effects, _proceed(deployed))
+
+
+def _as_wanted(held: Held | None, inputs: Inputs) -> bool:
+    return held is not None and held.confirmed and held.inputs == inputs
+
+
+def _proceed(state: State) -> Step:
+    """Go on to the next part of the deployment once nothing is pending."""
+    if state.pending:
+        return state, ()
+    target = state.target
+    assert target is not None
+    if state.phase is Phase.DEPLOYING:
+        wanted: dict[IRI, dict[str, Term]] = {}
+        for setting in target.settings:
+            if state.held[setting.component].values.get(setting.name) != setting.value:
+                wanted.setdefault(setting.component, {})[setting.name] = setting.value
+        held = dict(state.held)
+        for component, values in wanted.items():
+            held[component] = replace(held[component], values={**held[component].values, **values})
+        setting_ = replace(
+            state,
+            phase=Phase.SETTING,
+            held=held,
+            pending=frozenset((component, Call.SET) for component in wanted),
+        )
+        effects = [SetOn(component, state.epoch, values) for component, values in wanted.items()]
+        return _then(effects, _proceed(setting_))
+    return replace(state, phase=Phase.RUNNING), (Running(target),)
+
+
+def _answered(state: State, event: Answered) -> Step:
+    waited_for = (event.component, event.call) in state.pending and event.epoch == state.epoch
+    if not waited_for:
+        return state, ()
+    rest = replace(state, pending=state.pending - {(event.component, event.call)})
+    if state.phase is Phase.DISMANTLING:
+        return _released(rest)
+    if event.verdict is Verdict.DONE:
+        held = state.held[event.component]
+        fresh = bool(held.life) and held.life != event.life
+        confirmed = replace(held, life=event.life, confirmed=True, values={} if fresh else held.values)
+        return _proceed(replace(rest, held={**state.held, event.component: confirmed}))
+    if event.verdict is Verdict.STALE:
+        return _deploy(replace(rest, epoch=max(state.epoch, event.newest)))
+    detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
+    return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life))
+
+
+def _failed(state: State, event: Failed) -> Step:
+    held = state.held.get(event.component)
+    if held is None or state.phase is Phase.DISMANTLING:
+        return state, ()
+    if event.life and held.life and event.life != held.life:
+        return state, ()
+    return _lose(state, event.component, Loss(event.cause, event.detail, event.life or held.life))
+
+
+def _lose(state: State, component: IRI, loss: Loss) -> Step:
+    """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
+    without = replace(
+        state,
+        held={kept: held for kept, held in state.held.items() if kept != component},
+        watched=state.watched - {component},
+        lost={**state.lost, component: loss},
+    )
+    effects: list[Effect] = [Unwatch(component)]
+    if loss.cause is not Cause.CRASH:
+        effects.append(ReleaseFrom(component, state.epoch))
+    if state.policy is Policy.DISMANTLE:
+        return _then(effects, _dismantle(without, Phase.COMPOSING))
+    return _then(effects, _compose(without))
+
+
+def _dismantle(state: State, afterwards: Phase) -> Step:
+    """Release everything that is held; then comes `afterwards`."""
+    epoch = state.epoch + 1
+    effects: list[Effect] = [ReleaseFrom(component, epoch) for component in state.held]
+    effects += [Unwatch(component) for component in sorted(state.watched)]
+    dismantling = replace(
+        state,
+        phase=Phase.DISMANTLING,
+        afterwards=afterwards,
+        epoch=epoch,
+        pending=frozenset((component, Call.RELEASE) for component in state.held),
+        watched=frozenset(),
+    )
+    return _then(effects, _released(dismantling))
+
+
+def _released(state: State) -> Step:
+    if state.pending:
+        return state, ()
+    empty = replace(state, held={}, target=None)
+    if state.afterwards is Phase.COMPOSING:
+        return _compose(empty)
+    ended = replace(empty, phase=state.afterwards)
+    if state.afterwards is Phase.REFUSED:
+        return ended, () if state.patient else (Finish(state.refusal),)
+    return ended, (Finish(),)
+
+
+def _appeared(state: State, event: Appeared) -> Step:
+    """A component that lives a new life is not the one that was lost."""
+    lost = {
+        component: loss
+        for component, loss in state.lost.items()
+        if component not in event.lives or event.lives[component] == loss.life
+    }
+    known = replace(state, lost=lost)
+    if state.phase is Phase.REFUSED and state.patient:
+        return replace(known, phase=Phase.DISCOVERING), (Discover(),)
+    return known, ()
+
+
+def _stopped(state: State) -> Step:
+    if state.phase is Phase.STOPPED:
+        return state, ()
+    if state.phase is Phase.DISMANTLING:
+        return replace(state, afterwards=Phase.STOPPED), ()
+    return _dismantle(state, Phase.STOPPED)
+
+
+def _then(effects: list[Effect] | list[SetOn], following: Step) -> Step:
+    state, more = following
+    return state, (*effects, *more)

@@ -1,0 +1,206 @@
+"""The configuration problem, and the rules that every strategy shares.
+
+*Given* roles in their order, for each role its candidates in theirs, and the interactions between roles; *wanted*
+as many distinct components per role as it asks for at least, so that every input of every component is matched by
+an output of a component that plays a role feeding it (component mutual compatibility rule, section 2.3 of the
+paper), and so that the free parameters have a value that everybody allows.
+
+*Slots.* A role that asks for at least k components has k slots; a solution fills every slot. Solutions are compared
+slot by slot, in the order of the roles and, within a slot, of the candidates; the answer is the least of them. It
+is unique, so that no strategy can change it: it can only take longer.
+
+*Extension.* A least solution is then extended: as long as there is a candidate that fits, the first one (in the
+order of the roles, then of the candidates) is added, up to the role's maximum. It fits if it plays no role yet, each
+of its inputs is matched, and the free parameters still have a value. Adding a component never unfeeds another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
+from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.template import Interaction, Role, Task
+from selfconf.model.term import IRI, Term
+
+Playing = Sequence[Sequence[Candidate]]
+"""For each role, in order, the candidates that play it so far."""
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """An interaction seen from its sink: the index of the role that feeds it, and the ports if they are named."""
+
+    source: int
+    output: str | None = None
+    input: str | None = None
+
+
+class Problem:
+    """A task, its partition and the hierarchy under which signals match; never changed once made."""
+
+    def __init__(self, task: Task, partition: Partition, hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
+        self.task, self.partition, self.hierarchy = task, partition, hierarchy
+        self.roles: tuple[Role, ...] = task.template.roles
+        self.candidates: tuple[tuple[Candidate, ...], ...] = partition.candidates
+        self.variables: tuple[Variable, ...] = partition.variables
+        index = {role.iri: position for position, role in enumerate(self.roles)}
+        feeding: list[list[Link]] = [[] for _ in self.roles]
+        fed: list[list[int]] = [[] for _ in self.roles]
+        for interaction in task.template.interactions:
+            source, sink = index[interaction.source], index[interaction.sink]
+            feeding[sink].append(_link(interaction, source))
+            if sink not in fed[source]:
+                fed[source].append(sink)
+        self.links: tuple[tuple[Link, ...], ...] = tuple(map(tuple, feeding))
+        """For each role, the links by which it is fed."""
+        self.sinks: tuple[tuple[int, ...], ...] = tuple(map(tuple, fed))
+        """For each role, the roles that it feeds."""
+        self.sources: tuple[tuple[int, ...], ...] = tuple(
+            tuple(dict.fromkeys(link.source for link in links)) for links in self.links
+        )
+        """For each role, the roles that feed it."""
+        self.open_values: tuple[int, ...] = tuple(self._open(variable) for variable in self.variables)
+        """What each variable may be before anybody plays; a parameter that is also set needs a value of the domain."""
+
+    @property
+    def unvalued(self) -> tuple[tuple[IRI, str], ...]:
+        """The roles that set something to a parameter that has no value and can get none, with its name."""
+        known = {*self.task.bindings, *(variable.parameter for variable in self.variables)}
+        names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}
+        return tuple(
+            (role.iri, names[setting.value])
+            for role in self.roles
+            for setting in role.settings
+            if isinstance(setting.value, IRI) and setting.value in names and setting.value not in known
+        )
+
+    def _open(self, variable: Variable) -> int:
+        for parameter in self.task.template.parameters:
+            if parameter.iri == variable.parameter and parameter.is_set:
+                return (1 << len(variable.domain)) - 1
+        return ANY_VALUE
+
+    def matches(self, output: Output, link: Link, wanted: Input) -> bool:
+        """Whether an output feeds an input along a link: the names, where given, and the signal types."""
+        return (
+            (link.output is None or link.output == output.name)
+            and (link.input is None or link.input == wanted.name)
+            and self.hierarchy.matches(output.signal, wanted.signal)
+        )
+
+    def feeders(self, role: int, wanted: Input, playing: Playing) -> Iterator[tuple[Profile, Output]]:
+        """Who feeds an input of a component that plays `role`, and from which output."""
+        for link in self.links[role]:
+            for candidate in playing[link.source]:
+                for output in candidate.profile.outputs:
+                    if self.matches(output, link, wanted):
+                        yield candidate.profile, output
+
+    def compatible(self, role: int, profile: Profile, playing: Playing) -> bool:
+        """The component mutual compatibility rule: each input of the sink is matched by an output of a source."""
+        return all(any(True for _ in self.feeders(role, wanted, playing)) for wanted in profile.inputs)
+
+    def narrowed(self, values: tuple[int, ...], candidate: Candidate) -> tuple[int, ...] | None:
+        """What the variables may still be once a candidate plays too, or None if some variable has no value left."""
+        narrowed = tuple(value & allowed for value, allowed in zip(values, candidate.admits, strict=True))
+        return narrowed if all(narrowed) else None
+
+    def solved(self, playing: Playing) -> Configuration:
+        """The configuration that a least solution stands for, extended by every further candidate that fits."""
+        extended = [list(role) for role in playing]
+        values = self.open_values
+        for role in extended:
+            for candidate in role:
+                values = tuple(v & allowed for v, allowed in zip(values, candidate.admits, strict=True))
+        return self.configuration(extended, self._extend(extended, values))
+
+    def _extend(self, playing: list[list[Candidate]], values: tuple[int, ...]) -> tuple[int, ...]:
+        """Add every further candidate that fits, the first one first; returns what the variables may be then.
+
+        Who is taken or allows no value left never fits later; who is unfed may, once a role that feeds his gets
+        outputs that it did not have: he waits for that. So nearly every candidate is looked at once.
+        """
+        open_roles = [p for p, role in enumerate(self.roles) if role.maximum is None or len(playing[p]) < role.maximum]
+        if not open_roles:
+            return values
+        taken = {candidate.profile.component for role in playing for candidate in role}
+        offered = [{candidate.profile.outputs for candidate in role} for role in playing]
+        trying = [(p, index) for p in open_roles for index in range(len(self.candidates[p]))]
+        waiting: dict[int, list[tuple[int, int]]] = {}
+        unfed: dict[int, set[tuple[tuple[Input, ...], tuple[Output, ...]]]] = {}
+        while trying:
+            position, index = heappop(trying)
+            candidate, maximum = self.candidates[position][index], self.roles[position].maximum
+            profile = candidate.profile
+            if profile.component in taken or (maximum is not None and len(playing[position]) >= maximum):
+                continue
+            narrowed = self.narrowed(values, candidate)
+            if narrowed is None:
+                continue
+            ports = profile.inputs, profile.outputs
+            playing[position].append(candidate)
+            if ports in unfed.get(position, ()) or not self.compatible(position, profile, playing):
+                playing[position].pop()
+                waiting.setdefault(position, []).append((position, index))
+                unfed.setdefault(position, set()).add(ports)
+                continue
+            values = narrowed
+            taken.add(profile.component)
+            if profile.outputs not in offered[position]:
+                offered[position].add(profile.outputs)
+                for sink in self.sinks[position]:
+                    unfed.pop(sink, None)
+                    for one in waiting.pop(sink, ()):
+                        heappush(trying, one)
+        return values
+
+    def configuration(self, playing: Playing, values: tuple[int, ...]) -> Configuration:
+        """<B, S>: S is every matching pair of ports along the interactions."""
+        template = self.task.template
+        names = {parameter.iri: parameter.name for parameter in template.parameters}
+        bindings = self.task.by_name()
+        for variable, mask in zip(self.variables, values, strict=True):
+            value = variable.first(mask)
+            if value is not None:
+                bindings[names[variable.parameter]] = value
+        connections = [
+            Connection(source.component, output.name, candidate.profile.component, wanted.name)
+            for position, role in enumerate(playing)
+            for candidate in role
+            for wanted in candidate.profile.inputs
+            for source, output in self.feeders(position, wanted, playing)
+        ]
+        order = {c.profile.component: place for place, c in enumerate(c for role in playing for c in role)}
+        return Configuration(
+            template=template.iri,
+            assignments=tuple(
+                Assignment(role.iri, tuple(candidate.profile.component for candidate in chosen))
+                for role, chosen in zip(self.roles, playing, strict=True)
+            ),
+            connections=tuple(
+                sorted(set(connections), key=lambda c: (order[c.source], c.output, order[c.sink], c.input))
+            ),
+            settings=tuple(self._settings(playing, bindings)),
+            bindings=dict(sorted(bindings.items())),
+        )
+
+    def _settings(self, playing: Playing, bindings: Mapping[str, Term]) -> Iterator[ParameterSetting]:
+        names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}
+        for role, chosen in zip(self.roles, playing, strict=True):
+            for setting in role.settings:
+                value = setting.value
+                if isinstance(value, IRI) and value in names:
+                    value = bindings[names[value]]
+                for candidate in chosen:
+                    for parameter in candidate.profile.parameters:
+                        if self.hierarchy.matches(setting.type, parameter.type):
+                            yield ParameterSetting(candidate.profile.component, parameter.name, value)
+
+
+def _link(interaction: Interaction, source: int) -> Link:
+    return Link(source, interaction.output, interaction.input)

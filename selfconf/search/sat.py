@@ -1,0 +1,235 @@
+"""The one door to a clause-learning solver, for the instances on which depth-first search thrashes.
+
+*Which library.* python-sat (MIT; Ignatiev, Morgado and Marques-Silva, SAT 2018), with its Glucose 4. It has only
+pre-releases on the index, which is why it is an extra (`selfconf[solvers]`) and why nothing else knows it; clingo has
+stable releases. But python-sat stops after a given number of *conflicts*, so that a budget means the same on every
+machine; it imports in a fortieth of a second and starts in well under a millisecond, an instance being a list of
+clauses and not a program to ground; and its lexicographic minimisation is exact, where clingo's priorities saturate
+at 32,767 levels. Without it everything works, and hard instances end as `Undecided` sooner.
+
+*Encoding.* A literal for each option: it plays. Each role is played by exactly as many as it has slots; a component
+plays one role at most. A literal for each need: whoever has the need implies it, and it implies one of its givers.
+A literal for each value of a variable, at most one of which holds: whoever is constrained implies one of the values.
+
+*The least solution.* Slot by slot: given the choices so far and a model, ask for one in which an earlier option is
+in the slot, until there is none. What is settled is added as a unit, so that everything learned stays true.
+
+*Guards.* Each requirement may have a literal that puts it in force, to be assumed: the solver then names assumptions
+that cannot hold together. A role that is not in force may still be played, so that less in force never means less
+possible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
+
+from selfconf.model.partition import ANY_VALUE
+from selfconf.model.refusal import Undecided
+from selfconf.search.compact import Compact, Option
+from selfconf.search.requirement import Distinct, Fed, Played, Requirement, Shared
+from selfconf.search.walk import Budget
+
+
+def available() -> bool:
+    """Whether the extra `solvers` is installed."""
+    return find_spec("pysat") is not None
+
+
+def least(compact: Compact, budget: Budget) -> list[Option] | Undecided | None:
+    """The least solution, one option per slot; None if there is none; Undecided when the conflicts are used up."""
+    with Clauses(compact) as clauses:
+        found = clauses.solve((), budget)
+        return clauses.least(budget) if found is True else None if found is False else found
+
+
+class Clauses:
+    """A compact problem as clauses in an incremental solver; use it in a `with` statement."""
+
+    def __init__(self, compact: Compact, guarded: bool = False, distinct: bool = True) -> None:
+        from pysat.solvers import Solver
+
+        self.compact = compact
+        self._solver = Solver(name="glucose4")
+        self._top = 0
+        self._true: set[int] = set()
+        self.guards: dict[Requirement, int] = {}
+        self._guarded = guarded
+        self.plays: tuple[tuple[int, ...], ...] = tuple(
+            tuple(self.literal() for _ in options) for options in compact.options
+        )
+        """For each role, the literals of its options."""
+        self._roles()
+        if distinct:
+            self._distinct()
+        self._needs()
+        self._values()
+        self._solver.set_phases([literals[0] for literals in self.plays if literals])
+
+    def __enter__(self) -> Clauses:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._solver.delete()
+
+    def literal(self) -> int:
+        """A new literal."""
+        self._top += 1
+        return self._top
+
+    def add(self, clause: Iterable[int]) -> None:
+        """Add a clause."""
+        self._solver.add_clause(list(clause))
+
+    def prefer(self, literals: Iterable[int]) -> None:
+        """Try these literals first; changes the time only."""
+        self._solver.set_phases(list(literals))
+
+    def _in_force(self, requirement: Requirement) -> list[int]:
+        """What a clause of this requirement starts with."""
+        if not self._guarded:
+            return []
+        guard = self.guards.get(requirement)
+        if guard is None:
+            guard = self.guards[requirement] = self.literal()
+        return [-guard]
+
+    def _roles(self) -> None:
+        slots: dict[int, int] = {}
+        for role in self.compact.slots:
+            slots[role] = slots.get(role, 0) + 1
+        for role, asked in slots.items():
+            literals = self.plays[role]
+            self.at_most(literals, asked)
+            force = self._in_force(Played(role))
+            if len(literals) < asked:
+                impossible = self.literal()
+                self.add([*force, impossible])
+                self.add([-impossible])
+            elif asked == 1:
+                self.add([*force, *literals])
+            else:
+                self.at_most([-literal for literal in literals], len(literals) - asked, force)
+
+    def _distinct(self) -> None:
+        playing: dict[str, list[int]] = {}
+        for options, literals in zip(self.compact.options, self.plays, strict=True):
+            for option, literal in zip(options, literals, strict=True):
+                if option.component:
+                    playing.setdefault(option.component, []).append(literal)
+        for same in playing.values():
+            if len(same) > 1:
+                self.at_most(same, 1, self._in_force(Distinct()))
+
+    def _needs(self) -> None:
+        givers: list[list[int]] = [[] for _ in self.compact.needs]
+        needing: list[list[int]] = [[] for _ in self.compact.needs]
+        for options, literals in zip(self.compact.options, self.plays, strict=True):
+            for option, literal in zip(options, literals, strict=True):
+                for need in option.kind.gives:
+                    givers[need].append(literal)
+                for need in option.kind.needs:
+                    needing[need].append(literal)
+        for need, some in enumerate(needing):
+            if some:
+                served = self.literal()
+                self.add([*self._in_force(Fed(need)), -served, *givers[need]])
+                for literal in some:
+                    self.add([-literal, served])
+
+    def _values(self) -> None:
+        for variable, open_values in enumerate(self.compact.values):
+            constrained = [
+                (literal, option.kind.admits[variable] & open_values)
+                for options, literals in zip(self.compact.options, self.plays, strict=True)
+                for option, literal in zip(options, literals, strict=True)
+                if option.kind.admits[variable] != ANY_VALUE
+            ]
+            if not constrained:
+                continue
+            width = max(mask.bit_length() for _, mask in constrained)
+            values = [self.literal() for _ in range(width)]
+            self.at_most(values, 1)
+            force = self._in_force(Shared(variable))
+            for literal, mask in constrained:
+                self.add([*force, -literal, *(values[k] for k in range(width) if mask >> k & 1)])
+
+    def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
+        """No more than so many of the literals hold (Sinz's sequential counter; CP 2005), under the guards given."""
+        if most >= len(literals):
+            return
+        if most == 0:
+            for literal in literals:
+                self.add([*force, -literal])
+        elif most == 1:
+            before: int | None = None
+            for literal in literals:
+                if before is None:
+                    before = self.literal()
+                    self.add([*force, -literal, before])
+                    continue
+                self.add([*force, -before, -literal])
+                after = self.literal()
+                self.add([*force, -before, after])
+                self.add([*force, -literal, after])
+                before = after
+        else:
+            from pysat.card import CardEnc, EncType
+
+            encoded = CardEnc.atmost(list(literals), most, top_id=self._top, encoding=EncType.seqcounter)
+            self._top = max(self._top, encoded.nv)
+            for clause in encoded.clauses:
+                self.add([*force, *clause])
+
+    def solve(self, assumed: Sequence[int], budget: Budget) -> bool | Undecided:
+        """Whether the clauses can hold under assumptions."""
+        if budget.steps == 0:
+            return Undecided(0)
+        before = self._conflicts()
+        if budget.steps is None:
+            found: bool | None = self._solver.solve(assumptions=list(assumed))
+        else:
+            self._solver.conf_budget(budget.steps)
+            found = self._solver.solve_limited(assumptions=list(assumed))
+        budget.spend(1 + self._conflicts() - before)
+        if found is None:
+            return Undecided(self._conflicts())
+        if found:
+            self._true = {literal for literal in self._solver.get_model() if literal > 0}
+        return found
+
+    def _conflicts(self) -> int:
+        return int(self._solver.accum_stats()["conflicts"])
+
+    def holds(self, literal: int) -> bool:
+        """Whether a literal holds in the last model."""
+        return literal in self._true
+
+    def core(self) -> set[int]:
+        """Assumptions of the last call that cannot hold together."""
+        return set(self._solver.get_core() or ())
+
+    def least(self, budget: Budget) -> list[Option] | Undecided:
+        """The least solution, given that the last call found one."""
+        chosen: list[Option] = []
+        start, previous = 0, -1
+        for role in self.compact.slots:
+            if role != previous:
+                start, previous = 0, role
+            literals = self.plays[role]
+            current = next(i for i in range(start, len(literals)) if self.holds(literals[i]))
+            while current > start:
+                earlier = self.literal()
+                self.add([-earlier, *literals[start:current]])
+                found = self.solve((earlier,), budget)
+                if isinstance(found, Undecided):
+                    return found
+                if not found:
+                    break
+                current = next(i for i in range(start, current) if self.holds(literals[i]))
+            for literal in literals[start:current]:
+                self.add([-literal])
+            self.add([literals[current]])
+            chosen.append(self.compact.options[role][current])
+            start = current + 1
+        return chosen
