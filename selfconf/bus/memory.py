@@ -1,0 +1,402 @@
+"""A network in memory: one thread, a clock turned by hand, and a seed for everything that can go wrong.
+
+`Network` delivers what nodes say in the order of simulated time. Faults are policy: each message may be delayed, lost
+or doubled with given chances, and nodes may be cut off from each other. Events are never lost between nodes that
+reach each other, as on the real bus. A history is replayed by its seed.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import random
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from selfconf.bus.port import Replies, Sample, Urgency
+
+_T = TypeVar("_T")
+
+
+def intersects(left: str, right: str) -> bool:
+    """Whether two key expressions have a key in common: `*` is one chunk, `**` any number, neither stands for `@...`."""
+    return _intersect(left.split("/"), right.split("/"))
+
+
+def _intersect(left: list[str], right: list[str]) -> bool:
+    if not left or not right:
+        return all(chunk == "**" for chunk in left or right)
+    if left[0] == "**":
+        return _intersect(left[1:], right) or (_wild(right[0]) and _intersect(left, right[1:]))
+    if right[0] == "**":
+        return _intersect(right, left)
+    same = left[0] == right[0] or (left[0] == "*" and _wild(right[0])) or (right[0] == "*" and _wild(left[0]))
+    return same and _intersect(left[1:], right[1:])
+
+
+def _wild(chunk: str) -> bool:
+    return not chunk.startswith("@")
+
+
+@dataclass(frozen=True, slots=True)
+class Faults:
+    """The chances per message, and the delays in seconds; a perfect and fast network by default."""
+
+    loss: float = 0.0
+    doubling: float = 0.0
+    least_delay: float = 0.0005
+    most_delay: float = 0.0005
+
+
+class Network:
+    """The simulated network: nodes, time, and who reaches whom."""
+
+    def __init__(self, seed: int = 0, faults: Faults | None = None) -> None:
+        self.time = 0.0
+        self.faults = faults or Faults()
+        self._chance = random.Random(seed)
+        self._events: list[tuple[float, int, Callable[[], None]]] = []
+        self._count = itertools.count()
+        self._cut: set[frozenset[int]] = set()
+        self.nodes: list[MemoryBus] = []
+
+    def node(self) -> MemoryBus:
+        """A new node that reaches all others."""
+        bus = MemoryBus(self, len(self.nodes))
+        self.nodes.append(bus)
+        return bus
+
+    def cut(self, left: MemoryBus, right: MemoryBus) -> None:
+        """Nothing gets through between two nodes from now on; each thinks the other's lives have ended."""
+        self._cut.add(frozenset((left.number, right.number)))
+        left.unsee(right)
+        right.unsee(left)
+
+    def mend(self, left: MemoryBus, right: MemoryBus) -> None:
+        """Two nodes reach each other again, and see each other's lives."""
+        self._cut.discard(frozenset((left.number, right.number)))
+        left.see(right)
+        right.see(left)
+
+    def reaches(self, left: MemoryBus, right: MemoryBus) -> bool:
+        """Whether a message gets through between two nodes."""
+        return left.open and right.open and (left is right or frozenset((left.number, right.number)) not in self._cut)
+
+    def deliver(self, sender: MemoryBus, receiver: MemoryBus, action: Callable[[], None], sure: bool = True) -> bool:
+        """Have the receiver hear something after the network's delay; False if it is lost."""
+        if not self.reaches(sender, receiver) or (not sure and self._chance.random() < self.faults.loss):
+            return False
+        times = 2 if not sure and self._chance.random() < self.faults.doubling else 1
+        for _ in range(times):
+            delay = self._chance.uniform(self.faults.least_delay, self.faults.most_delay)
+            if sure:  # what is never lost keeps its order
+                delay = self.faults.least_delay
+            self.at(self.time + delay, receiver, action)
+        return True
+
+    def at(self, time: float, node: MemoryBus, action: Callable[[], None]) -> tuple[float, int, Callable[[], None]]:
+        """Have a node do something at a time, if it is still there."""
+
+        def act() -> None:
+            if node.open:
+                action()
+
+        entry = (time, next(self._count), act)
+        heapq.heappush(self._events, entry)
+        return entry
+
+    def step(self) -> bool:
+        """Let the next thing happen; False if nothing is left."""
+        if not self._events:
+            return False
+        time, _, action = heapq.heappop(self._events)
+        self.time = max(self.time, time)
+        action()
+        return True
+
+    def run(self, until: Callable[[], bool], seconds: float = 60.0) -> bool:
+        """Let things happen until `until` holds, or that much simulated time has passed; whether it holds."""
+        deadline = self.time + seconds
+        while not until():
+            if not self._events or self._events[0][0] > deadline:
+                self.time = deadline
+                return until()
+            self.step()
+        return True
+
+
+class MemoryBus:
+    """A node of the simulated network."""
+
+    def __init__(self, network: Network, number: int) -> None:
+        self.network, self.number, self.open = network, number, True
+        self._subscribers: dict[int, tuple[str, Callable[[Sample], None]]] = {}
+        self._queryables: dict[int, tuple[str, Callable[[_Request], None]]] = {}
+        self._watchers: dict[int, tuple[str, Callable[[str, bool], None]]] = {}
+        self._tokens: dict[int, str] = {}
+        self._publishers: dict[int, _Publisher] = {}
+        self._count = itertools.count()
+
+    @property
+    def linked(self) -> bool:
+        """Whether this node reaches any other."""
+        others = [node for node in self.network.nodes if node is not self and node.open]
+        return self.open and (not others or any(self.network.reaches(self, node) for node in others))
+
+    def now(self) -> float:
+        """Seconds of simulated time."""
+        return self.network.time
+
+    def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
+        """Call `action` once, after that time."""
+        undone = False
+
+        def act() -> None:
+            if not undone:
+                action()
+
+        def undo() -> None:
+            nonlocal undone
+            undone = True
+
+        self.network.at(self.network.time + seconds, self, act)
+        return undo
+
+    def wake_up(self, action: Callable[[], None]) -> None:
+        """Call `action` soon."""
+        self.network.at(self.network.time, self, action)
+
+    def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
+        """Declare a key to put on."""
+        number = next(self._count)
+        declared = _Publisher(self, number, key, urgency, matched)
+        self._publishers[number] = declared
+        declared.match()
+        return declared
+
+    def subscribe(
+        self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL
+    ) -> Callable[[], None]:
+        """Hear every sample put on a key from now on."""
+        undo = self._declare(self._subscribers, (key, receive))
+        self._match_all()
+
+        def undone() -> None:
+            undo()
+            self._match_all()
+
+        return undone
+
+    def serve(self, key: str, answer: Callable[[_Request], None]) -> Callable[[], None]:
+        """Answer questions to a key."""
+        return self._declare(self._queryables, (key, answer))
+
+    def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+        """Ask everybody who serves a key; a question or a reply that is lost shows as a time-out."""
+        question = _Question(self, done)
+        for node in self.network.nodes:
+            for served, answer in list(node._queryables.values()):
+                if self.network.reaches(self, node) and intersects(key, served):
+                    question.asked(node, key, payload, answer)
+        question.sent(seconds)
+
+    def announce(self, key: str) -> Callable[[], None]:
+        """Be alive under a key."""
+        undo = self._declare(self._tokens, key)
+        self._tell_life(key, True)
+
+        def undone() -> None:
+            if key in self._tokens.values():
+                undo()
+                self._tell_life(key, False)
+
+        return undone
+
+    def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
+        """Hear of every life under a key, those that are there already first."""
+        undo = self._declare(self._watchers, (key, changed))
+        for node in self.network.nodes:
+            if self.network.reaches(self, node):
+                for token in list(node._tokens.values()):
+                    if intersects(key, token):
+                        self.network.deliver(node, self, _said(changed, token, True))
+        return undo
+
+    def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        """The keys that are alive right now."""
+        alive = tuple(
+            sorted(
+                token
+                for node in self.network.nodes
+                if self.network.reaches(self, node)
+                for token in node._tokens.values()
+                if intersects(key, token)
+            )
+        )
+        self.network.deliver(self, self, lambda: done(alive))
+
+    def poll(self, seconds: float = 0.0) -> None:
+        """Let the network run for that much simulated time."""
+        self.network.run(lambda: False, seconds)
+
+    def run(self, until: Callable[[], bool]) -> None:
+        """Let the network run until `until` holds."""
+        self.network.run(until, float("inf"))
+
+    def close(self) -> None:
+        """Leave the network, as a crash or a clean exit does: others see the lives end."""
+        for key in list(self._tokens.values()):
+            self._tell_life(key, False)
+        self.open = False
+        self._tokens.clear()
+        self._match_all()
+
+    def see(self, other: MemoryBus) -> None:
+        """Hear of the lives of another node."""
+        self._hear_lives(other, True)
+
+    def unsee(self, other: MemoryBus) -> None:
+        """Hear of the end of the lives of another node."""
+        self._hear_lives(other, False)
+
+    def _hear_lives(self, other: MemoryBus, alive: bool) -> None:
+        for token in other._tokens.values():
+            for key, changed in list(self._watchers.values()):
+                if intersects(key, token):
+                    self.network.at(self.network.time, self, _said(changed, token, alive))
+
+    def _tell_life(self, token: str, alive: bool) -> None:
+        for node in self.network.nodes:
+            for key, changed in list(node._watchers.values()):
+                if intersects(key, token):
+                    self.network.deliver(self, node, _said(changed, token, alive))
+
+    def _declare(self, where: dict[int, _T], what: _T) -> Callable[[], None]:
+        number = next(self._count)
+        where[number] = what
+
+        def undo() -> None:
+            where.pop(number, None)
+
+        return undo
+
+    def _match_all(self) -> None:
+        for node in self.network.nodes:
+            for declared in list(node._publishers.values()):
+                declared.match()
+
+    def _send(self, sample: Sample, urgency: Urgency) -> None:
+        for node in self.network.nodes:
+            for number, (key, receive) in list(node._subscribers.items()):
+                if intersects(key, sample.key):
+                    self.network.deliver(
+                        self, node, _heard(node, number, receive, sample), sure=urgency is Urgency.EVENT
+                    )
+
+
+def _heard(node: MemoryBus, number: int, receive: Callable[[Sample], None], sample: Sample) -> Callable[[], None]:
+    def hear() -> None:
+        if number in node._subscribers:
+            receive(sample)
+
+    return hear
+
+
+def _said(changed: Callable[[str, bool], None], token: str, alive: bool) -> Callable[[], None]:
+    return lambda: changed(token, alive)
+
+
+class _Publisher:
+    """A declared key; it notices when there begins to be a subscriber."""
+
+    def __init__(
+        self, bus: MemoryBus, number: int, key: str, urgency: Urgency, matched: Callable[[bool], None] | None
+    ) -> None:
+        self._bus, self._number, self._key, self._urgency, self._matched = bus, number, key, urgency, matched
+        self._matching = False
+
+    def put(self, payload: bytes, attachment: bytes = b"") -> None:
+        """Put a sample."""
+        if self._bus.open:
+            self._bus._send(Sample(self._key, payload, attachment), self._urgency)
+
+    def undeclare(self) -> None:
+        """Take the declaration back."""
+        self._bus._publishers.pop(self._number, None)
+
+    def match(self) -> None:
+        """Tell, if it has changed, whether somebody subscribes."""
+        network = self._bus.network
+        matching = any(
+            network.reaches(self._bus, node) and intersects(key, self._key)
+            for node in network.nodes
+            for key, _ in node._subscribers.values()
+        )
+        if matching != self._matching:
+            self._matching = matching
+            if self._matched is not None:
+                matched = self._matched
+                network.deliver(self._bus, self._bus, lambda: matched(matching))
+
+
+class _Question:
+    """A question that is out: collects replies until everybody has finished, or the time is over."""
+
+    def __init__(self, bus: MemoryBus, done: Callable[[Replies], None]) -> None:
+        self.bus, self._done = bus, done
+        self._samples: list[Sample] = []
+        self._errors: list[str] = []
+        self._open = 0
+        self._over = False
+
+    def asked(self, node: MemoryBus, key: str, payload: bytes, answer: Callable[[_Request], None]) -> None:
+        self._open += 1
+        request = _Request(self, node, key, payload)
+        self.bus.network.deliver(self.bus, node, lambda: answer(request), sure=False)
+
+    def sent(self, seconds: float) -> None:
+        if self._open == 0:
+            self.bus.network.deliver(self.bus, self.bus, lambda: self._end(True))
+        self.bus.later(seconds, lambda: self._end(False))
+
+    def replied(self, sample: Sample | None, error: str | None) -> None:
+        if sample is not None:
+            self._samples.append(sample)
+        if error is not None:
+            self._errors.append(error)
+
+    def finished(self) -> None:
+        self._open -= 1
+        if self._open == 0:
+            self._end(True)
+
+    def _end(self, complete: bool) -> None:
+        if not self._over:
+            self._over = True
+            self._done(Replies(tuple(self._samples), tuple(self._errors), complete))
+
+
+class _Request:
+    """A question as it arrived at a node."""
+
+    def __init__(self, question: _Question, node: MemoryBus, key: str, payload: bytes) -> None:
+        self._question, self._node, self.key, self.payload = question, node, key, payload
+        self._finished = False
+
+    def reply(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
+        """One reply."""
+        self._back(lambda: self._question.replied(Sample(key, payload, attachment), None))
+
+    def refuse(self, reason: str) -> None:
+        """Reply that it cannot be answered."""
+        self._back(lambda: self._question.replied(None, reason))
+
+    def finish(self) -> None:
+        """End the answer."""
+        if not self._finished:
+            self._finished = True
+            self._back(self._question.finished)
+
+    def _back(self, action: Callable[[], None]) -> None:
+        self._node.network.deliver(self._node, self._question.bus, action)

@@ -1,0 +1,301 @@
+"""The one file that speaks Zenoh.
+
+Each site opens a *router* session that listens on one endpoint; everything else on its host is a *client* of it;
+routers connect to each other. Multicast is off, endpoints are explicit, and nothing listens anywhere but on loopback
+unless it is told to. What was measured and why it is so: `docs/protocol.md`.
+
+* Callbacks only put into the loop's queue (`indirect=False`): one that works would hold up every other message, and
+  the default kind is a thread each.
+* Questions go to all, are not consolidated (that keeps one reply per key and waits for the slowest), and end when
+  every queryable has finished, not at the time-out.
+* All control calls of one component have the same priority and are express, or they would overtake each other.
+* A lease of one second: a component that is stopped or cut off counts as dead after about that time.
+"""
+
+from __future__ import annotations
+
+import json
+import socket
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from selfconf.bus.loop import Loop
+from selfconf.bus.port import Replies, Sample, Urgency
+from selfconf.errors import NetworkError
+
+LEASE_MS = 1000
+ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
+
+zenoh.init_log_from_env_or("error")
+
+_QUALITY: dict[Urgency, dict[str, Any]] = {
+    Urgency.SIGNAL: {
+        "congestion_control": zenoh.CongestionControl.DROP,
+        "priority": zenoh.Priority.DATA,
+        "express": True,
+    },
+    Urgency.BULK: {
+        "congestion_control": zenoh.CongestionControl.DROP,
+        "priority": zenoh.Priority.DATA_LOW,
+        "express": False,
+    },
+    Urgency.EVENT: {
+        "congestion_control": zenoh.CongestionControl.BLOCK,
+        "priority": zenoh.Priority.REAL_TIME,
+        "express": True,
+    },
+}
+
+
+def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = ()) -> ZenohBus:
+    """Open a site's session: it listens on `listen` and connects to the routers of other sites.
+
+    Port 0 means any free one; `endpoint` tells which. Raises NetworkError if the endpoint is taken.
+    """
+    attempts = 5 if listen.endswith(":0") else 1
+    for attempt in range(1, attempts + 1):
+        endpoint = _with_port(listen)
+        try:
+            return ZenohBus(_config("router", listen=[endpoint], connect=connect), endpoint)
+        except NetworkError:
+            if attempt == attempts:
+                raise
+    raise AssertionError("unreachable")
+
+
+def _with_port(endpoint: str) -> str:
+    """The endpoint with a free port in place of port 0; Zenoh does not tell which one it would have taken."""
+    head, _, port = endpoint.rpartition(":")
+    if port != "0":
+        return endpoint
+    host = head.partition("/")[2].strip("[]")
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.bind((host, 0))
+        return f"{head}:{probe.getsockname()[1]}"
+
+
+def client(connect: Sequence[str], seconds: float = 5.0) -> ZenohBus:
+    """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers."""
+    return ZenohBus(_config("client", connect=connect, connect_seconds=seconds))
+
+
+def _config(
+    mode: str, listen: Sequence[str] = (), connect: Sequence[str] = (), connect_seconds: float = 5.0
+) -> zenoh.Config:
+    config = zenoh.Config()
+    settings: dict[str, Any] = {
+        "mode": mode,
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": mode == "router",
+        "listen/endpoints": list(listen),
+        "connect/endpoints": list(connect),
+        "connect/retry": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1.5},
+        "connect/exit_on_failure": mode == "client",
+        "connect/timeout_ms": int(connect_seconds * 1000) if mode == "client" else -1,
+        "transport/link/tx/lease": LEASE_MS,
+        "transport/link/tx/keep_alive": 4,
+        "transport/shared_memory/enabled": False,
+        "timestamping/enabled": {"router": True, "peer": True, "client": True},
+    }
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    return config
+
+
+class _Publisher:
+    """A declared publisher with its quality of service."""
+
+    def __init__(self, declared: Any) -> None:
+        self._declared = declared
+
+    def put(self, payload: bytes, attachment: bytes = b"") -> None:
+        """Put a sample; with the link down it is lost without an error, as Zenoh has it."""
+        self._declared.put(payload, attachment=attachment)
+
+    def undeclare(self) -> None:
+        """Take the declaration back."""
+        self._declared.undeclare()
+
+
+class _Request:
+    """A Zenoh query, kept until it is finished."""
+
+    def __init__(self, query: zenoh.Query) -> None:
+        self._query: Any = query
+        self.key = str(query.key_expr)
+        self.payload = bytes(query.payload) if query.payload is not None else b""
+
+    def reply(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
+        """One reply, on a concrete key of one's own."""
+        if self._query is not None:
+            self._query.reply(key, payload, attachment=attachment)
+
+    def refuse(self, reason: str) -> None:
+        """Reply that it cannot be answered."""
+        if self._query is not None:
+            self._query.reply_err(reason.encode())
+
+    def finish(self) -> None:
+        """End the answer."""
+        if self._query is not None:
+            self._query.drop()
+            self._query = None
+
+
+class ZenohBus(Loop):
+    """A Zenoh session as a bus."""
+
+    def __init__(self, config: zenoh.Config, endpoint: str = "") -> None:
+        super().__init__()
+        self.endpoint = endpoint
+        """Where a router listens; empty for a client."""
+        self._client = json.loads(config.get_json("mode")) == "client"
+        endpoints = ", ".join(json.loads(config.get_json("connect/endpoints")) or [])
+        try:
+            self._session: Any = zenoh.open(config)
+        except zenoh.ZError as error:
+            where = endpoints if self._client else ", ".join(json.loads(config.get_json("listen/endpoints")))
+            what = "nobody answers at" if self._client else "cannot listen on"
+            raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_clause(error)})") from None
+        self._declared: set[Any] = set()
+        self._open = True
+
+    @property
+    def linked(self) -> bool:
+        """Whether a client has its router; a router stands for itself."""
+        return not self._client or (self._open and bool(self._session.info.routers_zid()))
+
+    def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
+        """Declare a key to put on."""
+        declared = self._session.declare_publisher(key, **_QUALITY[urgency])
+        if matched is not None:
+            hear = matched
+
+            def listen(status: zenoh.MatchingStatus) -> None:
+                matching = bool(status.matching)
+                self.wake_up(lambda: hear(matching))
+
+            declared.declare_matching_listener(Callback(listen, indirect=False))
+        return _Publisher(declared)
+
+    def subscribe(
+        self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL
+    ) -> Callable[[], None]:
+        """Hear every sample put on a key from now on."""
+        active = True
+
+        def listen(sample: zenoh.Sample) -> None:
+            heard = _sample(sample)
+
+            def say() -> None:
+                if active:
+                    receive(heard)
+
+            self.wake_up(say)
+
+        declared = self._session.declare_subscriber(key, Callback(listen, indirect=False))
+        undeclare = self._keep(declared)
+
+        def undo() -> None:
+            nonlocal active
+            active = False
+            undeclare()
+
+        return undo
+
+    def serve(self, key: str, answer: Callable[[_Request], None]) -> Callable[[], None]:
+        """Answer questions to a key."""
+
+        def listen(query: zenoh.Query) -> None:
+            request = _Request(query)
+            self.wake_up(lambda: answer(request))
+
+        return self._keep(self._session.declare_queryable(key, Callback(listen, indirect=False)))
+
+    def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+        """Ask everybody who serves a key."""
+        samples: list[Sample] = []
+        errors: list[str] = []
+
+        def listen(reply: zenoh.Reply) -> None:
+            if reply.ok is not None:
+                samples.append(_sample(reply.ok))
+            elif reply.err is not None:
+                errors.append(bytes(reply.err.payload).decode(errors="replace"))
+
+        def end() -> None:
+            late = "Timeout" in errors
+            said = Replies(tuple(samples), tuple(e for e in errors if e != "Timeout"), not late)
+            self.wake_up(lambda: done(said))
+
+        self._session.get(
+            key,
+            Callback(listen, end, indirect=False),
+            payload=payload,
+            target=zenoh.QueryTarget.ALL,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=seconds,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            priority=zenoh.Priority.INTERACTIVE_HIGH,
+            express=True,
+        )
+
+    def announce(self, key: str) -> Callable[[], None]:
+        """Be alive under a key."""
+        return self._keep(self._session.liveliness().declare_token(key))
+
+    def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
+        """Hear of every life under a key, those that are there already first."""
+
+        def listen(sample: zenoh.Sample) -> None:
+            name, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
+            self.wake_up(lambda: changed(name, alive))
+
+        return self._keep(
+            self._session.liveliness().declare_subscriber(key, Callback(listen, indirect=False), history=True)
+        )
+
+    def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        """The keys that are alive right now."""
+        alive: list[str] = []
+
+        def listen(reply: zenoh.Reply) -> None:
+            if reply.ok is not None:
+                alive.append(str(reply.ok.key_expr))
+
+        def end() -> None:
+            keys = tuple(sorted(alive))
+            self.wake_up(lambda: done(keys))
+
+        self._session.liveliness().get(key, Callback(listen, end, indirect=False), timeout=seconds)
+
+    def close(self) -> None:
+        """Leave the network."""
+        if self._open:
+            self._open = False
+            self._declared.clear()
+            self._session.close()
+
+    def _keep(self, declared: Any) -> Callable[[], None]:
+        """Hold on to something declared, which would be gone with its last reference; the result takes it back."""
+        self._declared.add(declared)
+
+        def undo() -> None:
+            if declared in self._declared:
+                self._declared.discard(declared)
+                declared.undeclare()
+
+        return undo
+
+
+def _sample(sample: zenoh.Sample) -> Sample:
+    attachment = bytes(sample.attachment) if sample.attachment is not None else b""
+    return Sample(str(sample.key_expr), bytes(sample.payload), attachment)
+
+
+def _first_clause(error: Exception) -> str:
+    return str(error).split(" at ")[0][:120]

@@ -1,0 +1,227 @@
+"""Messages as JSON, self-describing, so that a component in another language can join from the documentation alone.
+
+A message is an object with a member `kind` and one member for each field. A term is an object: `{"iri": ...}`,
+`{"blank": ...}`, or `{"literal": ..., "datatype": ..., "language": ...}`. What arrives is untrusted: whatever is not
+exactly a message of the expected kind raises PeerError, and nothing else. Members that are not known are passed over,
+so that a newer peer can say more.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any, TypeVar
+
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.protocol.messages import (
+    Answer,
+    Apply,
+    Cause,
+    Fail,
+    Message,
+    Page,
+    Release,
+    SetParameters,
+    Stamp,
+    Status,
+    Verdict,
+    Wake,
+    Wire,
+)
+
+M = TypeVar("M", bound=Message)
+LARGEST = 1 << 20
+"""A control message of more bytes than this is refused unread."""
+
+
+def encode(message: Message) -> bytes:
+    """The bytes of a message."""
+    body: dict[str, Any] = {field.name: _plain(getattr(message, field.name)) for field in dataclasses.fields(message)}
+    if isinstance(message, SetParameters):
+        body["values"] = {name: encode_term(value) for name, value in message.values.items()}
+    return json.dumps({"kind": _kind(type(message)), **body}, separators=(",", ":")).encode()
+
+
+def decode(payload: bytes, expected: type[M]) -> M:
+    """The message that some bytes are; raises PeerError if they are not one of the expected kind."""
+    if len(payload) > LARGEST:
+        raise PeerError(f"a message of {len(payload)} bytes is too large")
+    try:
+        body = json.loads(payload)
+    except (ValueError, RecursionError) as error:
+        raise PeerError(f"not a message: {error}") from None
+    if not isinstance(body, dict) or body.get("kind") != _kind(expected):
+        raise PeerError(f"not a message of kind {_kind(expected)!r}")
+    values: dict[str, Any] = {}
+    for field in dataclasses.fields(expected):
+        if field.name in body:
+            values[field.name] = _READERS[expected, field.name](body[field.name])
+        elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+            raise PeerError(f"a message of kind {_kind(expected)!r} lacks {field.name!r}")
+    return expected(**values)
+
+
+def encode_term(term: Term) -> dict[str, str]:
+    """A term as a JSON object."""
+    if isinstance(term, Literal):
+        body = {"literal": term.lexical, "datatype": str(term.datatype)}
+        return {**body, "language": term.language} if term.language else body
+    return {"iri": str(term)} if isinstance(term, IRI) else {"blank": str(term)}
+
+
+def decode_term(body: object) -> Term:
+    """The term that a JSON object stands for; raises PeerError."""
+    if isinstance(body, dict):
+        if "iri" in body:
+            return _iri(body["iri"])
+        if "blank" in body:
+            return BlankNode(_text(body["blank"]))
+        if "literal" in body:
+            language = body.get("language")
+            return Literal(
+                _text(body["literal"]),
+                _iri(body.get("datatype", STRING)),
+                None if language is None else _text(language),
+            )
+    raise PeerError("not a term")
+
+
+def _kind(message: type) -> str:
+    return message.__name__.lower()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, Wire):
+        return [str(value.component), value.output, value.period]
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _text(value: object) -> str:
+    """JSON can write half a surrogate pair, which no key and no file can hold: that is no text."""
+    if not isinstance(value, str) or any("\ud800" <= character <= "\udfff" for character in value):
+        raise PeerError("a text was expected")
+    return value
+
+
+def _name(value: object) -> str:
+    name = _text(value)
+    if not name:
+        raise PeerError("a name that is not empty was expected")
+    return name
+
+
+def _iri(value: object) -> IRI:
+    return IRI(_text(value))
+
+
+def _maybe_iri(value: object) -> IRI | None:
+    return None if value is None else _iri(value)
+
+
+def _whole(value: object) -> int:
+    if not isinstance(value, int) or isinstance(value, bool):
+        raise PeerError("a whole number was expected")
+    return value
+
+
+def _number(value: object) -> float:
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise PeerError("a number was expected")
+    try:
+        return float(value)
+    except OverflowError:
+        raise PeerError("a number that a float can hold was expected") from None
+
+
+def _truth(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise PeerError("true or false was expected")
+    return value
+
+
+def _object(value: object) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise PeerError("an object was expected")
+    return value
+
+
+def _list(value: object) -> list[Any]:
+    if not isinstance(value, list):
+        raise PeerError("a list was expected")
+    return value
+
+
+def _wire(value: object) -> Wire:
+    parts = _list(value)
+    if len(parts) != 3:
+        raise PeerError("a wire is a component, an output and a period")
+    period = None if parts[2] is None else _number(parts[2])
+    if period is not None and not 0 < period < math.inf:
+        raise PeerError("the period of a wire is finite and above zero")
+    return Wire(_iri(parts[0]), _name(parts[1]), period)
+
+
+def _inputs(value: object) -> dict[str, tuple[Wire, ...]]:
+    return {_name(port): tuple(map(_wire, _list(wires))) for port, wires in _object(value).items()}
+
+
+def _values(value: object) -> dict[str, Term]:
+    return {_name(name): decode_term(item) for name, item in _object(value).items()}
+
+
+def _iris(value: object) -> tuple[IRI, ...]:
+    return tuple(_iri(item) for item in _list(value))
+
+
+def _cause(value: object) -> Cause:
+    try:
+        return Cause(_text(value))
+    except ValueError:
+        raise PeerError(f"{value!r} is no cause of a failure") from None
+
+
+def _verdict(value: object) -> Verdict:
+    try:
+        return Verdict(_text(value))
+    except ValueError:
+        raise PeerError(f"{value!r} is no verdict") from None
+
+
+_READERS: dict[tuple[type, str], Any] = {
+    **{(kind, "epoch"): _whole for kind in (Apply, SetParameters, Release, Answer, Fail, Status)},
+    **{(kind, "supervisor"): _text for kind in (Apply, SetParameters, Release)},
+    **{(kind, "component"): _iri for kind in (Answer, Fail, Wake, Stamp)},
+    **{(kind, "life"): _text for kind in (Answer, Fail, Stamp)},
+    **{(kind, "detail"): _text for kind in (Answer, Fail)},
+    (Apply, "inputs"): _inputs,
+    (SetParameters, "values"): _values,
+    (Answer, "verdict"): _verdict,
+    (Answer, "active"): _truth,
+    (Fail, "cause"): _cause,
+    (Page, "index"): _whole,
+    (Page, "total"): _whole,
+    (Page, "revision"): _whole,
+    (Page, "component"): _maybe_iri,
+    (Page, "source"): _text,
+    (Page, "startable"): _truth,
+    (Stamp, "sequence"): _whole,
+    (Stamp, "time"): _number,
+    (Status, "configurator"): _text,
+    (Status, "phase"): _text,
+    (Status, "template"): _iri,
+    (Status, "since"): _number,
+    (Status, "host"): _text,
+    (Status, "process"): _whole,
+    (Status, "components"): _iris,
+    (Status, "lost"): _object,
+}

@@ -1,0 +1,156 @@
+"""Every key of the ecology is built and taken apart here.
+
+    selfconf/{ecology}/site/{site}/live/{life}              a site is alive (liveliness token)
+    selfconf/{ecology}/site/{site}/ads/{component}          an advertisement (queryable, one reply each)
+    selfconf/{ecology}/site/{site}/changed                  its advertisements have changed (put)
+    selfconf/{ecology}/site/{site}/@ctl/wake                start a dormant component (call)
+    selfconf/{ecology}/c/{shard}/{component}/live/{life}    a component is alive (liveliness token)
+    selfconf/{ecology}/c/{shard}/{component}/out/{port}     what an output issues (put)
+    selfconf/{ecology}/c/{shard}/{component}/fail           FAIL (put)
+    selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    apply, set, release, state (call)
+    selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
+    selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (queryable)
+    selfconf/{ecology}/conf/{name}/@ctl/{call}              status, stop (call)
+
+`{component}` is the base-32 of the ten-byte BLAKE2s of the component's IRI, `{shard}` the first byte of the same hash
+in hexadecimal: siblings under one chunk cost quadratically, so that no chunk has thousands. `{life}` is the
+incarnation: which life of which component. A chunk that starts with `@` is matched by no wildcard, so that a broad
+query can never activate anything.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from dataclasses import dataclass
+from urllib.parse import quote, unquote
+
+from selfconf.errors import AuthorError, PeerError
+from selfconf.model.term import IRI
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+
+
+def checked_name(name: str, what: str) -> str:
+    """A name that can be a chunk of a key: up to 64 letters, digits, dots, hyphens. Raises AuthorError."""
+    if not _NAME.fullmatch(name):
+        raise AuthorError(f"{name!r} cannot name {what}: use letters, digits, '.', '-' and '_', at most 64")
+    return name
+
+
+def component_chunk(component: IRI) -> str:
+    """The chunk that stands for a component."""
+    return base64.b32encode(_digest(component)).decode().lower()
+
+
+def _digest(component: IRI) -> bytes:
+    return hashlib.blake2s(component.encode(), digest_size=10).digest()
+
+
+@dataclass(frozen=True, slots=True)
+class Keys:
+    """The keys of one ecology."""
+
+    ecology: str
+
+    def __post_init__(self) -> None:
+        checked_name(self.ecology, "an ecology")
+
+    def _site(self, site: str, rest: str) -> str:
+        return f"selfconf/{self.ecology}/site/{site}/{rest}"
+
+    def site_life(self, site: str, life: str) -> str:
+        return self._site(site, f"live/{life}")
+
+    def any_site_life(self) -> str:
+        return self._site("*", "live/*")
+
+    def advertisement(self, site: str, component: IRI) -> str:
+        return self._site(site, f"ads/{component_chunk(component)}")
+
+    def advertisements(self, site: str = "*") -> str:
+        return self._site(site, "ads/**")
+
+    def changed(self, site: str = "*") -> str:
+        return self._site(site, "changed")
+
+    def wake(self, site: str) -> str:
+        return self._site(site, "@ctl/wake")
+
+    def _component(self, component: IRI, rest: str) -> str:
+        shard = f"{_digest(component)[0]:02x}"
+        return f"selfconf/{self.ecology}/c/{shard}/{component_chunk(component)}/{rest}"
+
+    def life(self, component: IRI, life: str) -> str:
+        return self._component(component, f"live/{life}")
+
+    def lives(self, component: IRI) -> str:
+        return self._component(component, "live/*")
+
+    def any_life(self) -> str:
+        return f"selfconf/{self.ecology}/c/*/*/live/*"
+
+    def output(self, component: IRI, port: str) -> str:
+        return self._component(component, f"out/{quote(port, safe='')}")
+
+    def fail(self, component: IRI) -> str:
+        return self._component(component, "fail")
+
+    def call(self, component: IRI, call: str = "*") -> str:
+        return self._component(component, f"@ctl/{call}")
+
+    def _configurator(self, name: str, rest: str) -> str:
+        return f"selfconf/{self.ecology}/conf/{name}/{rest}"
+
+    def configurator_life(self, name: str, life: str) -> str:
+        return self._configurator(name, f"live/{life}")
+
+    def is_configurator_life(self, key: str) -> bool:
+        """Whether a key is the life of one configurator of this ecology; a wildcard, for one, would never end."""
+        chunks = key.split("/")
+        return (
+            len(chunks) == 6
+            and all(map(_NAME.fullmatch, (chunks[3], chunks[5])))
+            and key == self.configurator_life(chunks[3], chunks[5])
+        )
+
+    def any_configurator_life(self) -> str:
+        return self._configurator("*", "live/*")
+
+    def configuration(self, name: str = "*") -> str:
+        return self._configurator(name, "cfg")
+
+    def configurator_call(self, name: str, call: str = "*") -> str:
+        return self._configurator(name, f"@ctl/{call}")
+
+
+def life_of(key: str) -> str:
+    """The incarnation that a liveliness key ends in."""
+    return key.rsplit("/", 1)[-1]
+
+
+def owner_of(key: str) -> str:
+    """The site or configurator name, or the component chunk, that a liveliness key speaks of."""
+    chunks = key.split("/")
+    if len(chunks) < 3 or chunks[-2] != "live":
+        raise PeerError(f"{key!r} is no liveliness key")
+    return chunks[-3]
+
+
+def site_of(key: str) -> str:
+    """The site that a site's key belongs to."""
+    chunks = key.split("/")
+    if len(chunks) < 5 or chunks[2] != "site":
+        raise PeerError(f"{key!r} is no key of a site")
+    return chunks[3]
+
+
+def call_of(key: str) -> str:
+    """The name of the call at the end of a control key."""
+    return key.rsplit("/", 1)[-1]
+
+
+def port_of(key: str) -> str:
+    """The port at the end of an output's key."""
+    return unquote(key.rsplit("/", 1)[-1])
