@@ -1,0 +1,399 @@
+"""The configurator as a program: it runs the machine's effects on the bus and feeds it what the bus says."""
+
+from __future__ import annotations
+
+import logging
+import os
+import secrets
+import socket
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from selfconf.bus.port import Bus, Replies, Request, Sample, Undo, Urgency
+from selfconf.configurator import machine
+from selfconf.configurator.effects import (
+    ApplyTo,
+    Compose,
+    Discover,
+    Effect,
+    Finish,
+    ReleaseFrom,
+    Running,
+    SetOn,
+    Unwatch,
+    Watch,
+)
+from selfconf.configurator.events import (
+    Accepted,
+    Answered,
+    Appeared,
+    Call,
+    Composed,
+    Discovered,
+    Event,
+    Failed,
+    Stopped,
+)
+from selfconf.configurator.machine import Policy, State
+from selfconf.ecology import Discovery, Ecology, Found
+from selfconf.errors import PeerError
+from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import component_chunk, life_of, owner_of
+from selfconf.protocol.messages import (
+    Answer,
+    Apply,
+    Cause,
+    Fail,
+    Release,
+    SetParameters,
+    Status,
+    Verdict,
+    Wake,
+    Wire,
+)
+from selfconf.rdf import write
+from selfconf.rdf.advertisements import Advertisement
+
+log = logging.getLogger(__name__)
+
+CALL = 2.0
+"""How long a component may take to answer a call."""
+WAKING = 15.0
+"""How long a component that a site starts may take to live."""
+
+
+Composer = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], "Configuration | Refusal"]
+"""Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """One thing that the configurator did or noticed, for people and logs."""
+
+    act: str
+    time: float
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """What an agent is to do: how to compose, how to mend, and who wants to know."""
+
+    template: IRI
+    compose: Composer
+    policy: Policy = Policy.REPAIR
+    patient: bool = False
+    tell: Callable[[Account], None] = lambda account: None
+    settle: Callable[[Refusal | None], None] = lambda refusal: None
+    """Hears once when the task has ended; with the refusal if that is why."""
+
+
+class Agent:
+    """Runs one task: acts 1 to 4, then watches and configures again, until it is stopped or refused."""
+
+    def __init__(
+        self, bus: Bus, ecology: str, order: Order, name: str = "", clock: Callable[[], float] = time.time
+    ) -> None:
+        self.bus, self.order, self.clock = bus, order, clock
+        self.ecology = Ecology(bus, ecology)
+        self.keys = self.ecology.keys
+        self.name = name or f"c{secrets.token_hex(4)}"
+        self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
+        self.state = State(policy=order.policy, patient=order.patient)
+        self.since = clock()
+        self._fails: dict[IRI, Undo] = {}
+        self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
+        self._connections: dict[IRI, frozenset[Connection]] = {}
+        """The connections that each component was told to have, so that only new ones are told of."""
+        self._events: deque[Event] = deque()
+        self._stepping = False
+        self._deployed: list[tuple[IRI, Configuration, int, float]] = []
+        self._failures: list[tuple[IRI, str, str, float]] = []
+        bus.serve(self.keys.configuration(self.name), self._serve_configuration)
+        bus.serve(self.keys.configurator_call(self.name), self._serve_call)
+        bus.announce(self.supervisor)
+        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})), Urgency.EVENT)
+
+    def start(self) -> None:
+        """Begin with act 1."""
+        self._step(Accepted(int(self.clock() * 1000)))
+
+    def stop(self) -> None:
+        """Take the configuration down; `order.settle` hears when that is done."""
+        self._step(Stopped())
+
+    @property
+    def configuration(self) -> Configuration | None:
+        """What is deployed, or being deployed."""
+        return self.state.target
+
+    def _step(self, event: Event) -> None:
+        """Feed the machine; an event that an effect brings about comes after the other effects."""
+        self._events.append(event)
+        if self._stepping:
+            return
+        self._stepping = True
+        try:
+            while self._events:
+                next_event, before = self._events.popleft(), self.state.phase
+                if isinstance(next_event, Failed):
+                    self._notice(next_event)
+                self.state, effects = machine.step(self.state, next_event)
+                for effect in effects:
+                    self._do(effect)
+                if self.state.phase is not before:
+                    log.debug("%s -> %s", before.value, self.state.phase.value)
+        finally:
+            self._stepping = False
+
+    def _notice(self, event: Failed) -> None:
+        held = self.state.held.get(event.component)
+        if held is not None and not (event.life and held.life and event.life != held.life):
+            self._failures.append((event.component, event.cause.value, event.detail, self.clock()))
+            self._tell("lost", component=event.component, cause=event.cause.value, detail=event.detail)
+
+    def _tell(self, act: str, **facts: Any) -> None:
+        self.order.tell(Account(act, self.clock(), facts))
+
+    # Effects.
+
+    def _do(self, effect: Effect) -> None:
+        match effect:
+            case Discover():
+                self._tell("query")
+                self.ecology.discover(self._discovered)
+            case Compose():
+                self._compose(effect)
+            case Watch():
+                self._watch(effect.component)
+            case Unwatch():
+                undo = self._fails.pop(effect.component, None)
+                if undo is not None:
+                    undo()
+            case ApplyTo():
+                self._apply(effect)
+            case SetOn():
+                message = SetParameters(effect.epoch, self.supervisor, effect.values)
+                self._call(effect.component, Call.SET, message)
+            case ReleaseFrom():
+                self._release(effect)
+            case Running():
+                name = write.configuration_iri(effect.configuration, self.state.epoch)
+                self._deployed.append((name, effect.configuration, self.state.epoch, self.clock()))
+                self._tell("running", configuration=effect.configuration, epoch=self.state.epoch)
+            case Finish():
+                lost = {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
+                self._tell("refused" if effect.refusal else "stopped", refusal=effect.refusal, lost=lost)
+                self.order.settle(effect.refusal)
+
+    def _discovered(self, discovery: Discovery) -> None:
+        self.ecology.discovery = discovery
+        self.ecology.follow(self._life_changed)
+        for complaint in discovery.complaints:
+            self._tell("complaint", detail=complaint)
+        self._tell("discovered", components=len(discovery.found), sites=discovery.sites, missing=discovery.missing)
+        self._step(Discovered())
+
+    def _compose(self, effect: Compose) -> None:
+        found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
+        began = self.bus.now()
+        outcome = self.order.compose(found, effect.lost, effect.running)
+        seconds = self.bus.now() - began
+        self._tell("composed", outcome=outcome, seconds=seconds)
+        self._step(Composed(effect.attempt, outcome))
+
+    def _watch(self, component: IRI) -> None:
+        self._tell("watching", component=component)
+        self._fails[component] = self.bus.subscribe(self.keys.fail(component), self._heard_fail, Urgency.EVENT)
+
+    def _heard_fail(self, sample: Sample) -> None:
+        try:
+            fail = decode(sample.payload, Fail)
+        except PeerError as error:
+            log.warning("passed over a FAIL on %s: %s", sample.key, error)
+            return
+        own = sample.key == self.keys.fail(fail.component)
+        if own or fail.cause is Cause.SILENCE:
+            self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
+
+    def _apply(self, effect: ApplyTo) -> None:
+        life = self.ecology.life(effect.component)
+        found = self.ecology.discovery.found.get(effect.component)
+        if life is None and found is not None and found.startable:
+            self._wake(effect, found)
+            return
+        if life is None:
+            self._later_answer(effect, "it is advertised, but it does not run")
+            return
+        inputs = {port: tuple(map(self._promised, wires)) for port, wires in effect.inputs.items()}
+        connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
+        before = self._connections.get(effect.component, frozenset())
+        for c in sorted(connections - before):
+            self._tell("connecting", source=c.source, output=c.output, sink=c.sink, input=c.input)
+        self._connections[effect.component] = frozenset(connections)
+        self._tell("activating", component=effect.component)
+        self._call(effect.component, Call.APPLY, Apply(effect.epoch, self.supervisor, inputs))
+
+    def _promised(self, wire: Wire) -> Wire:
+        """The wire with the longest pause that the output's advertisement promises."""
+        found = self.ecology.discovery.found.get(wire.component)
+        output = found.advertisement.profile.output(wire.output) if found else None
+        return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
+
+    def _release(self, effect: ReleaseFrom) -> None:
+        if self.ecology.life(effect.component) is None:
+            off = Answered(effect.component, Call.RELEASE, effect.epoch, None)
+            self.bus.wake_up(lambda: self._step(off))
+            return
+        self._call(effect.component, Call.RELEASE, Release(effect.epoch, self.supervisor))
+
+    def _later_answer(self, effect: ApplyTo, detail: str) -> None:
+        answer = Answered(effect.component, Call.APPLY, effect.epoch, None, detail=detail)
+        self._tell("unreachable", component=effect.component, call=Call.APPLY.value, detail=detail)
+        self.bus.wake_up(lambda: self._step(answer))
+
+    def _wake(self, effect: ApplyTo, found: Found) -> None:
+        """Have the site start the process; the apply goes out when the component lives."""
+        self._tell("waking", component=effect.component, site=found.site)
+
+        def too_late() -> None:
+            if self._waking.pop(effect.component, None) is not None:
+                self._later_answer(effect, f"it was started, but does not live after {WAKING:.0f} s")
+
+        def answered(replies: Replies) -> None:
+            if replies.samples or effect.component not in self._waking:
+                return
+            _, undo = self._waking.pop(effect.component)
+            undo()
+            self._later_answer(effect, replies.errors[0] if replies.errors else "its site does not answer")
+
+        self._waking[effect.component] = effect, self.bus.later(WAKING, too_late)
+        self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component)), CALL, answered)
+
+    def _call(self, component: IRI, call: Call, message: Apply | SetParameters | Release) -> None:
+        def answered(replies: Replies) -> None:
+            answer = _answer_in(replies)
+            if answer is not None:
+                self._heard_answer(component, call, message.epoch, answer)
+            elif replies.errors:
+                detail = replies.errors[0]
+                self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
+            else:
+                self._inspect(component, call, message)
+
+        self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
+
+    def _inspect(self, component: IRI, call: Call, message: Apply | SetParameters | Release) -> None:
+        """A time-out is not an outcome: look at the actual state, then decide."""
+
+        def seen(replies: Replies) -> None:
+            answer = _answer_in(replies)
+            obeyed = answer is not None and answer.epoch == message.epoch
+            if obeyed and answer is not None and call is not Call.SET and answer.active == (call is Call.APPLY):
+                self._heard_answer(component, call, message.epoch, answer)
+                return
+            self._tell("unreachable", component=component, call=call.value, detail="it does not answer")
+            self._step(Answered(component, call, message.epoch, None))
+
+        self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
+
+    def _heard_answer(self, component: IRI, call: Call, epoch: int, answer: Answer) -> None:
+        word = {Call.APPLY: "activated", Call.SET: "set", Call.RELEASE: "released"}[call]
+        done = answer.verdict is Verdict.DONE
+        self._tell(word if done else "declined", component=component, detail=answer.detail or answer.verdict.value)
+        self._step(Answered(component, call, epoch, answer.verdict, answer.life, answer.epoch, answer.detail))
+
+    # What the ecology says.
+
+    def _life_changed(self, key: str, alive: bool) -> None:
+        chunk, life = owner_of(key), life_of(key)
+        if alive:
+            self.ecology.lives[chunk] = life
+            component = self._component(chunk)
+            if component in self._waking:
+                effect, undo = self._waking.pop(component)
+                undo()
+                if effect.epoch == self.state.epoch:
+                    self._apply(effect)
+            self._step(Appeared({component: life} if component is not None else {}))
+            return
+        if not self.bus.linked:
+            log.warning("cut off from the ecology; waiting to be connected again")
+            return
+        if self.ecology.lives.get(chunk) == life:
+            del self.ecology.lives[chunk]
+        component = self._component(chunk)
+        if component is not None:
+            self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
+
+    def _component(self, chunk: str) -> IRI | None:
+        for component in (*self.state.held, *self.ecology.discovery.found):
+            if component_chunk(component) == chunk:
+                return component
+        return None
+
+    # What others ask.
+
+    def _serve_configuration(self, request: Request) -> None:
+        try:
+            if self._deployed:
+                request.reply(self.keys.configuration(self.name), self.configuration_turtle().encode())
+        finally:
+            request.finish()
+
+    def configuration_turtle(self) -> str:
+        """What is deployed, as Turtle with its provenance."""
+        name, configuration, epoch, generated = self._deployed[-1]
+        revises = self._deployed[-2][0] if len(self._deployed) > 1 else None
+        triples = write.configuration_triples(
+            configuration,
+            name,
+            epoch=epoch,
+            generated=generated,
+            revises=revises,
+            configurator=self.name,
+            failures=self._failures,
+        )
+        return write.turtle(triples)
+
+    def _serve_call(self, request: Request) -> None:
+        try:
+            call = request.key.rsplit("/", 1)[-1]
+            if call == "stop":
+                request.reply(self.keys.configurator_call(self.name, "stop"), encode(self.status()))
+                self.bus.wake_up(self.stop)
+            elif call in ("status", "*"):
+                request.reply(self.keys.configurator_call(self.name, "status"), encode(self.status()))
+            else:
+                request.refuse(f"there is no call {call!r}")
+        finally:
+            request.finish()
+
+    def status(self) -> Status:
+        """What is deployed, by whom, since when."""
+        return Status(
+            configurator=self.name,
+            phase=self.state.phase.value,
+            template=self.order.template,
+            epoch=self.state.epoch,
+            since=self.since,
+            host=socket.gethostname(),
+            process=os.getpid(),
+            components=tuple(self.state.held),
+            lost={component: loss.cause.value for component, loss in self.state.lost.items()},
+        )
+
+
+def _answer_in(replies: Replies) -> Answer | None:
+    for sample in replies.samples:
+        try:
+            return decode(sample.payload, Answer)
+        except PeerError as error:
+            log.warning("passed over an answer on %s: %s", sample.key, error)
+    return None

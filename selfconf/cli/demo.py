@@ -1,0 +1,64 @@
+"""`demo`: the paper's experiment in the PyBullet world, which lives in the checkout beside selfconf."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import importlib.util
+import sys
+from pathlib import Path
+
+from selfconf.errors import InstallationError
+
+NAME = "demo"
+HELP = "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over"
+EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument("--scene", choices=["navigate", "radio"], default="navigate", help="default: %(default)s")
+    parser.add_argument("--seed", metavar="N", type=int, default=1, help="decides all noise (default: %(default)s)")
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        default=Path("out/demo"),
+        help="where results go (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="X",
+        type=_speed,
+        default=1.0,
+        help="simulated seconds per second, or `max` for as fast as it goes (default: real time)",
+    )
+    parser.add_argument("--gui", action="store_true", help="open PyBullet's window; needs a display")
+    parser.add_argument(
+        "--pictures", choices=["fine", "draft", "none"], default="fine", help="quality (default: %(default)s)"
+    )
+    parser.add_argument("--policy", choices=["repair", "dismantle"], default="repair", help="default: %(default)s")
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 when Astrid arrives (or the radio plays again), 1 when not."""
+    root = Path(__file__).resolve().parent.parent.parent
+    if not (root / "sim" / "demo.py").is_file():
+        raise InstallationError(
+            "the world is not part of the installed package; clone the repository and type `make demo`"
+        )
+    if importlib.util.find_spec("pybullet") is None:
+        raise InstallationError(
+            "PyBullet is missing; it has wheels for Python 3.10 and 3.11 on Linux x86_64: pip install 'selfconf[sim]'"
+        )
+    if str(root) not in sys.path:
+        sys.path.insert(0, str(root))
+    code: int = importlib.import_module("sim.demo").run(given)
+    return code
+
+
+def _speed(text: str) -> float:
+    speed = float("inf") if text == "max" else float(text)
+    if not speed > 0:
+        raise argparse.ArgumentTypeError("a speed is above zero")
+    return speed

@@ -1,0 +1,54 @@
+"""`discover`: what is out there, as a table."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from selfconf.cli import words
+from selfconf.cli.live import add_connection_arguments, connected, discover
+from selfconf.ecology import Ecology, Found
+from selfconf.model.term import IRI
+from selfconf.rdf.dataset import PREFIXES
+from selfconf.rdf.vocabulary import SC
+
+NAME = "discover"
+HELP = "show what is out there: every advertised component, its site, and whether it lives"
+EXAMPLE = """  selfconf discover --format json"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument("--format", choices=["table", "json"], default="table", help="default: %(default)s")
+    add_connection_arguments(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 once the ecology has answered."""
+    with connected(given) as ecology:
+        discovery = discover(ecology)
+        rows = [
+            {
+                "component": component,
+                "types": sorted(found.advertisement.profile.types - {SC.Component}),
+                "site": found.site,
+                "state": state(ecology, component, found),
+            }
+            for component, found in sorted(discovery.found.items())
+        ]
+    if given.format == "json":
+        body = {"ecology": ecology.keys.ecology, "components": rows, "sites": discovery.sites}
+        print(json.dumps({**body, "missing": discovery.missing}, indent=2))
+        return 0
+    names = words.Names(PREFIXES)
+    cells = [[str(r["component"]), ", ".join(map(names, r["types"])), r["site"], r["state"]] for r in rows]
+    print(words.table(["component", "types", "site", "state"], cells))
+    print(f"{len(rows)} components at {len(discovery.sites)} sites of ecology {ecology.keys.ecology}")
+    return 0
+
+
+def state(ecology: Ecology, component: IRI, found: Found) -> str:
+    """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but nobody runs it."""
+    if ecology.life(component) is not None:
+        return "alive"
+    return "dormant" if found.startable else "absent"

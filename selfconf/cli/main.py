@@ -1,0 +1,86 @@
+"""`selfconf COMMAND`: finds the command, runs it, and turns what went wrong into one sentence and an exit code.
+
+0 yes; 1 an honest no; 2 misuse, or input that cannot be read. Results go to stdout, everything else to stderr.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import logging
+import os
+import sys
+from collections.abc import Sequence
+from types import ModuleType
+
+from selfconf.errors import SelfconfError
+
+COMMANDS = ("validate", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
+INTERRUPTED = 130
+
+
+def command(name: str) -> ModuleType:
+    """The module of a command: NAME, HELP, EXAMPLE, add_arguments, run."""
+    return importlib.import_module(f"selfconf.cli.{name}")
+
+
+def parser_of(name: str, module: ModuleType, subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the parser of one command."""
+    parser = subparsers.add_parser(
+        name,
+        help=module.HELP,
+        description=module.HELP[0].upper() + module.HELP[1:] + ".",
+        epilog=f"example:\n{module.EXAMPLE}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    module.add_arguments(parser)
+    parser.add_argument("--debug", action="store_true", help="show tracebacks and what happens inside")
+    parser.set_defaults(run=module.run)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the whole command line."""
+    top = argparse.ArgumentParser(
+        prog="selfconf",
+        description="Robots, sensors and home devices that wire themselves.",
+        epilog="example:\n  selfconf configure examples/navigate.ttl --ads examples/peis-home"
+        " --bind robot=:Astrid --bind goal='(AT BEDROOM)'",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    top.add_argument("--version", action="version", version=f"selfconf {_version()}")
+    subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name in COMMANDS:
+        parser_of(name, command(name), subparsers)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; the exit code."""
+    given = parser().parse_args(arguments)
+    logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)
+    try:
+        code: int = given.run(given)
+        sys.stdout.flush()
+        return code
+    except SelfconfError as error:
+        if given.debug:
+            raise
+        print(f"selfconf {given.command}: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print(f"selfconf {given.command}: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("selfconf")
+    except PackageNotFoundError:
+        return "from a checkout that is not installed"

@@ -1,0 +1,182 @@
+"""`run`: configures, deploys, monitors and configures again, until Ctrl-C, which takes everything down cleanly."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import secrets
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from selfconf import rendezvous
+from selfconf.agent import Account, Agent, Order
+from selfconf.bus.zenoh_bus import client
+from selfconf.cli import words
+from selfconf.cli.inputs import add_task_arguments, complain, existing, read_hierarchy, read_task
+from selfconf.cli.live import add_connection_arguments
+from selfconf.configurator.compose import Composer, Strategy
+from selfconf.configurator.machine import Policy
+from selfconf.ending import Ending, environment
+from selfconf.errors import NetworkError
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+
+NAME = "run"
+HELP = "configure, deploy, monitor and configure again, until Ctrl-C takes everything down"
+EXAMPLE = """  selfconf run examples/thermostat/heating.ttl --ads examples/thermostat"""
+SITE_STARTS = 20.0
+"""How long, in seconds, a site that `run` starts may take to listen."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    add_task_arguments(parser)
+    parser.add_argument(
+        "--policy",
+        choices=[policy.value for policy in Policy],
+        default=Policy.REPAIR.value,
+        help="what to do with the rest when a component is lost (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--wait", action="store_true", help="when there is no configuration, wait for the ecology to change"
+    )
+    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_connection_arguments(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 when it was taken down as wanted; 1 when there is no configuration (any more)."""
+    task = read_task(given)
+    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy))
+    names = words.Names(task.document.prefixes)
+    tell = _tell_json if given.format == "json" else Teller(names)
+    with _ecology(given) as (ecology, endpoints):
+        bus = client(endpoints)
+        ended: list[Refusal | None] = []
+        order = Order(task.task.template.iri, composer.compose, Policy(given.policy), given.wait, tell, ended.append)
+        agent = Agent(bus, ecology, order)
+        Ending(bus, agent.stop)
+        try:
+            agent.start()
+            bus.run(lambda: bool(ended))
+        finally:
+            bus.close()
+    refusal = ended[0] if ended else None
+    if refusal is not None and given.format == "text":
+        complain(words.refusal_text(refusal, names))
+        for component, loss in agent.state.lost.items():
+            complain(f"  {names(component)} was lost: {loss.cause.value}, {loss.detail}")
+    return 1 if refusal is not None else 0
+
+
+@contextmanager
+def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
+    """The ecology to run in: the one there is, or one with a site of our own for the advertisements given."""
+    if given.ads is None:
+        yield rendezvous.find(given.ecology, given.connect)
+        return
+    for path in given.ads:
+        existing(path)
+    name = given.ecology or f"run-{secrets.token_hex(3)}"
+    site = f"s{secrets.token_hex(3)}"
+    command = [
+        sys.executable,
+        "-m",
+        "selfconf",
+        "site",
+        *map(str, given.ads),
+        "--ecology",
+        name,
+        "--name",
+        site,
+    ]
+    for endpoint in given.connect:
+        command += ["--connect", endpoint]
+    process = subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, start_new_session=True, env={**os.environ, **environment()}
+    )
+    try:
+        yield name, [_listening(process, name, site), *given.connect]
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def _listening(process: subprocess.Popen[bytes], ecology: str, site: str) -> str:
+    deadline = time.monotonic() + SITE_STARTS
+    while time.monotonic() < deadline:
+        for meeting in rendezvous.meetings(ecology):
+            if meeting.site == site:
+                return meeting.endpoint
+        try:
+            process.wait(0.02)
+        except subprocess.TimeoutExpired:
+            continue
+        raise NetworkError(f"the site for the advertisements ended with code {process.returncode}")
+    raise NetworkError(f"the site for the advertisements does not listen after {SITE_STARTS:.0f} s")
+
+
+class Teller:
+    """Tells people what the configurator does, one line at a time, on stderr."""
+
+    SENTENCES: Mapping[str, str] = {
+        "query": "act 1  asking the ecology what it has",
+        "discovered": "act 2  {components} components at {sites}",
+        "watching": "act 4  listening to FAIL of {component}",
+        "waking": "act 4  {component} is dormant; site {site} starts it",
+        "connecting": "act 4  {source} {output} -> {sink} {input}",
+        "activated": "act 4  {component} is active",
+        "set": "act 4  {component} has its parameters",
+        "declined": "       {component} declines: {detail}",
+        "unreachable": "       {component} cannot be reached: {detail}",
+        "lost": "LOST   {component}: {cause}, {detail}",
+        "released": "       {component} is off",
+        "running": "       running",
+        "stopped": "       taken down",
+        "complaint": "       {detail}",
+    }
+
+    def __init__(self, names: words.Names) -> None:
+        self._names = names
+        self._began: float | None = None
+
+    def __call__(self, account: Account) -> None:
+        self._began = self._began or account.time
+        sentence = self.SENTENCES.get(account.act)
+        if account.act == "composed":
+            sentence = "act 3  {roles} in {milliseconds:.1f} ms"
+        if sentence is None:
+            return
+        facts = {key: self._word(value) for key, value in account.facts.items()}
+        if account.act == "composed":
+            outcome = account.facts["outcome"]
+            found = isinstance(outcome, Configuration)
+            facts["roles"] = f"{len(outcome.components)} components" if found else "no configuration"
+            facts["milliseconds"] = account.facts["seconds"] * 1000
+        complain(f"{account.time - self._began:9.3f} s  {sentence.format(**facts)}")
+
+    def _word(self, value: Any) -> Any:
+        if isinstance(value, IRI):
+            return self._names(value)
+        if isinstance(value, tuple):
+            return ", ".join(map(str, value)) or "no site"
+        return value
+
+
+def _tell_json(account: Account) -> None:
+    """One JSON object per line on stdout: act, time, facts."""
+    facts: dict[str, Any] = {}
+    for key, value in account.facts.items():
+        if isinstance(value, Configuration):
+            facts[key] = words.configuration_body(value)
+        elif isinstance(value, Refusal):
+            facts[key] = words.refusal_body(value)
+        else:
+            facts[key] = value
+    print(json.dumps({"act": account.act, "time": account.time, **facts, "process": os.getpid()}), flush=True)

@@ -1,0 +1,68 @@
+"""`site`: an init-component, which serves the advertisements of this host and watches the files."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import secrets
+from pathlib import Path
+
+from selfconf import rendezvous
+from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, router
+from selfconf.cli.inputs import complain, existing
+from selfconf.ending import Ending
+from selfconf.protocol.keys import checked_name
+from selfconf.rendezvous import Meeting
+from selfconf.site import Shelf, Site
+
+NAME = "site"
+HELP = "serve the advertisements of this host to an ecology, and watch their files"
+EXAMPLE = """  selfconf site examples/peis-home --ecology home"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument(
+        "paths",
+        metavar="PATH",
+        type=Path,
+        nargs="+",
+        help="advertisements: files, or folders with *.ttl below them",
+    )
+    parser.add_argument("--ecology", metavar="NAME", required=True, help="the ecology that this site is part of")
+    parser.add_argument("--name", metavar="SITE", help="the name of the site; by default one of its own")
+    parser.add_argument(
+        "--listen",
+        metavar="ENDPOINT",
+        default=ANYWHERE_ON_LOOPBACK,
+        help="where to listen; port 0 is any free one (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--connect",
+        metavar="ENDPOINT",
+        action="append",
+        default=[],
+        help="where other sites listen; repeatable; those of the ecology on this machine are found by themselves",
+    )
+
+
+def run(given: argparse.Namespace) -> int:
+    """Serve until SIGINT or SIGTERM; then 0."""
+    for path in given.paths:
+        existing(path)
+    checked_name(given.ecology, "an ecology")
+    name = checked_name(given.name or f"s{secrets.token_hex(3)}", "a site")
+    others = [meeting.endpoint for meeting in rendezvous.meetings(given.ecology)]
+    bus = router(given.listen, list(dict.fromkeys([*given.connect, *others])))
+    ending = Ending(bus)
+    environment = {"SELFCONF_ECOLOGY": given.ecology, "SELFCONF_CONNECT": bus.endpoint}
+    site = Site(bus, given.ecology, name, Shelf(given.paths, complain), environment)
+    meeting = rendezvous.announce(Meeting(given.ecology, name, bus.endpoint, os.getpid()))
+    count = len(site.shelf.advertisements)
+    complain(f"site {name} of ecology {given.ecology} serves {count} advertisements on {bus.endpoint}")
+    try:
+        bus.run(ending)
+    finally:
+        meeting.unlink(missing_ok=True)
+        site.close()
+    return 0

@@ -1,0 +1,339 @@
+"""The body of a component: its life on the bus.
+
+It holds the liveliness token, answers control calls by the table in `selfconf.protocol.life`, follows the outputs
+that its inputs are told to follow, and issues what the component emits.
+
+*Outputs are latched.* An output that is followed anew issues its last signal of this activation again, so that a new
+connection carries a signal at once; inputs pass over what they have had already.
+
+*Supervision.* A component obeys a configurator only as long as that is alive: when its token has been gone for
+`GRACE` seconds, or this node is cut off for that long, the component turns itself off.
+
+*Silence.* An input that follows an output with a promised rate reports to the configurator when nothing has come for
+`PATIENCE` of the promised periods.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import logging
+import secrets
+import time
+from collections.abc import Callable
+from typing import Any
+
+from selfconf.bus.port import Bus, Publisher, Request, Sample, Undo, Urgency
+from selfconf.errors import PeerError, ProgrammerError
+from selfconf.model.profile import Profile
+from selfconf.model.term import Literal, Term
+from selfconf.protocol import life as lives
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, call_of
+from selfconf.protocol.life import Life, Phase
+from selfconf.protocol.life import Step as Told
+from selfconf.protocol.messages import (
+    Answer,
+    Apply,
+    Cause,
+    Fail,
+    Release,
+    SetParameters,
+    Stamp,
+    Verdict,
+    Wire,
+)
+from selfconf.sdk.component import Component, Refused, Signal
+
+log = logging.getLogger(__name__)
+
+GRACE = 1.0
+"""Seconds after which a component without a living supervisor turns itself off."""
+PATIENCE = 4.0
+"""After how many promised periods without a signal an output counts as silent."""
+_RAW = b"raw"
+
+
+class Body:
+    """Joins a component to the bus; everything but `emit` and `fail` happens on the bus's thread."""
+
+    def __init__(self, bus: Bus, keys: Keys, profile: Profile, component: Component, life: str = "") -> None:
+        self.bus, self.keys, self.profile, self.component = bus, keys, profile, component
+        self.name = life or secrets.token_hex(4)
+        """Which life of the component this is."""
+        self.life = Life()
+        self.active = False
+        self._following: dict[tuple[str, Wire], _Following] = {}
+        self._last: dict[str, tuple[bytes, bytes]] = {}
+        self._sequence = itertools.count(1)
+        self._timers: list[Undo] = []
+        self._supervision: list[Undo] = []
+        self._grace: Undo | None = None
+        component._body = self
+        self._outputs: dict[str, Publisher] = {
+            port.name: bus.publisher(
+                keys.output(profile.component, port.name), Urgency.SIGNAL, self._matched(port.name)
+            )
+            for port in profile.outputs
+        }
+        self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
+        self._served = bus.serve(keys.call(profile.component), self._call)
+        self._token = bus.announce(keys.life(profile.component, self.name))
+
+    def close(self) -> None:
+        """Turn the component off and leave the ecology."""
+        self._become(*lives.orphaned(self.life))
+        self._served()
+        self._token()
+
+    # What the component does.
+
+    def emit(self, port: str, value: Any, moment: float | None) -> None:
+        """Issue a signal; may be called from any thread."""
+        output = self._outputs.get(port)
+        if output is None:
+            raise ProgrammerError(f"{self.profile.component.short} advertises no output {port!r}")
+        if not self.active:
+            return
+        stamp = Stamp(
+            self.profile.component, self.name, next(self._sequence), time.time() if moment is None else moment
+        )
+        if isinstance(value, bytes):
+            payload, attachment = value, _RAW + encode(stamp)
+        else:
+            payload, attachment = json.dumps(value, separators=(",", ":")).encode(), encode(stamp)
+        self._last[port] = payload, attachment
+        output.put(payload, attachment)
+
+    def fail(self, reason: str) -> None:
+        """Raise FAIL; may be called from any thread."""
+        self.bus.wake_up(lambda: self._failed(reason))
+
+    def every(self, seconds: float, action: Callable[[], None]) -> None:
+        """Call `action` at that interval until the component stops or fails."""
+
+        def tick() -> None:
+            if self.active:
+                self._timers.append(self.bus.later(seconds, tick))
+                self._guarded(action)
+
+        self._timers.append(self.bus.later(seconds, tick))
+
+    def _failed(self, reason: str) -> None:
+        epoch = self.life.epoch
+        life, told = lives.fail(self.life)
+        self._become(life, told)
+        if told is Told.TELL:
+            self._fail.put(encode(Fail(self.profile.component, self.name, epoch, Cause.FAIL, reason)))
+
+    def _matched(self, port: str) -> Callable[[bool], None]:
+        def matched(matching: bool) -> None:
+            last = self._last.get(port)
+            if matching and self.active and last is not None:
+                self._outputs[port].put(*last)
+
+        return matched
+
+    # What it is told.
+
+    def _call(self, request: Request) -> None:
+        try:
+            answer = self._answer(call_of(request.key), request.payload)
+            request.reply(self.keys.call(self.profile.component, call_of(request.key)), encode(answer))
+        except PeerError as error:
+            log.warning("%s: refused a call: %s", self.profile.component.short, error)
+            request.refuse(str(error))
+        finally:
+            request.finish()
+
+    def _answer(self, call: str, payload: bytes) -> Answer:
+        if call == "state":
+            return self._said(Verdict.DONE)
+        kinds: dict[str, type[Apply] | type[SetParameters] | type[Release]] = {
+            "apply": Apply,
+            "set": SetParameters,
+            "release": Release,
+        }
+        if call not in kinds:
+            raise PeerError(f"there is no call {call!r}")
+        message: Apply | SetParameters | Release = decode(payload, kinds[call])
+        if isinstance(message, Apply):
+            unknown = set(message.inputs) - {port.name for port in self.profile.inputs}
+            if unknown:
+                return self._said(Verdict.REFUSED, f"it has no input {sorted(unknown)[0]!r}")
+        before = self.life
+        life, verdict, told = lives.obey(self.life, message)
+        if verdict is not Verdict.DONE:
+            return self._said(verdict)
+        trouble = self._become(life, told)
+        if trouble is None and isinstance(message, Apply):
+            self._follow(message)
+            self._supervise(message.supervisor)
+        elif trouble is None and isinstance(message, SetParameters):
+            trouble = self._set(message)
+        if trouble is not None:
+            if isinstance(message, Apply) and before.phase is Phase.IDLE:
+                self._become(*lives.orphaned(self.life))
+            return self._said(Verdict.REFUSED, trouble)
+        return self._said(Verdict.DONE)
+
+    def _said(self, verdict: Verdict, detail: str = "") -> Answer:
+        return Answer(verdict, self.profile.component, self.name, self.life.epoch, self.active, detail)
+
+    def _become(self, life: Life, told: Told) -> str | None:
+        """Take on a life and tell the component's code; a text if that refuses or breaks."""
+        self.life = life
+        if told in (Told.STOP, Told.RESTART):
+            self._rest()
+        if told is Told.TELL:
+            self.active = False
+        if told in (Told.START, Told.RESTART):
+            self._last.clear()
+            self.active = True
+            try:
+                self.component.started()
+            except Refused as refusal:
+                self.active = False
+                return str(refusal) or "it refuses"
+            except Exception as error:
+                self.active = False
+                log.exception("%s broke when it was started", self.profile.component.short)
+                return f"it broke when it was started: {type(error).__name__}: {error}"
+        return None
+
+    def _rest(self) -> None:
+        """Be off: no timers, no inputs, no supervisor, and the component's code at rest."""
+        self.active = False
+        for undo in (*self._timers, *self._supervision):
+            undo()
+        for following in self._following.values():
+            following.end()
+        self._timers.clear()
+        self._supervision.clear()
+        self._following.clear()
+        self._keep_calm()
+        self._guarded(self.component.stopped)
+
+    def _set(self, message: SetParameters) -> str | None:
+        known = {parameter.name for parameter in self.profile.parameters}
+        for name, value in message.values.items():
+            if name not in known:
+                return f"it declares no parameter {name!r}"
+            try:
+                self.component.parameter_set(name, _python(value))
+            except Refused as refusal:
+                return str(refusal) or f"it refuses {name} = {value}"
+            except Exception as error:
+                log.exception("%s broke when %s was set", self.profile.component.short, name)
+                return f"it broke when {name!r} was set: {type(error).__name__}: {error}"
+        return None
+
+    def _guarded(self, action: Callable[[], None]) -> None:
+        """Run the component's code; what breaks there is the component's failure, not ours."""
+        try:
+            action()
+        except Exception as error:
+            log.exception("%s broke", self.profile.component.short)
+            self._failed(f"{type(error).__name__}: {error}")
+
+    # Inputs.
+
+    def _follow(self, message: Apply) -> None:
+        wanted = {(port, wire) for port, wires in message.inputs.items() for wire in wires}
+        for key in [key for key in self._following if key not in wanted]:
+            self._following.pop(key).end()
+        for port, wire in wanted:
+            if (port, wire) not in self._following:
+                self._following[port, wire] = _Following(self, port, wire)
+
+    def deliver(self, port: str, signal: Signal) -> None:
+        """Hand a signal to the component."""
+        if self.active:
+            self._guarded(lambda: self.component.received(port, signal))
+
+    def report_silence(self, wire: Wire, seconds: float) -> None:
+        """Tell the configurator that an output we follow has stopped."""
+        detail = f"no signal on {wire.output!r} for {seconds:.2f} s"
+        self._fail.put(encode(Fail(wire.component, "", self.life.epoch, Cause.SILENCE, detail)))
+
+    # Supervision.
+
+    def _supervise(self, supervisor: str) -> None:
+        if self._supervision:
+            return
+        self._worry()
+        self._supervision.append(self.bus.watch(supervisor, self._supervisor_changed))
+
+    def _supervisor_changed(self, _: str, alive: bool) -> None:
+        if alive:
+            self._keep_calm()
+        else:
+            self._worry()
+
+    def _worry(self) -> None:
+        if self._grace is None:
+            self._grace = self.bus.later(GRACE, self._orphaned)
+
+    def _keep_calm(self) -> None:
+        if self._grace is not None:
+            self._grace()
+            self._grace = None
+
+    def _orphaned(self) -> None:
+        self._grace = None
+        log.warning("%s: its configurator is gone; turning off", self.profile.component.short)
+        self._become(*lives.orphaned(self.life))
+
+
+class _Following:
+    """An input following one output: a subscription, and a watch for silence where a rate is promised."""
+
+    def __init__(self, body: Body, port: str, wire: Wire) -> None:
+        self._body, self._port, self._wire = body, port, wire
+        self._life, self._sequence = "", 0
+        self._deadline: Undo | None = None
+        self._undo = body.bus.subscribe(body.keys.output(wire.component, wire.output), self._heard)
+        self._expect()
+
+    def end(self) -> None:
+        """Follow no more."""
+        self._undo()
+        if self._deadline is not None:
+            self._deadline()
+
+    def _heard(self, sample: Sample) -> None:
+        raw = sample.attachment.startswith(_RAW)
+        try:
+            stamp = decode(sample.attachment[len(_RAW) :] if raw else sample.attachment, Stamp)
+            value = sample.payload if raw else json.loads(sample.payload)
+        except (PeerError, ValueError, RecursionError) as error:
+            log.warning("%s: passed over a signal: %s", self._body.profile.component.short, error)
+            return
+        if stamp.component != self._wire.component:
+            return
+        if stamp.life == self._life and stamp.sequence <= self._sequence:
+            return
+        self._life, self._sequence = stamp.life, stamp.sequence
+        self._expect()
+        self._body.deliver(self._port, Signal(value, stamp.component, stamp.time, stamp.sequence))
+
+    def _expect(self) -> None:
+        if self._wire.period is None:
+            return
+        if self._deadline is not None:
+            self._deadline()
+        seconds = max(PATIENCE * self._wire.period, 0.1)
+        self._deadline = self._body.bus.later(seconds, lambda: self._body.report_silence(self._wire, seconds))
+
+
+def _python(value: Term) -> Any:
+    """A term as a component's code likes it: a truth value or a number where the literal is one, else text."""
+    if isinstance(value, Literal):
+        kind = value.datatype.rpartition("#")[2]
+        if kind == "boolean":
+            return value.lexical in ("true", "1")
+        if kind in ("integer", "int", "long", "short", "byte", "nonNegativeInteger", "positiveInteger"):
+            return int(value.lexical)
+        if kind in ("decimal", "double", "float"):
+            return float(value.lexical)
+    return str(value)

@@ -1,0 +1,88 @@
+"""The class that an author derives from, and what arrives on its inputs."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from selfconf.errors import ProgrammerError
+from selfconf.model.term import IRI
+
+if TYPE_CHECKING:
+    from selfconf.sdk.body import Body
+
+
+class Refused(Exception):
+    """Raised in `started` by a component that cannot act now; the configurator looks for another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """What an output issued: a JSON value, or bytes as they are, with who issued it, when, and its number."""
+
+    value: Any
+    source: IRI
+    time: float
+    """Seconds: of the Unix epoch, unless the source keeps a clock of its own, such as a simulation's."""
+    sequence: int
+
+    def __getitem__(self, field: str) -> Any:
+        return self.value[field]
+
+
+class Component:
+    """A component of the ecology. Override what you need; each of these methods does nothing by itself."""
+
+    advertisement: ClassVar[str | Path] = ""
+    """The Turtle file with the advertisement; a relative path counts from the file that defines the class."""
+    component: ClassVar[str] = ""
+    """The IRI of the component, needed only where the file advertises several."""
+
+    _body: Body | None = None
+
+    def started(self) -> None:
+        """The component has been activated. Raise Refused if it cannot act."""
+
+    def stopped(self) -> None:
+        """The component has been turned off; what actuates must be at rest when this returns."""
+
+    def received(self, port: str, signal: Signal) -> None:
+        """A signal has arrived on an input."""
+
+    def parameter_set(self, name: str, value: Any) -> None:
+        """An operational parameter has been set: text for strings and IRIs, else a number or a truth value."""
+
+    def emit(self, port: str, value: Any, time: float | None = None) -> None:
+        """Issue a signal on an output: anything that JSON can say, or bytes. Nothing happens while not active.
+
+        `time` is its time in seconds, now by default. Raises ProgrammerError for an output that is not advertised.
+        """
+        self._attached().emit(port, value, time)
+
+    def fail(self, reason: str) -> None:
+        """Raise FAIL: the component cannot go on with its part. The configurator will turn it off."""
+        self._attached().fail(reason)
+
+    def every(self, seconds: float, action: Callable[[], None]) -> None:
+        """Call `action` at that interval as long as the component stays active."""
+        self._attached().every(seconds, action)
+
+    @property
+    def active(self) -> bool:
+        """Whether the component is part of a configuration and has not failed."""
+        return self._body is not None and self._body.active
+
+    def _attached(self) -> Body:
+        if self._body is None:
+            raise ProgrammerError(f"{type(self).__name__} is not part of an ecology yet; hand it to `main` or a Host")
+        return self._body
+
+    @classmethod
+    def advertisement_path(cls) -> Path:
+        """Where the advertisement is; raises ProgrammerError if the class names none."""
+        if not cls.advertisement:
+            raise ProgrammerError(f"{cls.__name__} needs an `advertisement`: the Turtle file that says what it is")
+        return Path(inspect.getfile(cls)).parent / cls.advertisement

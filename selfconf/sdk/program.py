@@ -1,0 +1,66 @@
+"""`main`: a component class as a program of its own."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import sys
+from collections.abc import Sequence
+
+from selfconf import rendezvous
+from selfconf.bus.zenoh_bus import client
+from selfconf.ending import Ending
+from selfconf.errors import SelfconfError
+from selfconf.sdk.component import Component
+from selfconf.sdk.host import Host
+
+
+def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> int:
+    """Run components as one program until it is told to end (SIGINT, SIGTERM); the exit code.
+
+    The ecology is taken from `--ecology` and `--connect`, else from `SELFCONF_ECOLOGY` and `SELFCONF_CONNECT` (as set
+    by a site that starts a dormant component), else from the sites that run on this machine.
+    """
+    parser = argparse.ArgumentParser(description=(kinds[0].__doc__ or "a component").splitlines()[0])
+    add_connection_arguments(parser)
+    given = parser.parse_args(arguments)
+    logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
+    try:
+        host = join(given.ecology, given.connect)
+        for kind in kinds:
+            host.add(kind())
+        run_until_told(host)
+    except SelfconfError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options by which a program finds its ecology."""
+    parser.add_argument("--ecology", metavar="NAME", help="the ecology; by default the only one on this machine")
+    parser.add_argument(
+        "--connect",
+        metavar="ENDPOINT",
+        action="append",
+        default=[],
+        help="where a site listens, such as tcp/127.0.0.1:7447; repeatable",
+    )
+
+
+def join(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
+    """A host for components in an ecology. Raises NetworkError if it cannot be reached."""
+    ecology = ecology or os.environ.get("SELFCONF_ECOLOGY")
+    endpoints = list(connect) or os.environ.get("SELFCONF_CONNECT", "").split()
+    name, endpoints = rendezvous.find(ecology, endpoints)
+    return Host(client(endpoints), name)
+
+
+def run_until_told(host: Host) -> None:
+    """Run a host until SIGINT or SIGTERM, or until the site that started this program is gone; then close it."""
+    ending = Ending(host.bus)
+    try:
+        host.run(ending)
+    finally:
+        host.close()
