@@ -1,0 +1,168 @@
+"""The demo: two sites, the world, the Thinking Cap and the configurator, each a process, and what comes of them.
+
+It starts them, tells what happens, and ends them, whatever happens; then it draws the pictures. The processes meet
+in an ecology with a name of its own, on free ports of 127.0.0.1, so that any number of demos run side by side.
+"""
+
+from __future__ import annotations
+
+import argparse
+import secrets
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from sim.account import Account
+from sim.crew import Crew
+
+ROOT = Path(__file__).resolve().parent.parent
+EXAMPLES = ROOT / "examples"
+STARTING = 60.0
+"""Seconds that a process may take to be there."""
+
+
+class DemoError(Exception):
+    """The demo cannot go on; the text says why."""
+
+
+class Stage:
+    """An ecology of its own for one demo: its name, its processes, and the account of what they do."""
+
+    def __init__(self, crew: Crew, say: Callable[[str], None]) -> None:
+        self.crew, self._say = crew, say
+        self.ecology = f"demo-{secrets.token_hex(3)}"
+        self.account = Account(time.time())
+        self.endpoint = ""
+
+    def site(self, name: str, *advertisements: Path) -> None:
+        """Start a site, connected to the one before, and wait until it listens."""
+        connect = ["--connect", self.endpoint] if self.endpoint else []
+        paths = map(str, advertisements)
+        self.crew.start(name, "-m", "selfconf", "site", *paths, "--ecology", self.ecology, "--name", name, *connect)
+        deadline = time.monotonic() + STARTING
+        for line in self.crew.lines(STARTING):
+            if line.process == name and line.text is None:
+                break
+            if line.process == name and line.text is not None and " on tcp/" in line.text:
+                self.endpoint = line.text.rpartition(" on ")[2]
+                self._say(f"{time.time() - self.account.began:8.3f} s         {line.text}")
+                return
+            self.hear(line.process, line.text)
+        raise DemoError(f"the site {name} does not listen after {STARTING - deadline + time.monotonic():.0f} s")
+
+    def configurator(self, template: Path, policy: str, *bound: str) -> None:
+        """Start the configurator with a task."""
+        binds = [part for pair in bound for part in ("--bind", pair)]
+        where = ["--ecology", self.ecology, "--connect", self.endpoint]
+        command = ["-m", "selfconf", "run", str(template), *binds, *where, "--format", "json", "--policy", policy]
+        self.crew.start("configurator", *command)
+
+    def hear(self, process: str, text: str | None) -> None:
+        """Take a line in and tell it."""
+        from sim.crew import Line
+
+        sentence = self.account.take(Line(process, text))
+        if sentence is not None:
+            self._say(sentence)
+
+    def until(self, condition: Callable[[], bool], seconds: float, vital: tuple[str, ...], what: str) -> None:
+        """Listen until something holds. Raises DemoError if a vital process ends before, or time is up."""
+        if condition():
+            return
+        for line in self.crew.lines(seconds):
+            self.hear(line.process, line.text)
+            if condition():
+                return
+            if line.text is None and line.process in vital:
+                raise DemoError(f"{line.process} ended before {what}")
+        raise DemoError(f"{what} did not happen within {seconds:.0f} s")
+
+
+def run(given: argparse.Namespace) -> int:
+    """Run the scene that the arguments name; 0 if it ends as it should."""
+    given.out.mkdir(parents=True, exist_ok=True)
+    scenes = {"navigate": _navigate, "radio": _radio}
+    try:
+        return scenes[given.scene](given)
+    except DemoError as error:
+        print(f"selfconf demo: {error}", file=sys.stderr)
+        return 1
+
+
+def _tell(sentence: str) -> None:
+    print(sentence, flush=True)
+
+
+def _navigate(given: argparse.Namespace) -> int:
+    from sim.gallery import draw_run, summary
+
+    _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act, what.")
+    record = given.out / "run.npz"
+    with Crew() as crew:
+        stage = Stage(crew, _tell)
+        _tell(f"meanwhile, in another terminal: selfconf discover --ecology {stage.ecology}")
+        stage.site("living-room", EXAMPLES / "peis-home" / "person-tracker.ttl")
+        others = sorted(set((EXAMPLES / "peis-home").glob("*.ttl")) - {EXAMPLES / "peis-home" / "person-tracker.ttl"})
+        stage.site("astrid", *others)
+        world = ["--ecology", stage.ecology, "--connect", stage.endpoint, "--record", str(record)]
+        world += ["--seed", str(given.seed), "--speed", str(given.speed), *(["--gui"] if given.gui else [])]
+        crew.start("world", "-m", "sim.peis_home", *world)
+        stage.until(lambda: stage.account.ready, STARTING, ("world",), "the world was there")
+        goal = "goal=(AT BEDROOM)"
+        stage.configurator(EXAMPLES / "navigate.ttl", given.policy, "robot=:Astrid", goal)
+        limit = max(120.0, 130.0 / given.speed) + 60.0
+        account = stage.account
+        ended: Callable[[], bool] = lambda: account.end is not None or account.refused
+        stage.until(ended, limit, ("world", "configurator"), "the end of the run")
+        crew.end("configurator", signal.SIGINT)
+        for line in crew.lines(0.2):
+            stage.hear(line.process, line.text)
+    if account.end is None:
+        raise DemoError("the world ended without a result")
+    _tell("")
+    for sentence in summary(account):
+        _tell(sentence)
+    if given.pictures != "none":
+        for path in draw_run(account, record, given.out, given.pictures, _tell):
+            _tell(f"wrote {path}")
+    return 0 if account.end["outcome"] == "arrived" and not account.end["touched"] else 1
+
+
+def _radio(given: argparse.Namespace) -> int:
+    _tell("The radio plays in the living room; then somebody pulls the plug of a speaker.")
+    sound = Path(tempfile.mkdtemp(prefix="selfconf-sound-"))
+    try:
+        with Crew({"SIM_SOUND": str(sound)}) as crew:
+            stage = Stage(crew, _tell)
+            stage.site("living-room", EXAMPLES / "radio")
+            stage.configurator(EXAMPLES / "radio.ttl", given.policy, "room=:living-room")
+            account = stage.account
+            vital = ("configurator", "living-room")
+
+            def playing() -> set[str]:
+                return {fact["speaker"] for fact in account.played if fact["event"] == "plays"}
+
+            stage.until(lambda: len(playing()) >= 2, STARTING, vital, "two speakers playing")
+            plugged = next(fact for fact in account.played if fact["event"] == "plays")
+            _tell(f"          pulling the plug of {plugged['speaker']}")
+            import os
+
+            os.kill(plugged["process"], signal.SIGUSR1)
+            stage.until(lambda: len(playing()) >= 3, STARTING, vital, "another speaker playing in its place")
+            stage.until(lambda: len(account.configurations) >= 2, STARTING, vital, "a second configuration")
+            crew.end("configurator", signal.SIGINT)
+            for line in crew.lines(1.0):
+                stage.hear(line.process, line.text)
+        for path in sorted(sound.glob("*.wav")):
+            shutil.copy(path, given.out / path.name)
+            _tell(f"wrote {given.out / path.name}")
+    finally:
+        shutil.rmtree(sound, ignore_errors=True)
+    before, after = ([c for r in cfg["roles"] for c in r["components"]] for cfg in account.configurations[:2])
+    _tell(f"before: {', '.join(c.rpartition('#')[2] for c in before)}")
+    _tell(f"after:  {', '.join(c.rpartition('#')[2] for c in after)}")
+    return 0

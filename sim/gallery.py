@@ -1,0 +1,125 @@
+"""From a finished demo to its summary and its pictures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from selfconf.model.term import IRI
+from sim.account import Account, short
+from sim.apartment import Apartment, read_apartment
+from sim.peis_home import standing_point
+from sim.pictures import Failure, Link, Part, Port, RunRecord, Sample, Sight, Supply, Wiring, draw
+
+GOAL = "bedroom"
+SPOKEN = {"tracker": "the person tracker", "odometry": "odometry"}
+
+
+def summary(account: Account) -> Iterator[str]:
+    """The run in a few lines: configurations, the gap, where she ended."""
+    for word, configuration in zip(("before", "after"), account.configurations, strict=False):
+        names = [short(component) for role in configuration["roles"] for component in role["components"]]
+        yield f"{word + ':':9}{', '.join(names)}"
+    gap = account.gap()
+    if gap is not None:
+        searched = account.search_seconds[1] * 1000 if len(account.search_seconds) > 1 else 0.0
+        yield f"{'gap:':9}{gap * 1000:.1f} ms from FAIL to the first pose of the new source at the navigator"
+        yield f"{'':9}({searched:.1f} ms of it for composing the new configuration)"
+    if account.end is not None:
+        error = arrival_error(account)
+        touched = ", ".join(account.end["touched"]) or "nothing"
+        yield f"{'end:':9}{account.end['outcome']} after {account.end['time']:.1f} simulated seconds"
+        yield f"{'':9}{error * 100:.1f} cm from the goal; touched {touched}"
+
+
+def arrival_error(account: Account) -> float:
+    """How far, in metres, she truly ended from the standing point of the goal."""
+    assert account.end is not None
+    stand = standing_point(read_apartment(), GOAL)
+    return math.hypot(account.end["x"] - stand.x, account.end["y"] - stand.y)
+
+
+def draw_run(account: Account, record: Path, out: Path, quality: str, progress: Callable[[str], None]) -> list[Path]:
+    """Draw every picture of the run; the paths written."""
+    apartment = read_apartment()
+    with np.load(record) as logbook:
+        run = _run_record(account, apartment, dict(logbook))
+    last = ""
+
+    def tell(*step: Any) -> None:
+        nonlocal last
+        word = str(step[0]) if step else ""
+        if word != last:
+            last = word
+            progress(f"drawing {word}")
+
+    return draw(run, apartment, out, quality=quality, progress=tell)
+
+
+def _run_record(account: Account, apartment: Apartment, logbook: dict[str, NDArray[Any]]) -> RunRecord:
+    times, poses = logbook["times"], logbook["poses"]
+    samples = tuple(Sample(float(t), float(x), float(y), float(a)) for t, (x, y, a) in zip(times, poses, strict=True))
+    supplies = tuple(_supplies(times, logbook["sources"]))
+    failures: tuple[Failure, ...] = ()
+    tracked = [supply for supply in supplies if supply.component == SPOKEN["tracker"]]
+    if account.losses and tracked:
+        at = samples[int(np.searchsorted(times, tracked[-1].end))]
+        loss = account.losses[0]
+        failures = (Failure(at.time, at.x, at.y, SPOKEN["tracker"], loss["detail"]),)
+    stand = standing_point(apartment, GOAL)
+    return RunRecord(
+        samples,
+        supplies,
+        failures,
+        (stand.x, stand.y),
+        tuple(_sights(logbook)),
+        tuple(_wirings(account)),
+        "Astrid goes to the bedroom",
+        "The tracker loses her at the edge of its view; odometry takes over.",
+    )
+
+
+def _supplies(times: NDArray[np.float64], sources: NDArray[np.str_]) -> Iterator[Supply]:
+    start = 0
+    for index in range(1, len(times) + 1):
+        if index == len(times) or sources[index] != sources[start]:
+            if sources[start]:
+                yield Supply(SPOKEN[str(sources[start])], float(times[start]), float(times[min(index, len(times) - 1)]))
+            start = index
+
+
+def _sights(logbook: dict[str, NDArray[Any]]) -> Iterator[Sight]:
+    for time, image, pose in zip(logbook["sight_times"], logbook["sight_images"], logbook["sight_poses"], strict=True):
+        lost = bool(np.isnan(pose[0]))
+        x, y, theta = (float(value) for value in pose)
+        words = "lost" if lost else f"x {x:.2f} m, y {y:.2f} m, {math.degrees(theta):.0f}°"
+        yield Sight(image, float(time), words, lost)
+
+
+def _wirings(account: Account) -> Iterator[Wiring]:
+    lost = {loss["component"] for loss in account.losses}
+    before: set[str] = set()
+    for title, configuration in zip(("before the failure", "after the failure"), account.configurations, strict=False):
+        components = {c: role["role"] for role in configuration["roles"] for c in role["components"]}
+        links = [
+            Link(short(c["from"]["component"]), c["from"]["output"], short(c["to"]["component"]), c["to"]["input"])
+            for c in configuration["connections"]
+        ]
+        parts = tuple(
+            Part(
+                short(component),
+                IRI(role).short,
+                tuple(dict.fromkeys(Port(link.input) for link in links if link.sink == short(component))),
+                tuple(dict.fromkeys(Port(link.output) for link in links if link.source == short(component))),
+                failed=component in lost,
+                fresh=bool(before) and component not in before,
+            )
+            for component, role in components.items()
+        )
+        before = set(components)
+        yield Wiring(title, parts, tuple(links))

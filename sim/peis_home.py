@@ -1,0 +1,160 @@
+"""The PEIS-Home as a program: the physics world, and the components that share it, in one process.
+
+    python -m sim.peis_home --ecology NAME --connect ENDPOINT --seed 7 --speed 1 --record run.npz
+
+One thread owns PyBullet and calls the components. Each control period of 0.1 s of simulated time the sensors look,
+the components hear what has arrived, and the physics goes on. In real time the period ends by the clock. With
+`--speed max` it ends as soon as the drive has answered the newest pose, or after `PATIENCE` seconds of real time if
+nobody answers, so that the run is fast while somebody navigates and real time while the configurator works.
+
+It ends when Astrid has stood still at a place long enough to have arrived, when simulated time is up, or when
+it is told to. What happened goes to stdout, a line of JSON for each event, and in full to the record.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from selfconf.sdk import Ending, Host
+from selfconf.sdk.program import add_connection_arguments, join
+from sim.apartment import Apartment, ApartmentError, read_apartment
+from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
+from sim.geometry import Pose
+from sim.logbook import Logbook
+from sim.world import TIME_STEP, World
+
+PERIOD = 0.1
+"""Simulated seconds of a control period."""
+PATIENCE = 0.1
+"""Real seconds that a period waits for the drive's answer when it goes as fast as it can."""
+AT_REST = 2.0
+"""Simulated seconds without moving after which she has arrived."""
+REACH = 0.6
+"""Metres from the place's standing point within which she is there."""
+
+
+class PeisHome:
+    """The world with its components, and the loop that lets time pass."""
+
+    def __init__(self, host: Host, apartment: Apartment, seed: int, speed: float, place: str, gui: bool) -> None:
+        self.host, self.speed = host, speed
+        self._goal = standing_point(apartment, place)
+        self.world = World(apartment, seed, gui)
+        self.logbook = Logbook()
+        frame = str(apartment.iri)
+        self.sonar = SonarArray(self.world, seed)
+        self.encoder = WheelEncoder(self.world, seed)
+        self.drive = MotorDrive(self.world)
+        self.odometry = AbsolutePosition(self.world, self.encoder, self.world.start, frame)
+        self.tracker = PersonTracker(self.world, seed, frame)
+        for component in (self.sonar, self.encoder, self.drive, self.odometry, self.tracker):
+            host.add(component)
+        self.told = Ending(host.bus)
+        self._moved, self._still_since, self._asked = False, 0.0, float("-inf")
+        self._began = time.monotonic()
+
+    def run(self, seconds: float) -> str:
+        """Let time pass until she has arrived, time is up or it is told to end; which of these."""
+        while not self.told():
+            self._sense()
+            self._wait()
+            self._move()
+            if self._arrived():
+                return "arrived"
+            if self.world.time >= seconds:
+                return "time is up"
+        return "told to end"
+
+    def _sense(self) -> None:
+        """Sensors first, poses last: a pose is answered with what was sensed before it."""
+        self.sonar.tick()
+        self.encoder.tick()
+        failed_before = not self.tracker.active
+        self.tracker.tick()
+        self.odometry.tick()
+        self._asked = max(self.tracker.told, self.odometry.told)
+        if not failed_before:
+            self.logbook.see(self.world.time, self.tracker.frame, self.tracker.pose)
+
+    def _wait(self) -> None:
+        """Let the components hear what has arrived, until this period is over."""
+        self.host.poll()
+        if self.speed == float("inf"):
+            deadline = time.monotonic() + PATIENCE
+            while not self.told() and (left := deadline - time.monotonic()) > 0:
+                if self.drive.active and self.drive.heard >= self._asked > float("-inf"):
+                    break
+                self.host.poll(left)
+            return
+        deadline = self._began + (self.world.time + PERIOD) / self.speed
+        while not self.told() and (left := deadline - time.monotonic()) > 0:
+            self.host.poll(left)
+        if left <= -1.0:  # this machine cannot keep up: let the clock fall back instead of hurrying after it
+            self._began -= left
+
+    def _move(self) -> None:
+        source = "tracker" if self.tracker.active else "odometry" if self.odometry.active else ""
+        self.logbook.write(self.world.time, self.world.pose(), source)
+        self.drive.tick()
+        for _ in range(round(PERIOD / TIME_STEP)):
+            self.world.step()
+            self.logbook.touched.update(touch.other for touch in self.world.contacts())
+
+    def _arrived(self) -> bool:
+        before, here = self.logbook.last_pose, self.world.pose()
+        moving = before.distance(here) > 0.002
+        if moving:
+            self._moved, self._still_since = True, self.world.time
+        if not self._moved or self.world.time - self._still_since < AT_REST or not self.drive.active:
+            return False
+        return here.distance(self._goal) < REACH
+
+
+def main() -> int:
+    """Run the world; 0 if she has arrived."""
+    parser = argparse.ArgumentParser(description="the PEIS-Home: a physics world and the components that share it")
+    add_connection_arguments(parser)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--speed", type=float, default=1.0)
+    parser.add_argument("--seconds", type=float, default=120.0, help="simulated seconds after which it ends")
+    parser.add_argument("--place", default="bedroom", help="the run ends when she has come to rest there")
+    parser.add_argument("--record", type=Path)
+    parser.add_argument("--gui", action="store_true")
+    given = parser.parse_args()
+    host = join(given.ecology, given.connect)
+    home = PeisHome(host, read_apartment(), given.seed, given.speed, given.place, given.gui)
+    say("ready", time=home.world.time)
+    try:
+        outcome = home.run(given.seconds)
+        pose = home.world.pose()
+        home.logbook.write(home.world.time, pose, "")
+        if given.record is not None:
+            home.logbook.save(given.record)
+        touched = sorted(home.logbook.touched)
+        say("end", outcome=outcome, time=home.world.time, x=pose.x, y=pose.y, touched=touched)
+        host.run(home.told)  # still there, so that the configuration can be taken down
+    finally:
+        host.close()
+        home.world.close()
+    return 0 if outcome == "arrived" else 1
+
+
+def standing_point(apartment: Apartment, name: str) -> Pose:
+    """Where a robot stands that has come to a place; raises ApartmentError if the place has none."""
+    standing = apartment.place(name).standing
+    if standing is None:
+        raise ApartmentError(name, "home:standingPoint", "is missing")
+    return standing
+
+
+def say(event: str, **facts: Any) -> None:
+    """A line of JSON on stdout."""
+    print(json.dumps({"event": event, "real": time.time(), **facts}), flush=True)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
