@@ -1,0 +1,67 @@
+# `make demo` and `make test` need nothing installed but Python, git and make; each makes its own .venv.
+
+VENV   := .venv
+BIN    := $(VENV)/bin
+# The newest Python that PyBullet has wheels for, else the newest that the core runs on.
+PYTHON ?= $(shell for p in python3.11 python3.10 python3 python; do \
+	$$p -c 'import sys; sys.exit(not (3, 10) <= sys.version_info < (3, 12))' 2>/dev/null && echo $$p && exit; done; \
+	for p in python3.13 python3.12 python3 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && echo $$p && exit; done)
+SEEDS  ?= 20
+
+.PHONY: demo test check format lint types floors shapes docs-check experiment bench clean
+
+demo: $(VENV)/with-sim
+	$(BIN)/selfconf demo
+
+test: $(VENV)/with-dev
+	$(BIN)/python -m pytest
+
+check: $(VENV)/with-dev lint types floors shapes docs-check test
+
+$(VENV)/python:
+	@test -n "$(PYTHON)" || { echo "selfconf needs Python 3.10 or newer; install python3.11 and try again" >&2; exit 2; }
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+# The extras by the Python there is: PyBullet has wheels for 3.10 and 3.11 on Linux x86_64 only.
+$(VENV)/with-sim: $(VENV)/python pyproject.toml requirements.txt
+	@$(BIN)/python -c 'import platform, sys; sys.exit(not ((3, 10) <= sys.version_info < (3, 12) \
+		and sys.platform == "linux" and platform.machine() == "x86_64"))' \
+	|| { echo "the demo needs PyBullet, which has wheels for Python 3.10 and 3.11 on Linux x86_64 only:" \
+		"install python3.11, or type 'make demo PYTHON=/path/to/python3.11'" >&2; exit 2; }
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim]'
+	@touch $@
+
+$(VENV)/with-dev: $(VENV)/python pyproject.toml requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim,solvers,dev]'
+	@touch $@ $(VENV)/with-sim
+
+lint: $(VENV)/with-dev
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+
+format: $(VENV)/with-dev
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+types: $(VENV)/with-dev
+	$(BIN)/mypy
+
+floors: $(VENV)/with-dev
+	$(BIN)/lint-imports
+
+shapes: $(VENV)/with-dev
+	$(BIN)/selfconf validate ontology examples
+
+docs-check: $(VENV)/with-dev
+	$(BIN)/python -m docs.generate --check
+
+experiment: $(VENV)/with-sim
+	$(BIN)/python -m benchmarks.experiment --seeds $(SEEDS)
+
+bench: $(VENV)/with-dev
+	$(BIN)/python -m benchmarks.failover
+
+clean:
+	rm -rf $(VENV) out dist build .mypy_cache .ruff_cache .import_linter_cache .hypothesis

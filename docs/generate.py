@@ -1,0 +1,60 @@
+"""Writes the pages that are made from the code: `python -m docs.generate`, or `--check` to see whether they are up to date."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from selfconf.cli import validate
+from selfconf.cli.main import COMMANDS, command, parser
+
+HERE = Path(__file__).parent
+NOTE = "<!-- Made by `python -m docs.generate`; edit the code instead. -->"
+
+
+def commands() -> str:
+    """The reference of the command line, from the commands' own help."""
+    os.environ["COLUMNS"] = "100"
+    top = parser()
+    pages = [f"# The command line\n\n{NOTE}\n"]
+    subparsers = next(action for action in top._actions if isinstance(action, argparse._SubParsersAction))
+    for name in COMMANDS:
+        help_ = subparsers.choices[name].format_help().rstrip()
+        pages.append(f"## selfconf {name}\n\n{command(name).HELP[0].upper()}{command(name).HELP[1:]}.\n")
+        pages.append(f"```text\n{help_}\n```\n")
+    return "\n".join(pages)
+
+
+def codes() -> str:
+    """The reference of the codes that `validate` reports."""
+    return f"{NOTE}\n\n{validate.reference()}"
+
+
+PAGES: dict[str, Callable[[], str]] = {"commands.md": commands, "codes.md": codes}
+
+
+def main() -> int:
+    """0 if the pages are, or now are, up to date."""
+    options = argparse.ArgumentParser(description="write the pages that are made from the code")
+    options.add_argument("--check", action="store_true", help="write nothing; 1 if a page is out of date")
+    check = options.parse_args().check
+    stale = []
+    for name, page in PAGES.items():
+        if check and page is commands and sys.version_info[:2] != (3, 11):
+            continue  # argparse words its help differently in other versions
+        text, path = page().rstrip() + "\n", HERE / name
+        if not path.is_file() or path.read_text() != text:
+            stale.append(name)
+            if not check:
+                path.write_text(text)
+    if check and stale:
+        print(f"out of date: {', '.join(stale)}; type `python -m docs.generate`", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

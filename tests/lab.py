@@ -1,0 +1,175 @@
+"""A small ecology in memory for tests: sites, components and a configurator on a simulated network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from selfconf.agent import Account, Agent, Order
+from selfconf.bus.memory import Faults, MemoryBus, Network
+from selfconf.configurator.compose import Composer
+from selfconf.configurator.machine import Phase, Policy
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys
+from selfconf.rdf import advertisements, bindings, templates, turtle
+from selfconf.sdk.body import Body
+from selfconf.sdk.component import Component, Signal
+from selfconf.site import Shelf, Site
+
+PREFIXES = """@prefix sc:  <https://w3id.org/selfconf#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix sh:  <http://www.w3.org/ns/shacl#> .
+@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+@prefix unit: <http://qudt.org/vocab/unit/> .
+@prefix :    <https://example.org/peis-home#> .
+"""
+
+NAVIGATE = (
+    PREFIXES
+    + """
+:navigate a sc:Template ;
+    sc:parameter :robot, :goal ;
+    sc:roles ( :sonar :encoder :position :control :drive ) .
+:robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .
+:goal  a sc:Parameter ; sc:name "goal"  ; sh:datatype xsd:string .
+:sonar    a sc:Role ; sh:class rob:SonarArray ;        sc:feeds :control ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:encoder  a sc:Role ; sh:class rob:Encoder ;           sc:feeds :control ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:position a sc:Role ; sh:class rob:PositionSensor ;    sc:feeds :control ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:control  a sc:Role ; sh:class rob:NavigationControl ; sc:feeds :drive ;   sc:sets [ sc:parameterType rob:BehaviouralGoal ; sc:value :goal ] .
+:drive    a sc:Role ; sh:class rob:MotorDrive ;                            sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+"""
+)
+
+ADVERTISEMENTS = {
+    "sonar": ":sonar-array a sc:Component, rob:SonarArray ; rob:support :Astrid ;"
+    ' sc:hasOutput [ sc:name "ranges" ; sc:signalType rob:RangeScan ] .',
+    "encoder": ":wheels a sc:Component, rob:Encoder ; rob:support :Astrid ;"
+    ' sc:hasOutput [ sc:name "odometry" ; sc:signalType rob:Odometry2D ] .',
+    "tracker": ":person-tracker a sc:Component, rob:PositionSensor ; rob:place :living-room ; sc:preference 10 ;"
+    ' sc:hasOutput [ sc:name "pose" ; sc:signalType rob:PlanarPose2D ] .',
+    "odometry": ":absolute-odometry a sc:Component, rob:PositionSensor ;"
+    ' sc:hasOutput [ sc:name "pose" ; sc:signalType rob:PlanarPose2D ] .',
+    "control": ":thinking-cap a sc:Component, rob:NavigationControl ;"
+    ' sc:hasInput [ sc:name "sonar" ; sc:signalType rob:RangeScan ] ,'
+    ' [ sc:name "position" ; sc:signalType rob:PlanarPose2D ] , [ sc:name "localize" ; sc:signalType rob:Odometry2D ] ;'
+    ' sc:hasOutput [ sc:name "set.velocity" ; sc:signalType rob:Velocity2D ] ;'
+    ' sc:hasParameter [ sc:name "goal" ; sc:parameterType rob:BehaviouralGoal ] .',
+    "drive": ":astrid-drive a sc:Component, rob:MotorDrive ; rob:support :Astrid ;"
+    ' sc:hasInput [ sc:name "velocity" ; sc:signalType rob:Velocity2D ] .',
+    "pippi": ":pippi-drive a sc:Component, rob:MotorDrive ; rob:support :Pippi ;"
+    ' sc:hasInput [ sc:name "velocity" ; sc:signalType rob:Velocity2D ] .',
+}
+
+
+def iri(name: str) -> IRI:
+    """A term of the tests' own namespace."""
+    return IRI("https://example.org/peis-home#" + name)
+
+
+def write_advertisements(folder: Path, *names: str) -> Path:
+    """The advertisements of those names (all of them by default), a file each."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in names or ADVERTISEMENTS:
+        (folder / f"{name}.ttl").write_text(PREFIXES + ADVERTISEMENTS[name] + "\n")
+    return folder
+
+
+class Recorder(Component):
+    """A component that writes down what it is told."""
+
+    def __init__(self) -> None:
+        self.said: list[tuple[Any, ...]] = []
+        self.refusal: Exception | None = None
+
+    def started(self) -> None:
+        self.said.append(("started",))
+        if self.refusal is not None:
+            raise self.refusal
+
+    def stopped(self) -> None:
+        self.said.append(("stopped",))
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.said.append((port, signal.value))
+
+    def parameter_set(self, name: str, value: Any) -> None:
+        self.said.append((name, value))
+
+
+class Lab:
+    """Two hosts and a configurator in simulated time; every component is a node of its own."""
+
+    def __init__(self, folder: Path, seed: int = 0, faults: Faults | None = None) -> None:
+        self.network = Network(seed, faults)
+        self.folder = folder
+        self.keys = Keys("lab")
+        self.components: dict[str, Recorder] = {}
+        self.bodies: dict[str, Body] = {}
+        self.complaints: list[str] = []
+        self.accounts: list[Account] = []
+        self.ended: list[Refusal | None] = []
+
+    def site(self, name: str, *names: str) -> Site:
+        """A site with those advertisements."""
+        shelf = Shelf([write_advertisements(self.folder / name, *names)], self.complaints.append)
+        return Site(self.network.node(), "lab", name, shelf)
+
+    def component(self, name: str) -> Recorder:
+        """A living component with one of the advertisements."""
+        document = turtle.parse(PREFIXES + ADVERTISEMENTS[name], name)
+        (advertisement,), _ = advertisements.read(document)
+        recorder = Recorder()
+        life = f"{name}{len(self.bodies)}"
+        self.bodies[name] = Body(self.network.node(), self.keys, advertisement.profile, recorder, life)
+        self.components[name] = recorder
+        return recorder
+
+    def navigation(self) -> None:
+        """The paper's six components and Pippi's drive, at two sites."""
+        self.site("living-room", "tracker")
+        self.site("astrid", "sonar", "encoder", "odometry", "control", "drive", "pippi")
+        for name in ADVERTISEMENTS:
+            self.component(name)
+
+    def agent(
+        self,
+        template: str = NAVIGATE,
+        bound: tuple[tuple[str, str], ...] = (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")),
+        policy: Policy = Policy.REPAIR,
+        patient: bool = False,
+    ) -> Agent:
+        """A configurator that has begun with act 1."""
+        document = templates.read(turtle.parse(template, "template.ttl"))
+        task = bindings.complete(bindings.bind(document, bound))
+        order = Order(
+            task.task.template.iri,
+            Composer(task).compose,
+            policy,
+            patient,
+            self.accounts.append,
+            self.ended.append,
+        )
+        agent = Agent(self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time)
+        agent.start()
+        return agent
+
+    def until(self, condition: Callable[[], bool], seconds: float = 30.0) -> bool:
+        """Let simulated time pass until something holds; whether it does."""
+        return self.network.run(condition, seconds)
+
+    def running(self, agent: Agent) -> bool:
+        """Whether an agent's configuration is complete, after letting time pass."""
+        return self.until(lambda: agent.state.phase is Phase.RUNNING)
+
+    def node_of(self, name: str) -> MemoryBus:
+        """The node of a component."""
+        bus = self.bodies[name].bus
+        assert isinstance(bus, MemoryBus)
+        return bus
+
+    def acts(self, act: str) -> list[Account]:
+        """The accounts of one kind."""
+        return [account for account in self.accounts if account.act == act]
