@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from types import TracebackType
 
 from selfconf.sdk import lineage
@@ -28,7 +29,9 @@ class Crew:
     """Named processes, and what they write to stdout and stderr in order of arrival."""
 
     def __init__(self, environment: Mapping[str, str] | None = None) -> None:
-        self._environment = {**os.environ, **(environment or {}), **lineage(), "PYTHONUNBUFFERED": "1"}
+        path = os.pathsep.join(filter(None, (str(Path(__file__).parent.parent), os.environ.get("PYTHONPATH"))))
+        own = {"PYTHONUNBUFFERED": "1", "PYTHONPATH": path}
+        self._environment = {**os.environ, **(environment or {}), **lineage(), **own}
         self._processes: dict[str, subprocess.Popen[str]] = {}
         self._lines: queue.SimpleQueue[Line] = queue.SimpleQueue()
 

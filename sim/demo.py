@@ -7,6 +7,8 @@ in an ecology with a name of its own, on free ports of 127.0.0.1, so that any nu
 from __future__ import annotations
 
 import argparse
+import json
+import os
 import secrets
 import shutil
 import signal
@@ -17,7 +19,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sim.account import Account
-from sim.crew import Crew
+from sim.crew import Crew, Line
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
@@ -63,8 +65,6 @@ class Stage:
 
     def hear(self, process: str, text: str | None) -> None:
         """Take a line in and tell it."""
-        from sim.crew import Line
-
         sentence = self.account.take(Line(process, text))
         if sentence is not None:
             self._say(sentence)
@@ -98,7 +98,7 @@ def _tell(sentence: str) -> None:
 
 
 def _navigate(given: argparse.Namespace) -> int:
-    from sim.gallery import draw_run, summary
+    from sim.gallery import draw_run, result, summary
 
     _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act, what.")
     record = given.out / "run.npz"
@@ -126,6 +126,7 @@ def _navigate(given: argparse.Namespace) -> int:
     _tell("")
     for sentence in summary(account):
         _tell(sentence)
+    (given.out / "result.json").write_text(json.dumps(result(account), indent=2) + "\n")
     if given.pictures != "none":
         for path in draw_run(account, record, given.out, given.pictures, _tell):
             _tell(f"wrote {path}")
@@ -149,8 +150,6 @@ def _radio(given: argparse.Namespace) -> int:
             stage.until(lambda: len(playing()) >= 2, STARTING, vital, "two speakers playing")
             plugged = next(fact for fact in account.played if fact["event"] == "plays")
             _tell(f"          pulling the plug of {plugged['speaker']}")
-            import os
-
             os.kill(plugged["process"], signal.SIGUSR1)
             stage.until(lambda: len(playing()) >= 3, STARTING, vital, "another speaker playing in its place")
             stage.until(lambda: len(account.configurations) >= 2, STARTING, vital, "a second configuration")

@@ -37,6 +37,23 @@ def summary(account: Account) -> Iterator[str]:
         yield f"{'':9}{error * 100:.1f} cm from the goal; touched {touched}"
 
 
+def result(account: Account) -> dict[str, Any]:
+    """The run as figures: outcome, error in metres, who failed and why, the gap and the search in seconds."""
+    assert account.end is not None
+    loss = account.losses[0] if account.losses else None
+    return {
+        "outcome": account.end["outcome"],
+        "simulated_seconds": account.end["time"],
+        "error": arrival_error(account),
+        "touched": account.end["touched"],
+        "lost": short(loss["component"]) if loss else None,
+        "cause": loss["cause"] if loss else None,
+        "gap": account.gap(),
+        "search": account.search_seconds[1] if len(account.search_seconds) > 1 else None,
+        "configurations": account.configurations,
+    }
+
+
 def arrival_error(account: Account) -> float:
     """How far, in metres, she truly ended from the standing point of the goal."""
     assert account.end is not None
@@ -54,9 +71,9 @@ def draw_run(account: Account, record: Path, out: Path, quality: str, progress: 
     def tell(*step: Any) -> None:
         nonlocal last
         word = str(step[0]) if step else ""
-        if word != last:
+        if word not in (last, "done"):
             last = word
-            progress(f"drawing {word}")
+            progress(f"pictures: {word}")
 
     return draw(run, apartment, out, quality=quality, progress=tell)
 

@@ -1,0 +1,215 @@
+"""How long from FAIL to the first message over the new connection, beside a bare Zenoh round trip in the same run.
+
+    python -m benchmarks.failover [--trials 50] [--smoke]
+
+Nine processes on one machine: a site (the router), six components without physics, the configurator (`selfconf run`)
+and an echo, all real. A trial: after a pause the position sensor in use raises FAIL; the configurator hears it,
+searches, turns it off, activates the other one and connects it; the navigator hears its first pose. Between trials
+one put-to-callback round trip is measured over the same router, after the same pause: cold, as the trial is.
+
+    detect   FAIL raised -> heard by the configurator
+    decide   the search for the next configuration
+    deploy   the rest, until the first message has arrived
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import queue
+import secrets
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from benchmarks.machine import described, quantile, table
+
+HERE = Path(__file__).parent / "failover"
+ACTORS = ("sonar", "encoder", "position-a", "position-b", "control", "drive")
+PAUSE = 0.1
+"""Seconds of rest before each trial and each round trip."""
+PATIENCE = 20.0
+
+
+class Process:
+    """A process of the benchmark: its lines of JSON arrive in one queue with everybody else's."""
+
+    def __init__(self, name: str, lines: queue.SimpleQueue[tuple[str, Any]], *command: str, **environment: str) -> None:
+        self.name, self._lines = name, lines
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", *command],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env={**os.environ, **environment},
+        )
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        for text in self._process.stdout:
+            try:
+                fact = json.loads(text)
+            except ValueError:
+                fact = text.rstrip()
+            self._lines.put((self.name, fact))
+
+    def tell(self) -> None:
+        """Write a line to its stdin."""
+        assert self._process.stdin is not None
+        self._process.stdin.write("go\n")
+        self._process.stdin.flush()
+
+    def end(self) -> None:
+        """End it and wait."""
+        self._process.terminate()
+        try:
+            self._process.wait(10)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+
+class Lines:
+    """The lines of all processes, waited for by what they say."""
+
+    def __init__(self) -> None:
+        self.queue: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
+
+    def until(self, wanted: Callable[[str, Any], bool]) -> list[tuple[str, Any]]:
+        """Every line up to and including the wanted one."""
+        heard: list[tuple[str, Any]] = []
+        deadline = time.monotonic() + PATIENCE
+        while True:
+            try:
+                heard.append(self.queue.get(timeout=max(0.0, deadline - time.monotonic())))
+            except queue.Empty:
+                raise SystemExit(f"the benchmark stalled; last lines: {heard[-5:]}") from None
+            if wanted(*heard[-1]):
+                return heard
+
+
+class Echo:
+    """A bare Zenoh round trip over the same router: put, callback in another process, put, callback."""
+
+    def __init__(self, endpoint: str) -> None:
+        config = zenoh.Config()
+        config.insert_json5("mode", '"client"')
+        config.insert_json5("scouting/multicast/enabled", "false")
+        config.insert_json5("connect/endpoints", json.dumps([endpoint]))
+        self._session = zenoh.open(config)
+        self._back = threading.Event()
+        self._subscriber = self._session.declare_subscriber("echo/back", Callback(self._heard, indirect=False))
+        self._publisher = self._session.declare_publisher(
+            "echo/go", congestion_control=zenoh.CongestionControl.BLOCK, express=True
+        )
+
+    def _heard(self, _: zenoh.Sample) -> None:
+        self._back.set()
+
+    def measure(self) -> float:
+        """Seconds of one round trip."""
+        self._back.clear()
+        began = time.perf_counter()
+        self._publisher.put(b"x" * 64)
+        if not self._back.wait(PATIENCE):
+            raise SystemExit("the echo does not answer")
+        return time.perf_counter() - began
+
+    def close(self) -> None:
+        """Leave."""
+        self._session.close()
+
+
+def measure(trials: int) -> dict[str, list[float]]:
+    """Seconds by part: round trip, detect, decide, deploy, total without decide."""
+    ecology = f"failover-{secrets.token_hex(3)}"
+    lines = Lines()
+    parts: dict[str, list[float]] = {name: [] for name in ("round trip", "detect", "decide", "deploy", "undecided")}
+    with ExitStack() as stack:
+
+        def start(name: str, *command: str, **environment: str) -> Process:
+            process = Process(name, lines.queue, *command, **environment)
+            stack.callback(process.end)
+            return process
+
+        advertisements = [str(HERE / f"{name}.ttl") for name in ACTORS]
+        start("site", "selfconf", "site", *advertisements, "--ecology", ecology)
+        said = lines.until(lambda name, fact: name == "site" and " on tcp/" in str(fact))[-1][1]
+        where = {"SELFCONF_ECOLOGY": ecology, "SELFCONF_CONNECT": str(said).rpartition(" on ")[2]}
+        actors = {name: start(name, "benchmarks.failover_actors", name, **where) for name in ACTORS}
+        for _ in ACTORS:
+            lines.until(lambda name, fact: isinstance(fact, dict) and fact.get("event") == "ready")
+        start("echo", "benchmarks.failover_echo", where["SELFCONF_CONNECT"])
+        lines.until(lambda name, fact: name == "echo")
+        echo = Echo(where["SELFCONF_CONNECT"])
+        stack.callback(echo.close)
+        command = ["selfconf", "run", str(HERE / "task.ttl"), "--ecology", ecology]
+        start("configurator", *command, "--connect", where["SELFCONF_CONNECT"], "--format", "json")
+        lines.until(_said("configurator", "act", "running"))
+        echo.measure()
+        for trial in range(trials):
+            threading.Event().wait(PAUSE)
+            parts["round trip"].append(echo.measure())
+            threading.Event().wait(PAUSE)
+            _trial(lines, actors[('position-a', 'position-b')[trial % 2]], parts)
+    return parts
+
+
+def _trial(lines: Lines, sensor: Process, parts: dict[str, list[float]]) -> None:
+    sensor.tell()
+    facts: dict[str, dict[str, Any]] = {}
+
+    def over(name: str, fact: Any) -> bool:
+        if isinstance(fact, dict):
+            facts[fact.get("event") or fact["act"]] = fact
+        return {"fail", "first", "lost", "composed", "running"} <= facts.keys()
+
+    lines.until(over)
+    raised, lost, first = facts["fail"]["real"], facts["lost"]["time"], facts["first"]["real"]
+    decide = facts["composed"]["seconds"]
+    parts["detect"].append(lost - raised)
+    parts["decide"].append(decide)
+    parts["deploy"].append(first - lost - decide)
+    parts["undecided"].append(first - raised - decide)
+
+
+def _said(process: str, key: str, value: str) -> Callable[[str, Any], bool]:
+    return lambda name, fact: name == process and isinstance(fact, dict) and fact.get(key) == value
+
+
+def report(parts: dict[str, list[float]]) -> str:
+    """The table, with each part as a ratio to the median round trip."""
+    floor = quantile(parts["round trip"], 0.5)
+    names = {"undecided": "FAIL to first message, without the search"}
+    rows = []
+    for name, values in parts.items():
+        middle, high = quantile(values, 0.5), quantile(values, 0.95)
+        cells = [f"{middle * 1000:.2f}", f"{high * 1000:.2f}", f"{middle / floor:.1f}", f"{high / floor:.1f}"]
+        rows.append([names.get(name, name), *cells])
+    head = ["", "median ms", "95 % ms", "median / round trip", "95 % / round trip"]
+    count = len(parts["detect"])
+    return f"{table(head, rows)}\n\n{count} trials; {described('eclipse-zenoh')}"
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="FAIL to first message, beside a bare Zenoh round trip")
+    parser.add_argument("--trials", type=int, default=50)
+    parser.add_argument("--smoke", action="store_true", help="four trials, to see that it works")
+    given = parser.parse_args()
+    print(report(measure(4 if given.smoke else given.trials)))
+
+
+if __name__ == "__main__":
+    main()

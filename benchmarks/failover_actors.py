@@ -1,0 +1,95 @@
+"""Components without physics for the failover benchmark, each a process: `python -m benchmarks.failover_actors NAME`.
+
+A position sensor fails when a line is written to its stdin, and comes back in a new life once it has been turned
+off. The navigator writes the time at which the first pose of each new source arrives.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+import time
+from pathlib import Path
+
+from selfconf.sdk import Component, Ending, Host, Signal
+from selfconf.sdk.program import join
+
+ADVERTISEMENTS = Path(__file__).parent / "failover"
+
+
+class Actor(Component):
+    """Emits one signal when it is started, as a source that is latched does."""
+
+    output = ""
+
+    def started(self) -> None:
+        """A signal at once."""
+        if self.output:
+            self.emit(self.output, {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"})
+
+
+class Navigator(Actor):
+    """Writes when a new source is first heard."""
+
+    output = "set.velocity"
+    source = ""
+
+    def received(self, port: str, signal: Signal) -> None:
+        """Note the first pose of each new source."""
+        if port == "position" and signal.source != self.source:
+            say("first", time.time(), source=signal.source)
+            self.source = signal.source
+
+
+def say(event: str, moment: float, **facts: str) -> None:
+    """A line of JSON on stdout."""
+    print(json.dumps({"event": event, "real": moment, **facts}), flush=True)
+
+
+def actor(name: str) -> type[Actor]:
+    """The class for one of the advertisements."""
+    base = Navigator if name == "control" else Actor
+    outputs = {"sonar": "ranges", "encoder": "odometry", "position-a": "pose", "position-b": "pose"}
+    members = {"advertisement": str(ADVERTISEMENTS / f"{name}.ttl"), "output": outputs.get(name, base.output)}
+    return type("Actor", (base,), members)
+
+
+class Phoenix:
+    """Keeps a component that fails on command and comes back in a new life."""
+
+    def __init__(self, host: Host, kind: type[Actor]) -> None:
+        self._host, self._kind = host, kind
+        self._component = host.add(kind())
+        threading.Thread(target=self._obey, daemon=True).start()
+
+    def _obey(self) -> None:
+        for _ in sys.stdin:
+            say("fail", time.time())
+            self._component.fail("told to")
+            self._host.bus.wake_up(self._rise)
+
+    def _rise(self) -> None:
+        self._host.bus.later(0.05, self._reborn)
+
+    def _reborn(self) -> None:
+        self._host.bodies.pop().close()
+        self._component = self._host.add(self._kind())
+
+
+def main() -> None:
+    """Run one actor until told to end."""
+    name = sys.argv[1]
+    host = join()
+    ending = Ending(host.bus)
+    if name.startswith("position"):
+        Phoenix(host, actor(name))
+    else:
+        host.add(actor(name)())
+    say("ready", time.time())
+    host.run(ending)
+    host.close()
+
+
+if __name__ == "__main__":
+    main()
