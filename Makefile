@@ -9,7 +9,7 @@ PYTHON ?= $(shell for p in python3.11 python3.10 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && echo $$p && exit; done)
 SEEDS  ?= 20
 
-.PHONY: demo test check format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test check package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -17,7 +17,10 @@ demo: $(VENV)/with-sim
 test: $(VENV)/with-dev
 	$(BIN)/python -m pytest
 
-check: $(VENV)/with-dev lint types floors shapes docs-check test
+check: $(VENV)/with-dev lint types floors shapes docs-check test package
+
+package: $(VENV)/with-dev
+	.ci/package
 
 $(VENV)/python:
 	@test -n "$(PYTHON)" || { echo "selfconf needs Python 3.10 or newer; install python3.11 and try again" >&2; exit 2; }

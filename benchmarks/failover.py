@@ -107,7 +107,7 @@ class Echo:
         config.insert_json5("mode", '"client"')
         config.insert_json5("scouting/multicast/enabled", "false")
         config.insert_json5("connect/endpoints", json.dumps([endpoint]))
-        self._session = zenoh.open(config)
+        self._session: Any = zenoh.open(config)
         self._back = threading.Event()
         self._subscriber = self._session.declare_subscriber("echo/back", Callback(self._heard, indirect=False))
         self._publisher = self._session.declare_publisher(

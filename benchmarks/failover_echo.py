@@ -19,7 +19,11 @@ def main() -> None:
         back = session.declare_publisher(
             "echo/back", congestion_control=zenoh.CongestionControl.BLOCK, express=True
         )
-        session.declare_subscriber("echo/go", Callback(lambda sample: back.put(sample.payload), indirect=False))
+
+        def answer(sample: zenoh.Sample) -> None:
+            back.put(sample.payload)
+
+        session.declare_subscriber("echo/go", Callback(answer, indirect=False))
         print("ready", flush=True)
         sys.stdin.read()
 

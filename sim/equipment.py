@@ -117,11 +117,15 @@ class PersonTracker(Component):
         self._ticks = 0
         self.told = float("-inf")
         """The simulated time of the newest pose it told."""
-        self._begin()
+        self._tracker = self._new_tracker()
+        self.frame: StereoFrame | None = None
+        """The newest image, and in `pose` what was found in it."""
+        self.pose: PlanarPose2D | None = None
 
     def started(self) -> None:
         """Begin anew: what was lost before may be in view again."""
-        self._begin()
+        self._tracker = self._new_tracker()
+        self.frame = self.pose = None
 
     def tick(self) -> None:
         """Take an image and look for her."""
@@ -136,8 +140,5 @@ class PersonTracker(Component):
         elif self._tracker.lost:
             self.fail("Astrid has left the view of the stereo camera")
 
-    def _begin(self) -> None:
-        self._tracker = Tracker(self._stereo.camera, astrid.PLATE_HEIGHT, self._frame)
-        self.frame: StereoFrame | None = None
-        """The newest image, and in `pose` what was found in it."""
-        self.pose: PlanarPose2D | None = None
+    def _new_tracker(self) -> Tracker:
+        return Tracker(self._stereo.camera, astrid.PLATE_HEIGHT, self._frame)

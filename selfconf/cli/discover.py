@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from typing import NamedTuple
 
 from selfconf.cli import words
 from selfconf.cli.live import add_connection_arguments, connected, discover
@@ -17,6 +18,15 @@ HELP = "show what is out there: every advertised component, its site, and whethe
 EXAMPLE = """  selfconf discover --format json"""
 
 
+class Row(NamedTuple):
+    """A component that is out there."""
+
+    component: IRI
+    types: list[IRI]
+    site: str
+    state: str
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("--format", choices=["table", "json"], default="table", help="default: %(default)s")
@@ -28,20 +38,20 @@ def run(given: argparse.Namespace) -> int:
     with connected(given) as ecology:
         discovery = discover(ecology)
         rows = [
-            {
-                "component": component,
-                "types": sorted(found.advertisement.profile.types - {SC.Component}),
-                "site": found.site,
-                "state": state(ecology, component, found),
-            }
+            Row(
+                component,
+                sorted(found.advertisement.profile.types - {SC.Component}),
+                found.site,
+                state(ecology, component, found),
+            )
             for component, found in sorted(discovery.found.items())
         ]
     if given.format == "json":
-        body = {"ecology": ecology.keys.ecology, "components": rows, "sites": discovery.sites}
+        body = {"ecology": ecology.keys.ecology, "components": [row._asdict() for row in rows], "sites": discovery.sites}
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
     names = words.Names(PREFIXES)
-    cells = [[str(r["component"]), ", ".join(map(names, r["types"])), r["site"], r["state"]] for r in rows]
+    cells = [[str(row.component), ", ".join(names(kind) for kind in row.types), row.site, row.state] for row in rows]
     print(words.table(["component", "types", "site", "state"], cells))
     print(f"{len(rows)} components at {len(discovery.sites)} sites of ecology {ecology.keys.ecology}")
     return 0

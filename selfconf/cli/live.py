@@ -74,4 +74,8 @@ def advertised(discovery: Discovery) -> Mapping[IRI, Advertisement]:
 
 def ask(ecology: Ecology, key: str, payload: bytes = b"", seconds: float = 3.0) -> Replies:
     """Ask and wait for all the replies."""
-    return wait(ecology.bus, lambda done: ecology.bus.ask(key, payload, seconds, done))
+
+    def begin(done: Callable[[Replies], None]) -> None:
+        ecology.bus.ask(key, payload, seconds, done)
+
+    return wait(ecology.bus, begin)

@@ -117,4 +117,4 @@ def _triples(answer: ox.QueryTriples, form: str) -> str:
         return (answer.serialize(format=ox.RdfFormat.JSON_LD) or b"").decode().rstrip()
     if form in ("csv", "tsv"):
         raise AuthorError(f"--format {form} is for SELECT; for this query use turtle or json")
-    return (answer.serialize(format=ox.RdfFormat.TURTLE, prefixes=PREFIXES) or b"").decode().rstrip()
+    return (ox.serialize(answer, format=ox.RdfFormat.TURTLE, prefixes=PREFIXES) or b"").decode().rstrip()

@@ -29,7 +29,7 @@ from selfconf.model.term import IRI
 
 NAME = "run"
 HELP = "configure, deploy, monitor and configure again, until Ctrl-C takes everything down"
-EXAMPLE = """  selfconf run examples/thermostat/heating.ttl --ads examples/thermostat"""
+EXAMPLE = """  selfconf run examples/clock/tell-the-time.ttl --ads examples/clock"""
 SITE_STARTS = 20.0
 """How long, in seconds, a site that `run` starts may take to listen."""
 
@@ -67,6 +67,8 @@ def run(given: argparse.Namespace) -> int:
             bus.run(lambda: bool(ended))
         finally:
             bus.close()
+    if agent.trouble is not None:
+        raise agent.trouble
     refusal = ended[0] if ended else None
     if refusal is not None and given.format == "text":
         complain(words.refusal_text(refusal, names))
@@ -139,6 +141,8 @@ class Teller:
         "released": "       {component} is off",
         "running": "       running",
         "stopped": "       taken down",
+        "cut off": "       cut off from the ecology; waiting to be connected again",
+        "connected": "       connected again; looking at what has become of it",
         "complaint": "       {detail}",
     }
 

@@ -42,8 +42,8 @@ def run(given: argparse.Namespace) -> int:
         print(f"  configurator {status.configurator}, process {status.process} on {status.host}")
         for component in status.components:
             print(f"  {names(component)}")
-        for component, cause in status.lost.items():
-            print(f"  lost: {component} ({cause})")
+        for lost, cause in status.lost.items():
+            print(f"  lost: {lost} ({cause})")
     return 0
 
 

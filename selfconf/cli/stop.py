@@ -41,7 +41,9 @@ def _gone(ecology: Ecology, names: set[str]) -> None:
     bus = ecology.bus
     deadline = bus.now() + TAKING_DOWN
     while names:
-        alive = wait(bus, lambda done: bus.roll_call(ecology.keys.any_configurator_life(), 3.0, done))
+        alive: tuple[str, ...] = wait(
+            bus, lambda done: bus.roll_call(ecology.keys.any_configurator_life(), 3.0, done)
+        )
         names &= {owner_of(key) for key in alive}
         if bus.now() > deadline:
             raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")

@@ -1,0 +1,167 @@
+"""Families of problems, each instance made from its parameters and a seed, the same on every machine."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
+from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.template import Interaction, Parameter, Role, Task, Template
+from selfconf.model.term import IRI
+from selfconf.search.problem import Problem
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A problem and what to call it; made when asked for, as the big ones should not all be in memory at once."""
+
+    family: str
+    name: str
+    make: Callable[[], Problem]
+
+
+def iri(name: object) -> IRI:
+    """A name in the namespace of the benchmarks."""
+    return IRI(f"urn:bench:{name}")
+
+
+def profile(name: object, inputs: Sequence[object] = (), outputs: Sequence[object] = ()) -> Profile:
+    """A component with a port for each signal."""
+    return Profile(
+        iri(name),
+        inputs=tuple(Input(f"i{k}", iri(s)) for k, s in enumerate(inputs)),
+        outputs=tuple(Output(f"o{k}", iri(s)) for k, s in enumerate(outputs)),
+    )
+
+
+def made(
+    roles: Sequence[Sequence[Candidate]],
+    edges: Sequence[tuple[int, int]],
+    variables: tuple[Variable, ...] = (),
+) -> Problem:
+    """A problem with one component per role."""
+    template = Template(
+        iri("template"),
+        tuple(Role(iri(f"role{k}")) for k in range(len(roles))),
+        tuple(Interaction(iri(f"role{a}"), iri(f"role{b}")) for a, b in edges),
+        tuple(Parameter(v.parameter, v.parameter.short, in_shape=True) for v in variables),
+    )
+    return Problem(Task(template), Partition(tuple(map(tuple, roles)), variables))
+
+
+NAVIGATION = ((0, 3), (1, 3), (2, 3), (3, 4))
+
+
+def navigation(candidates: int, seed: int, solvable: bool = True) -> Problem:
+    """The paper's template: sonar, encoder, position, control, drive. Few different ports, as in a real ecology.
+
+    Every third sensor speaks an older dialect, every fourth controller wants a signal that is rare: only the last
+    position sensor has it, so that the first candidates do not just fit. Unsolvable: nobody issues what drives want.
+    """
+    rng = random.Random(seed)
+    dialect = [["scan", "range"], ["odometry", "ticks"], ["pose", "place"]]
+    sensors = [
+        [
+            Candidate(profile(f"{kinds[0]}{k:06}", outputs=[kinds[0] if rng.random() < 0.67 else kinds[1]]))
+            for k in range(candidates)
+        ]
+        for kinds in dialect
+    ]
+    sensors[2][-1] = Candidate(profile(f"pose{candidates:06}", outputs=["map", "pose"]))
+    wanted = ["scan", "odometry", "map"]
+    control = [
+        Candidate(profile(f"control{k:06}", wanted if rng.random() < 0.25 else ["range", "ticks", "map"], ["velocity"]))
+        for k in range(candidates)
+    ]
+    drive = [Candidate(profile(f"drive{k:06}", ["velocity" if solvable else "torque"])) for k in range(candidates)]
+    return made([*sensors, control, drive], NAVIGATION)
+
+
+def graph(kind: str, roles: int, candidates: int, signals: int, seed: int) -> Problem:
+    """A chain, a tree or a random acyclic graph: everybody issues and wants one of a few signals per neighbour."""
+    rng = random.Random(seed)
+    edges = list(_edges(kind, roles, rng))
+    feeders = [[a for a, b in edges if b == role] for role in range(roles)]
+    parts = [
+        [
+            Candidate(
+                profile(
+                    f"c{role:03}.{k:05}",
+                    [f"{source}.{rng.randrange(signals)}" for source in feeders[role]],
+                    [f"{role}.{rng.randrange(signals)}"],
+                )
+            )
+            for k in range(candidates)
+        ]
+        for role in range(roles)
+    ]
+    return made(parts, edges)
+
+
+def _edges(kind: str, roles: int, rng: random.Random) -> Iterator[tuple[int, int]]:
+    for role in range(1, roles):
+        if kind == "chain":
+            yield role - 1, role
+        elif kind == "tree":
+            yield role, (role - 1) // 2
+        else:
+            for source in sorted(rng.sample(range(role), min(role, 2))):
+                yield source, role
+
+
+def distinct(roles: int, components: int) -> Problem:
+    """So many roles that share so many components, and nothing else."""
+    everybody = [Candidate(profile(f"c{k:04}")) for k in range(components)]
+    return made([everybody] * roles, ())
+
+
+def satisfiability(variables: int, ratio: float, seed: int) -> Problem:
+    """Random 3-SAT as one sink: a feeder role per variable with two candidates, an input per clause."""
+    rng = random.Random(seed)
+    gives: dict[tuple[int, bool], list[str]] = {(v, sign): [] for v in range(variables) for sign in (False, True)}
+    clauses = round(variables * ratio)
+    for clause in range(clauses):
+        for variable in rng.sample(range(variables), 3):
+            gives[variable, rng.random() < 0.5].append(f"clause{clause}")
+    feeders = [
+        [Candidate(profile(f"x{v:04}.{int(sign)}", outputs=gives[v, sign])) for sign in (False, True)]
+        for v in range(variables)
+    ]
+    sink = [Candidate(profile("sink", [f"clause{k}" for k in range(clauses)]))]
+    return made([*feeders, sink], [(v, variables) for v in range(variables)])
+
+
+def missing(roles: int, candidates: int, seed: int) -> Problem:
+    """A random graph in which one signal that every candidate of the last role wants is issued by nobody."""
+    problem = graph("graph", roles, candidates, 2, seed)
+    last = [Candidate(profile(f"last{k:05}", ["nothing", f"{roles - 2}.0"])) for k in range(candidates)]
+    template = problem.task.template
+    partition = Partition((*problem.candidates[:-1], tuple(last)))
+    return Problem(Task(template), partition)
+
+
+def fleet(robots: int, candidates: int, seed: int) -> Problem:
+    """The paper's template with the robot left unbound; only the last robot has every part; candidates per role."""
+    rng = random.Random(seed)
+    domain = tuple(iri(f"robot{k:04}") for k in range(robots))
+    variable = Variable(iri("robot"), domain)
+    lacks = [rng.randrange(5) if k < robots - 1 else None for k in range(robots)]
+    ports: list[tuple[list[str], list[str]]] = [
+        ([], ["scan"]),
+        ([], ["odometry"]),
+        ([], ["pose"]),
+        (["scan", "odometry", "pose"], ["velocity"]),
+        (["velocity"], []),
+    ]
+    parts = []
+    for role, (inputs, outputs) in enumerate(ports):
+        owners = [k for k in range(robots) if lacks[k] != role]
+        part = []
+        for k in range(candidates):
+            robot = owners[k % len(owners)]
+            mask = ANY_VALUE if role == 2 and k % 10 == 0 else 1 << robot
+            part.append(Candidate(profile(f"part{role}.{k:06}", inputs, outputs), (mask,)))
+        parts.append(part)
+    return made(parts, NAVIGATION, (variable,))

@@ -1,0 +1,72 @@
+"""For people, editors and compilers' kin: one line for each problem, `file:line:column: error[CODE]:
+message`.
+"""
+
+from __future__ import annotations
+
+from selfconf.model.diagnostic import Diagnostic, Report, Severity
+
+_COLOURS = {Severity.ERROR: "\x1b[1;31m", Severity.WARNING: "\x1b[1;33m"}
+_PLAIN = "\x1b[0m"
+
+
+def render(report: Report) -> str:
+    """The problems in order, a line each; nothing if there are none."""
+    return "".join(f"{line(found)}\n" for found in report.diagnostics)
+
+
+def illustrate(report: Report) -> str:
+    """The same for a terminal: in colour, with the line of the file underlined below each problem."""
+    return "".join(f"{_coloured(found)}\n{_underlined(found)}" for found in report.diagnostics)
+
+
+def line(found: Diagnostic) -> str:
+    """One problem on one line; the hint, if there is one, follows the message."""
+    return f"{_place(found)}: {_kind(found)}: {_words(found)}"
+
+
+def summary(report: Report) -> str:
+    """What became of all the files, in one sentence."""
+    number = len(report.files)
+    files = f"{number} file{'s' * (number != 1)}"
+    if not report.diagnostics:
+        return f"{files} conform{'s' * (number == 1)}."
+    counted = [_counted(report.errors, "error"), _counted(report.warnings, "warning")]
+    concerned = len({found.file for found in report.diagnostics})
+    return f"{' and '.join(filter(None, counted))} in {concerned} of {files}."
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}" if number else ""
+
+
+def _place(found: Diagnostic) -> str:
+    return f"{found.file}:{found.line}:{found.column}"
+
+
+def _kind(found: Diagnostic) -> str:
+    return f"{found.severity.value}[{found.code}]"
+
+
+def _words(found: Diagnostic) -> str:
+    words = f"{found.message} {found.hint}" if found.hint else found.message
+    return _visible(" ".join(words.split()))
+
+
+def _coloured(found: Diagnostic) -> str:
+    return f"{_place(found)}: {_COLOURS[found.severity]}{_kind(found)}{_PLAIN}: {_words(found)}"
+
+
+def _underlined(found: Diagnostic) -> str:
+    if not found.source.strip():
+        return ""
+    number = f"{found.line:>5}"
+    before = "".join("\t" if character == "\t" else " " for character in found.source[: found.column - 1])
+    mark = "^" * max(1, min(found.width, len(found.source) - found.column + 1))
+    below = f"{' ' * len(number)} | {before}{_COLOURS[found.severity]}{mark}{_PLAIN}"
+    return f"{number} | {_visible(found.source)}\n{below}\n"
+
+
+def _visible(words: str) -> str:
+    """Without control characters: a file from somewhere must not steer the terminal that shows it."""
+    return "".join(character if character == "\t" or character.isprintable() else "�" for character in words)

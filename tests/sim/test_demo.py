@@ -1,0 +1,136 @@
+"""The demo as people see it: real processes, real Zenoh sessions, the physics world, pictures at the end."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("pybullet", reason="the demo needs PyBullet")
+pytestmark = pytest.mark.sim
+PATIENCE = 120.0
+
+
+class Demo:
+    """A demo in the background."""
+
+    def __init__(self, folder: Path, *arguments: str) -> None:
+        self.out = folder / "out"
+        self.environment = {**os.environ, "SELFCONF_RUNTIME_DIR": str(folder / "runtime")}
+        command = [sys.executable, "-m", "selfconf", "demo", "--out", str(self.out), *arguments]
+        self.process = subprocess.Popen(
+            command, env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+        self.said: list[str] = []
+
+    def until(self, words: str) -> str:
+        """The first line that holds these words; fails if the demo ends before."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.said.append(line)
+            if words in line:
+                return line
+        raise AssertionError(f"it ended without saying {words!r}:\n{''.join(self.said)}")
+
+    def end(self) -> int:
+        """Let it end by itself; its exit code."""
+        rest, _ = self.process.communicate(timeout=PATIENCE)
+        self.said.append(rest)
+        return self.process.returncode
+
+    @property
+    def ecology(self) -> str:
+        """The name of its ecology."""
+        found = re.search(r"demo-[0-9a-f]+", "".join(self.said))
+        assert found is not None
+        return found.group()
+
+    def selfconf(self, *arguments: str) -> str:
+        """What another command says about the ecology meanwhile."""
+        command = [sys.executable, "-m", "selfconf", *arguments, "--ecology", self.ecology]
+        done = subprocess.run(
+            command, env=self.environment, text=True, capture_output=True, check=True, timeout=PATIENCE
+        )
+        return done.stdout
+
+    def processes(self) -> list[int]:
+        """The processes on this machine that belong to the demo's ecology."""
+        found = []
+        for entry in Path("/proc").iterdir():
+            try:
+                command = (entry / "cmdline").read_bytes().decode() if entry.name.isdigit() else ""
+            except OSError:
+                continue
+            if self.ecology in command:
+                found.append(int(entry.name))
+        return found
+
+    def gone(self) -> bool:
+        """Whether nothing of the demo runs any more, given some time."""
+        deadline = time.monotonic() + 10
+        while self.processes() and time.monotonic() < deadline:
+            self.process.poll()
+        return not self.processes()
+
+
+@pytest.fixture
+def demo(tmp_path: Path) -> Iterator[list[Demo]]:
+    demos: list[Demo] = []
+    yield demos
+    for one in demos:
+        if one.process.poll() is None:
+            one.process.send_signal(signal.SIGINT)
+            one.process.communicate(timeout=PATIENCE)
+
+
+def test_astrid_arrives_and_pictures_are_drawn(tmp_path: Path, demo: list[Demo]) -> None:
+    demo.append(Demo(tmp_path, "--speed", "max", "--seed", "3", "--pictures", "draft"))
+    assert demo[0].end() == 0, demo[0].said
+    result = json.loads((demo[0].out / "result.json").read_text())
+    assert result["outcome"] == "arrived"
+    assert result["error"] < 0.25
+    assert (result["lost"], result["cause"], result["touched"]) == ("person-tracker", "fail", [])
+    assert 0 < result["gap"] < 2
+    drawn = {path.name for path in demo[0].out.iterdir()}
+    assert drawn >= {"run.webp", "run-plan.png", "run-perspective.png", "configuration-1.svg", "tracker-view.png"}
+    assert demo[0].gone()
+
+
+def test_the_living_ecology_can_be_asked_while_the_demo_runs(tmp_path: Path, demo: list[Demo]) -> None:
+    demo.append(Demo(tmp_path, "--speed", "1", "--pictures", "none"))
+    running = demo[0]
+    running.until("configured, running")
+    count = running.selfconf("query", "SELECT (COUNT(?c) AS ?n) { ?c a rob:PositionSensor }", "--format", "csv")
+    assert count.split() == ["n", "2"]
+    deployed = running.selfconf("query", "SELECT ?c { ?x a sc:Configuration ; sc:assignment/sc:component ?c }")
+    assert "home:person-tracker" in deployed
+    assert "running" in running.selfconf("status")
+    running.process.send_signal(signal.SIGINT)
+    assert running.end() != 0
+    assert running.gone()
+
+
+def test_a_dismantling_configurator_arrives_too(tmp_path: Path, demo: list[Demo]) -> None:
+    demo.append(Demo(tmp_path, "--speed", "max", "--policy", "dismantle", "--pictures", "none"))
+    assert demo[0].end() == 0, demo[0].said
+    result = json.loads((demo[0].out / "result.json").read_text())
+    assert result["outcome"] == "arrived"
+    assert len(result["configurations"]) == 2
+
+
+def test_a_speaker_that_fails_is_replaced(tmp_path: Path, demo: list[Demo]) -> None:
+    demo.append(Demo(tmp_path, "--scene", "radio"))
+    assert demo[0].end() == 0, demo[0].said
+    words = "".join(demo[0].said)
+    assert "before: tuner, left-speaker, right-speaker" in words
+    assert re.search(r"after:  tuner, .*shelf-speaker", words)
+    assert len(list(demo[0].out.glob("*.wav"))) == 3
+    assert demo[0].gone()

@@ -1,0 +1,65 @@
+"""The apartment's Turtle: every term is explained, and the rooms make the home of the paper."""
+
+from __future__ import annotations
+
+import pytest
+from rdflib import OWL, RDF, RDFS, SKOS, Graph, URIRef
+
+from sim.apartment import HOME, PEIS_HOME, Apartment
+from sim.route import RouteMap
+
+TERMS = sorted({s for s in Graph().parse(PEIS_HOME).subjects() if str(s).startswith(str(HOME))})
+
+
+@pytest.mark.parametrize("term", TERMS, ids=lambda term: term.split("#")[1])
+def test_a_term_has_a_label_a_definition_and_a_home(plan: Graph, term: URIRef) -> None:
+    assert plan.value(term, RDF.type) is not None
+    assert plan.value(term, RDFS.label) is not None
+    assert plan.value(term, SKOS.definition) is not None
+    assert plan.value(term, RDFS.isDefinedBy) == URIRef("https://w3id.org/selfconf/peis-home")
+
+
+def test_no_term_is_used_without_being_declared(plan: Graph) -> None:
+    terms = {term for triple in plan for term in triple if isinstance(term, URIRef)}
+    used = {term for term in terms if term.startswith(str(HOME))}
+    assert used == set(TERMS)
+
+
+def test_the_file_is_an_ontology_with_a_version(plan: Graph) -> None:
+    ontology = URIRef("https://w3id.org/selfconf/peis-home")
+    assert (ontology, RDF.type, OWL.Ontology) in plan
+    assert plan.value(ontology, OWL.versionInfo) is not None
+
+
+def test_the_apartment_has_about_25_square_metres(apartment: Apartment) -> None:
+    assert sum(room.width * room.depth for room in apartment.rooms) == pytest.approx(25.0, abs=0.5)
+
+
+def test_every_place_that_a_goal_may_name_can_be_reached_from_the_start(apartment: Apartment) -> None:
+    ways = RouteMap(apartment, clearance=0.38)
+    start = apartment.robots[0].start
+    goals = [place.standing for place in apartment.places if place.standing is not None]
+    assert len(goals) >= 3
+    for goal in goals:
+        assert ways.way((start.x, start.y), (goal.x, goal.y))
+
+
+def test_furniture_does_not_stand_in_the_walls(apartment: Apartment) -> None:
+    panels = [panel for wall in apartment.walls for panel in wall.panels()]
+    for piece in apartment.furniture:
+        assert all(panel.distance(piece.x, piece.y) >= min(piece.width, piece.depth) / 2 for panel in panels)
+
+
+def test_there_are_spots_for_a_tuner_and_for_speakers_in_two_rooms(apartment: Apartment) -> None:
+    rooms = {place.room for place in apartment.places if place.name.endswith("speaker-spot")}
+    assert rooms == {"living-room", "bedroom"}
+    assert any(place.name == "tuner-spot" for place in apartment.places)
+
+
+def test_sparql_can_ask_which_furniture_is_in_the_apartment_and_in_which_room(plan: Graph) -> None:
+    rows = plan.query(
+        """SELECT ?piece ?room WHERE {
+             ?piece a/rdfs:subClassOf* home:Furniture ; home:isIn ?room .
+             ?room home:isIn home:peis-home }"""
+    )
+    assert (HOME.sofa, HOME["living-room"]) in {(row[0], row[1]) for row in rows}
