@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from selfconf import library
+from selfconf import entailment, library
 from selfconf.configurator.compose import Strategy
 from selfconf.errors import AuthorError, BindingError
 from selfconf.model.hierarchy import Hierarchy, Reasoning
@@ -126,7 +126,7 @@ def read_hierarchy(given: argparse.Namespace, reasoning: Reasoning | None = None
         for path in given.ontology:
             existing(path)
         return hierarchy([], mode)
-    return hierarchy([parse_file(path) for path in (*library.ontologies(), *given.ontology)], mode)
+    return hierarchy([parse_file(path) for path in (*library.ontologies(), *given.ontology)], mode, entailment.owl_rl)
 
 
 def read_advertisements(paths: Sequence[Path]) -> dict[IRI, Advertisement]:

@@ -7,23 +7,39 @@ value of a component, because owlrl gives values that it takes for equal to subj
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import rdflib
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
-from selfconf.model.term import IRI, Term
-from selfconf.rdf.turtle import Document, Triple, from_rdflib, to_rdflib
+from selfconf.model.term import IRI
+from selfconf.rdf.turtle import Document, Triple, to_rdflib
 from selfconf.rdf.vocabulary import OWL, RDFS
 
 
-def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning) -> Hierarchy:
+HIERARCHY = (RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty)
+Entailment = Callable[[Iterable[Triple]], Iterable[Triple]]
+
+
+def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
+    """The hierarchy in the OWL 2 RL closure of an ontology by owlrl, without the literal subjects that it emits."""
+    from owlrl import DeductiveClosure, OWLRL_Semantics
+
+    graph = to_rdflib(triples)
+    DeductiveClosure(OWLRL_Semantics).expand(graph)
+    for predicate in HIERARCHY:
+        for subject, value in graph.subject_objects(rdflib.URIRef(predicate)):
+            if isinstance(subject, rdflib.URIRef) and isinstance(value, rdflib.URIRef):
+                yield IRI(subject), predicate, IRI(value)
+
+
+def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning, entail: Entailment = owl_rl) -> Hierarchy:
     """The hierarchy that the ontologies state (`subclass`) or entail (`owl-rl`); empty for `syntactic`."""
     if reasoning is Reasoning.SYNTACTIC:
         return NOTHING_ABOVE
     triples: Iterable[Triple] = [triple for document in ontologies for triple in document.triples()]
     if reasoning is Reasoning.OWL_RL:
-        triples = list(owl_rl(triples))
+        triples = list(entail(triples))
     return Hierarchy(
         edges(triples, RDFS.subClassOf, OWL.equivalentClass),
         edges(triples, RDFS.subPropertyOf, OWL.equivalentProperty),
@@ -40,16 +56,3 @@ def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IR
         yield subject, value
         if predicate == same:
             yield value, subject
-
-
-def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
-    """The OWL 2 RL closure of an ontology by owlrl, without the literal subjects that it emits."""
-    from owlrl import DeductiveClosure, OWLRL_Semantics
-
-    graph = to_rdflib(triples)
-    DeductiveClosure(OWLRL_Semantics).expand(graph)
-    for subject, predicate, value in graph:
-        if isinstance(subject, rdflib.Literal) or not isinstance(predicate, rdflib.URIRef):
-            continue
-        left: Term = from_rdflib(subject)
-        yield left, IRI(predicate), from_rdflib(value)  # type: ignore[misc]

@@ -1,0 +1,98 @@
+"""What an ontology entails under OWL 2 RL: computed in a process of its own, with a time limit, and remembered.
+
+The closure of an ontology takes seconds to minutes in Python, and always comes out the same. So it is kept in the
+user's cache folder under a hash of the triples and of the reasoner's version, and a computation that takes too long is
+ended. `python -m selfconf.entailment` is the process: N-Triples in, the entailed hierarchy as N-Triples out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from importlib.metadata import version
+from pathlib import Path
+from typing import TypeVar
+
+from selfconf.errors import AuthorError
+from selfconf.model.term import BlankNode, Term
+from selfconf.rdf import closure, turtle
+from selfconf.rdf.turtle import Triple
+from selfconf.rdf.write import ntriples
+
+T = TypeVar("T", bound=Term)
+
+LIMIT = 120.0
+"""Seconds that a closure may take; `SELFCONF_OWL_RL_SECONDS` overrides it."""
+
+
+def folder() -> Path:
+    """Where closures are kept: `$SELFCONF_CACHE_DIR`, or `selfconf` in the user's cache folder."""
+    given = os.environ.get("SELFCONF_CACHE_DIR")
+    if given:
+        return Path(given)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "selfconf"
+
+
+def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
+    """The hierarchy that an ontology entails. Raises AuthorError if that takes longer than the limit."""
+    lines = ntriples(_relabelled(triples)).splitlines(keepends=True)
+    name = hashlib.blake2s(b"".join((*lines, version("owlrl").encode())), digest_size=16).hexdigest()
+    kept = folder() / "owl-rl" / f"{name}.nt"
+    try:
+        entailed = kept.read_bytes()
+    except OSError:
+        entailed = _computed(b"".join(lines))
+        _keep(kept, entailed)
+    return turtle.parse(entailed, str(kept)).triples()
+
+
+def _relabelled(triples: Iterable[Triple]) -> Iterator[Triple]:
+    """The same triples with blank nodes numbered as they come: parsing gives them other labels each time."""
+    labels: dict[Term, BlankNode] = {}
+
+    def label(term: T) -> T | BlankNode:
+        return labels.setdefault(term, BlankNode(f"_:b{len(labels)}")) if isinstance(term, BlankNode) else term
+
+    for subject, predicate, value in triples:
+        yield label(subject), predicate, label(value)
+
+
+def _computed(lines: bytes) -> bytes:
+    seconds = float(os.environ.get("SELFCONF_OWL_RL_SECONDS", LIMIT))
+    command = [sys.executable, "-m", "selfconf.entailment"]
+    try:
+        done = subprocess.run(command, input=lines, capture_output=True, timeout=seconds, check=True)
+    except subprocess.TimeoutExpired:
+        raise AuthorError(
+            f"the OWL RL closure of the ontologies takes more than {seconds:.0f} s; "
+            "use --reasoning subclass, or give it longer by SELFCONF_OWL_RL_SECONDS"
+        ) from None
+    except subprocess.CalledProcessError as error:
+        last = error.stderr.decode(errors="replace").strip().splitlines()[-1:] or ["no reason given"]
+        raise AuthorError(f"the OWL RL closure of the ontologies failed: {last[0]}") from None
+    return done.stdout
+
+
+def _keep(path: Path, entailed: bytes) -> None:
+    """Write it so that nobody ever reads half of it; a cache that cannot be written is done without."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as temporary:
+            temporary.write(entailed)
+        Path(temporary.name).replace(path)
+    except OSError:
+        return
+
+
+def main() -> None:
+    """Close what comes in on stdin."""
+    document = turtle.parse(sys.stdin.buffer.read(), "stdin")
+    sys.stdout.buffer.write(ntriples(closure.owl_rl(document.triples())))
+
+
+if __name__ == "__main__":
+    main()

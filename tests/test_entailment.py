@@ -1,0 +1,59 @@
+"""The OWL RL closure: right, remembered, and never longer than its limit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf import entailment
+from selfconf.errors import AuthorError
+from selfconf.model.hierarchy import Reasoning
+from selfconf.model.term import IRI
+from selfconf.rdf import turtle
+from selfconf.rdf.closure import hierarchy
+
+ONTOLOGY = """
+@prefix : <urn:x:> .
+@prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+:Tracker rdfs:subClassOf :Sensor . :Sensor owl:equivalentClass :Fuehler .
+:Mobile owl:unionOf ( :Robot :Tracker ) .
+:height rdfs:label "10" . :width rdfs:label "10.0" .
+"""
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SELFCONF_CACHE_DIR", str(tmp_path))
+    return tmp_path
+
+
+def closed() -> set[tuple[str, str]]:
+    found = hierarchy([turtle.parse(ONTOLOGY, "o.ttl")], Reasoning.OWL_RL, entailment.owl_rl)
+    return {("Tracker", above.rpartition(":")[2]) for above in found.superclasses(IRI("urn:x:Tracker"))}
+
+
+def test_a_union_is_above_its_parts_as_owl_says() -> None:
+    assert closed() >= {("Tracker", "Sensor"), ("Tracker", "Fuehler"), ("Tracker", "Mobile")}
+
+
+def test_a_closure_is_computed_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = closed()
+    (kept,) = cache.rglob("*.nt")
+    monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", "0.000001")  # computing it again would fail
+    assert closed() == first
+    assert kept.read_bytes()
+
+
+def test_a_closure_that_takes_too_long_is_ended_with_advice(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", "0.01")
+    with pytest.raises(AuthorError, match="use --reasoning subclass"):
+        closed()
+
+
+def test_a_cache_that_cannot_be_written_is_done_without(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocked = cache / "file"
+    blocked.write_text("not a folder")
+    monkeypatch.setenv("SELFCONF_CACHE_DIR", str(blocked))
+    assert ("Tracker", "Sensor") in closed()
