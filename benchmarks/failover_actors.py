@@ -65,8 +65,9 @@ class Phoenix:
 
     def _obey(self) -> None:
         for _ in sys.stdin:
-            say("fail", time.time())
+            raised = time.time()
             self._component.fail("told to")
+            say("fail", raised)
             self._host.bus.wake_up(self._rise)
 
     def _rise(self) -> None:

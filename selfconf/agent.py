@@ -9,7 +9,7 @@ import socket
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from selfconf.bus.port import Bus, Replies, Request, Sample, Undo, Urgency
@@ -35,16 +35,17 @@ from selfconf.configurator.events import (
     Discovered,
     Event,
     Failed,
+    Reconnected,
     Stopped,
 )
 from selfconf.configurator.machine import Policy, State
 from selfconf.ecology import Discovery, Ecology, Found
-from selfconf.errors import PeerError
+from selfconf.errors import PeerError, SelfconfError
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import component_chunk, life_of, owner_of
+from selfconf.protocol.keys import component_chunk, life_of, owner_of, owner_of_fail
 from selfconf.protocol.messages import (
     Answer,
     Apply,
@@ -64,12 +65,23 @@ log = logging.getLogger(__name__)
 
 CALL = 2.0
 """How long a component may take to answer a call."""
+ATTEMPTS = 3
+"""How often a call is made to a component that answers, but has not obeyed: a message may have been lost."""
 WAKING = 15.0
 """How long a component that a site starts may take to live."""
+CUT_OFF = 0.25
+"""How often a configurator that is cut off looks whether it still is."""
+ASK_AGAIN = 5.0
+"""When a site that lives, but has not answered, counts as news again."""
+SETTLING = 1.0
+"""How long others may take to be connected again after us; as long as components go on without a supervisor."""
 
 
 Composer = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], "Configuration | Refusal"]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
+
+
+Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +93,7 @@ class Account:
     facts: Mapping[str, Any] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Order:
     """What an agent is to do: how to compose, how to mend, and who wants to know."""
 
@@ -89,6 +101,8 @@ class Order:
     compose: Composer
     policy: Policy = Policy.REPAIR
     patient: bool = False
+    standby: Callable[[Configuration], Standby] = lambda configuration: {}
+    """For each component and input of a configuration, the outputs that might be connected to it next."""
     tell: Callable[[Account], None] = lambda account: None
     settle: Callable[[Refusal | None], None] = lambda refusal: None
     """Hears once when the task has ended; with the refusal if that is why."""
@@ -107,17 +121,24 @@ class Agent:
         self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
         self.state = State(policy=order.policy, patient=order.patient)
         self.since = clock()
-        self._fails: dict[IRI, Undo] = {}
+        self.trouble: SelfconfError | None = None
+        """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
+        self._sites: set[str] = set()
+        self._cut_off = False
+        self._watched: set[IRI] = set()
         self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
         self._connections: dict[IRI, frozenset[Connection]] = {}
         """The connections that each component was told to have, so that only new ones are told of."""
         self._events: deque[Event] = deque()
         self._stepping = False
+        self._untold: list[Account] = []
         self._deployed: list[tuple[IRI, Configuration, int, float]] = []
         self._failures: list[tuple[IRI, str, str, float]] = []
         bus.serve(self.keys.configuration(self.name), self._serve_configuration)
         bus.serve(self.keys.configurator_call(self.name), self._serve_call)
         bus.announce(self.supervisor)
+        # One subscription for the FAIL of all: connecting to each as it joins would delay its activation.
+        bus.subscribe(self.keys.any_fail(), self._heard_fail, Urgency.EVENT)
         bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})), Urgency.EVENT)
 
     def start(self) -> None:
@@ -159,7 +180,15 @@ class Agent:
             self._tell("lost", component=event.component, cause=event.cause.value, detail=event.detail)
 
     def _tell(self, act: str, **facts: Any) -> None:
-        self.order.tell(Account(act, self.clock(), facts))
+        """Note an account now, and tell it when there is nothing more urgent to do."""
+        if not self._untold:
+            self.bus.wake_up(self._tell_all)
+        self._untold.append(Account(act, self.clock(), facts))
+
+    def _tell_all(self) -> None:
+        untold, self._untold = self._untold, []
+        for account in untold:
+            self.order.tell(account)
 
     # Effects.
 
@@ -173,9 +202,7 @@ class Agent:
             case Watch():
                 self._watch(effect.component)
             case Unwatch():
-                undo = self._fails.pop(effect.component, None)
-                if undo is not None:
-                    undo()
+                self._watched.discard(effect.component)
             case ApplyTo():
                 self._apply(effect)
             case SetOn():
@@ -187,30 +214,42 @@ class Agent:
                 name = write.configuration_iri(effect.configuration, self.state.epoch)
                 self._deployed.append((name, effect.configuration, self.state.epoch, self.clock()))
                 self._tell("running", configuration=effect.configuration, epoch=self.state.epoch)
+                self._stand_by(effect.configuration)
             case Finish():
                 lost = {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
                 self._tell("refused" if effect.refusal else "stopped", refusal=effect.refusal, lost=lost)
+                self._tell_all()
                 self.order.settle(effect.refusal)
 
     def _discovered(self, discovery: Discovery) -> None:
         self.ecology.discovery = discovery
-        self.ecology.follow(self._life_changed)
+        self._sites.update(discovery.sites)
+        self.ecology.follow(self._life_changed, self._site_changed)
         for complaint in discovery.complaints:
             self._tell("complaint", detail=complaint)
         self._tell("discovered", components=len(discovery.found), sites=discovery.sites, missing=discovery.missing)
+        if discovery.missing:
+            self.bus.later(ASK_AGAIN, lambda: self._step(Appeared({})))
         self._step(Discovered())
 
     def _compose(self, effect: Compose) -> None:
         found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
         began = self.bus.now()
-        outcome = self.order.compose(found, effect.lost, effect.running)
+        try:
+            outcome = self.order.compose(found, effect.lost, effect.running)
+        except SelfconfError as error:
+            self.trouble = error
+            self._step(Stopped())
+            return
+        if isinstance(outcome, Refusal):
+            outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
         seconds = self.bus.now() - began
         self._tell("composed", outcome=outcome, seconds=seconds)
         self._step(Composed(effect.attempt, outcome))
 
     def _watch(self, component: IRI) -> None:
         self._tell("watching", component=component)
-        self._fails[component] = self.bus.subscribe(self.keys.fail(component), self._heard_fail, Urgency.EVENT)
+        self._watched.add(component)
 
     def _heard_fail(self, sample: Sample) -> None:
         try:
@@ -219,7 +258,8 @@ class Agent:
             log.warning("passed over a FAIL on %s: %s", sample.key, error)
             return
         own = sample.key == self.keys.fail(fail.component)
-        if own or fail.cause is Cause.SILENCE:
+        reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
+        if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
 
     def _apply(self, effect: ApplyTo) -> None:
@@ -231,7 +271,7 @@ class Agent:
         if life is None:
             self._later_answer(effect, "it is advertised, but it does not run")
             return
-        inputs = {port: tuple(map(self._promised, wires)) for port, wires in effect.inputs.items()}
+        inputs = self._with_promises(effect.inputs)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         before = self._connections.get(effect.component, frozenset())
         for c in sorted(connections - before):
@@ -240,6 +280,17 @@ class Agent:
         self._tell("activating", component=effect.component)
         self._call(effect.component, Call.APPLY, Apply(effect.epoch, self.supervisor, inputs))
 
+    def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
+        return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}
+
+    def _stand_by(self, configuration: Configuration) -> None:
+        """Tell the inputs what may come next, now that there is time for it; nobody waits for the answers."""
+        wires = machine.wiring(configuration)
+        for component, standby in self.order.standby(configuration).items():
+            inputs, spare = self._with_promises(wires[component]), self._with_promises(standby)
+            message = Apply(self.state.epoch, self.supervisor, inputs, spare)
+            self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
+
     def _promised(self, wire: Wire) -> Wire:
         """The wire with the longest pause that the output's advertisement promises."""
         found = self.ecology.discovery.found.get(wire.component)
@@ -247,10 +298,17 @@ class Agent:
         return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
 
     def _release(self, effect: ReleaseFrom) -> None:
+        """Turn a component off; one that lives but does not answer is told again as long as it is owed that."""
         if self.ecology.life(effect.component) is None:
             off = Answered(effect.component, Call.RELEASE, effect.epoch, None)
             self.bus.wake_up(lambda: self._step(off))
             return
+
+        def again() -> None:
+            if self.state.owed.get(effect.component) == effect.epoch and self.ecology.life(effect.component):
+                self._release(effect)
+
+        self.bus.later(2 * CALL, again)
         self._call(effect.component, Call.RELEASE, Release(effect.epoch, self.supervisor))
 
     def _later_answer(self, effect: ApplyTo, detail: str) -> None:
@@ -262,21 +320,24 @@ class Agent:
         """Have the site start the process; the apply goes out when the component lives."""
         self._tell("waking", component=effect.component, site=found.site)
 
-        def too_late() -> None:
-            if self._waking.pop(effect.component, None) is not None:
-                self._later_answer(effect, f"it was started, but does not live after {WAKING:.0f} s")
+        def give_up(detail: str) -> None:
+            waiting = self._waking.get(effect.component)
+            if waiting is not None and waiting[0] is effect:
+                del self._waking[effect.component]
+                waiting[1]()
+                self._later_answer(effect, detail)
 
         def answered(replies: Replies) -> None:
-            if replies.samples or effect.component not in self._waking:
-                return
-            _, undo = self._waking.pop(effect.component)
-            undo()
-            self._later_answer(effect, replies.errors[0] if replies.errors else "its site does not answer")
+            if not replies.samples:
+                give_up(replies.errors[0] if replies.errors else "its site does not answer")
 
-        self._waking[effect.component] = effect, self.bus.later(WAKING, too_late)
+        too_late = f"it was started, but does not live after {WAKING:.0f} s"
+        self._waking[effect.component] = effect, self.bus.later(WAKING, lambda: give_up(too_late))
         self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component)), CALL, answered)
 
-    def _call(self, component: IRI, call: Call, message: Apply | SetParameters | Release) -> None:
+    def _call(
+        self, component: IRI, call: Call, message: Apply | SetParameters | Release, attempts: int = ATTEMPTS
+    ) -> None:
         def answered(replies: Replies) -> None:
             answer = _answer_in(replies)
             if answer is not None:
@@ -285,11 +346,11 @@ class Agent:
                 detail = replies.errors[0]
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
             else:
-                self._inspect(component, call, message)
+                self._inspect(component, call, message, attempts - 1)
 
         self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
 
-    def _inspect(self, component: IRI, call: Call, message: Apply | SetParameters | Release) -> None:
+    def _inspect(self, component: IRI, call: Call, message: Apply | SetParameters | Release, attempts: int) -> None:
         """A time-out is not an outcome: look at the actual state, then decide."""
 
         def seen(replies: Replies) -> None:
@@ -297,9 +358,13 @@ class Agent:
             obeyed = answer is not None and answer.epoch == message.epoch
             if obeyed and answer is not None and call is not Call.SET and answer.active == (call is Call.APPLY):
                 self._heard_answer(component, call, message.epoch, answer)
-                return
-            self._tell("unreachable", component=component, call=call.value, detail="it does not answer")
-            self._step(Answered(component, call, message.epoch, None))
+            elif attempts and answer is not None:
+                self._call(component, call, message, attempts)
+            else:
+                if replies == Replies():  # nobody is there to answer, whatever we heard of its life
+                    self.ecology.lives.pop(component_chunk(component), None)
+                self._tell("unreachable", component=component, call=call.value, detail="it does not answer")
+                self._step(Answered(component, call, message.epoch, None))
 
         self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
 
@@ -313,24 +378,54 @@ class Agent:
 
     def _life_changed(self, key: str, alive: bool) -> None:
         chunk, life = owner_of(key), life_of(key)
-        if alive:
-            self.ecology.lives[chunk] = life
-            component = self._component(chunk)
-            if component in self._waking:
-                effect, undo = self._waking.pop(component)
-                undo()
-                if effect.epoch == self.state.epoch:
-                    self._apply(effect)
-            self._step(Appeared({component: life} if component is not None else {}))
-            return
-        if not self.bus.linked:
-            log.warning("cut off from the ecology; waiting to be connected again")
-            return
-        if self.ecology.lives.get(chunk) == life:
-            del self.ecology.lives[chunk]
         component = self._component(chunk)
-        if component is not None:
-            self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
+        known = self.ecology.lives.get(chunk) == life
+        if alive and not known:
+            self.ecology.lives[chunk] = life
+            waiting = self._waking.pop(component, None) if component is not None else None
+            if waiting is not None:
+                waiting[1]()
+                if waiting[0].epoch == self.state.epoch:
+                    self._apply(waiting[0])
+            self._step(Appeared({component: life} if component is not None else {}))
+        elif not alive:
+            if known:
+                del self.ecology.lives[chunk]
+            if not self.bus.linked:
+                self._await_link()
+            elif component is not None and (known or self._held_life(component) == life):
+                self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
+
+    def _held_life(self, component: IRI) -> str | None:
+        held = self.state.held.get(component)
+        return held.life if held is not None else None
+
+    def _site_changed(self, key: str, alive: bool) -> None:
+        site = owner_of(key)
+        if alive and site not in self._sites:
+            self._sites.add(site)
+            self._step(Appeared({}))
+        elif not alive:
+            self._sites.discard(site)
+
+    def _await_link(self) -> None:
+        """Who is cut off sees everybody die, and cannot tell; what has become of them is asked afterwards."""
+
+        def look() -> None:
+            if self.bus.linked:
+                self.bus.later(SETTLING, connected)
+            else:
+                self.bus.later(CUT_OFF, look)
+
+        def connected() -> None:
+            self._cut_off = False
+            self._tell("connected")
+            self._step(Reconnected())
+
+        if not self._cut_off:
+            self._cut_off = True
+            self._tell("cut off")
+            look()
 
     def _component(self, chunk: str) -> IRI | None:
         for component in (*self.state.held, *self.ecology.discovery.found):

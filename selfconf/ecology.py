@@ -66,8 +66,8 @@ class Ecology:
         """Whether `lives` is kept up to date."""
         return self._followed
 
-    def follow(self, changed: Callable[[str, bool], None]) -> None:
-        """From now on hear of every component's life, those that are there first; asking twice does nothing.
+    def follow(self, changed: Callable[[str, bool], None], site_changed: Callable[[str, bool], None]) -> None:
+        """From now on hear of the life of every component and site, those there first; asking twice does nothing.
 
         Not before the first discovery has ended: a roll-call that runs while a watch of the same lives begins is
         answered in part only.
@@ -75,6 +75,7 @@ class Ecology:
         if not self._followed:
             self._followed = True
             self.bus.watch(self.keys.any_life(), changed)
+            self.bus.watch(self.keys.any_site_life(), site_changed)
 
     def discover(self, done: Callable[[Discovery], None]) -> None:
         """Ask everything that lives what it advertises; `done` hears once, when all have answered or time is up."""

@@ -22,7 +22,7 @@ from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
-from selfconf.protocol.messages import Page, Wake
+from selfconf.protocol.messages import Cause, Fail, Page, Wake
 from selfconf.rdf import advertisements, turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.write import ntriples
@@ -31,6 +31,8 @@ log = logging.getLogger(__name__)
 
 LOOK = 1.0
 """How often, in seconds, the files are looked at for changes."""
+FOLLOW = 0.2
+"""How often, in seconds, it is looked whether a started process still runs."""
 Complaint = Callable[[str], None]
 
 
@@ -183,6 +185,18 @@ class Site:
         except (OSError, ValueError) as error:
             raise PeerError(f"the command of {component} does not start: {error}") from None
         log.info("started %s: %s", component, command)
+        self._follow(component)
+
+    def _follow(self, component: IRI) -> None:
+        """Tell whoever waits for a component if the process that was started for it has ended."""
+        code = self._processes[component].poll()
+        if code is None:
+            self.bus.later(FOLLOW, lambda: self._follow(component))
+            return
+        detail = f"the process that its site started for it has ended with code {code}"
+        notice = self.bus.publisher(self.keys.fail(component), Urgency.EVENT)
+        notice.put(encode(Fail(component, "", 0, Cause.CRASH, detail)))
+        notice.undeclare()
 
 
 def _path() -> str:

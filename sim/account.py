@@ -88,7 +88,7 @@ class Account:
             self.first_poses.append(fact)
             return f"{time}         the navigator has its first pose from {short(fact['source'])}"
         if event == "progress":
-            return f"{time}         simulated {fact['time']:5.1f} s, {fact['left']:.1f} m to go"
+            return f"{time}         simulated {fact['time']:4.1f} s: Astrid drives, {fact['left']:.1f} m from the goal"
         if event == "end":
             self.end = fact
             return f"{time}         {fact['outcome']} after {fact['time']:.1f} simulated seconds"

@@ -33,6 +33,8 @@ PATIENCE = 0.1
 """Real seconds that a period waits for the drive's answer when it goes as fast as it can."""
 AT_REST = 2.0
 """Simulated seconds without moving after which she has arrived."""
+PROGRESS = 2.0
+"""Simulated seconds between two words on how far she has come."""
 REACH = 0.6
 """Metres from the place's standing point within which she is there."""
 
@@ -55,6 +57,7 @@ class PeisHome:
             host.add(component)
         self.told = Ending(host.bus)
         self._moved, self._still_since, self._asked = False, 0.0, float("-inf")
+        self._next_word = 0.0
         self._began = time.monotonic()
 
     def run(self, seconds: float) -> str:
@@ -62,6 +65,7 @@ class PeisHome:
         while not self.told():
             self._sense()
             self._wait()
+            self._tell_progress()
             self._move()
             if self._arrived():
                 return "arrived"
@@ -103,6 +107,11 @@ class PeisHome:
         for _ in range(round(PERIOD / TIME_STEP)):
             self.world.step()
             self.logbook.touched.update(touch.other for touch in self.world.contacts())
+
+    def _tell_progress(self) -> None:
+        if self._moved and self.world.time >= self._next_word:
+            self._next_word = self.world.time + PROGRESS
+            say("progress", time=self.world.time, left=self.world.pose().distance(self._goal))
 
     def _arrived(self) -> bool:
         before, here = self.logbook.last_pose, self.world.pose()

@@ -8,6 +8,7 @@ from typing import Any
 
 from selfconf.agent import Account, Agent, Order
 from selfconf.bus.memory import Faults, MemoryBus, Network
+from selfconf.bus.port import Bus
 from selfconf.configurator.compose import Composer
 from selfconf.configurator.machine import Phase, Policy
 from selfconf.model.refusal import Refusal
@@ -35,11 +36,16 @@ NAVIGATE = (
     sc:roles ( :sonar :encoder :position :control :drive ) .
 :robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .
 :goal  a sc:Parameter ; sc:name "goal"  ; sh:datatype xsd:string .
-:sonar    a sc:Role ; sh:class rob:SonarArray ;        sc:feeds :control ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
-:encoder  a sc:Role ; sh:class rob:Encoder ;           sc:feeds :control ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
-:position a sc:Role ; sh:class rob:PositionSensor ;    sc:feeds :control ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
-:control  a sc:Role ; sh:class rob:NavigationControl ; sc:feeds :drive ;   sc:sets [ sc:parameterType rob:BehaviouralGoal ; sc:value :goal ] .
-:drive    a sc:Role ; sh:class rob:MotorDrive ;                            sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:sonar a sc:Role ; sh:class rob:SonarArray ; sc:feeds :control ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:encoder a sc:Role ; sh:class rob:Encoder ; sc:feeds :control ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:position a sc:Role ; sh:class rob:PositionSensor ; sc:feeds :control ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:control a sc:Role ; sh:class rob:NavigationControl ; sc:feeds :drive ;
+    sc:sets [ sc:parameterType rob:BehaviouralGoal ; sc:value :goal ] .
+:drive a sc:Role ; sh:class rob:MotorDrive ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
 """
 )
 
@@ -113,15 +119,15 @@ class Lab:
         self.ended: list[Refusal | None] = []
 
     def site(self, name: str, *names: str) -> Site:
-        """A site with those advertisements."""
+        """A site with those advertisements, and with whatever else lies in its folder already."""
         shelf = Shelf([write_advertisements(self.folder / name, *names)], self.complaints.append)
         return Site(self.network.node(), "lab", name, shelf)
 
-    def component(self, name: str) -> Recorder:
+    def component(self, name: str, recorder: Recorder | None = None) -> Recorder:
         """A living component with one of the advertisements."""
         document = turtle.parse(PREFIXES + ADVERTISEMENTS[name], name)
         (advertisement,), _ = advertisements.read(document)
-        recorder = Recorder()
+        recorder = recorder or Recorder()
         life = f"{name}{len(self.bodies)}"
         self.bodies[name] = Body(self.network.node(), self.keys, advertisement.profile, recorder, life)
         self.components[name] = recorder
@@ -144,13 +150,15 @@ class Lab:
         """A configurator that has begun with act 1."""
         document = templates.read(turtle.parse(template, "template.ttl"))
         task = bindings.complete(bindings.bind(document, bound))
+        composer = Composer(task)
         order = Order(
-            task.task.template.iri,
-            Composer(task).compose,
-            policy,
-            patient,
-            self.accounts.append,
-            self.ended.append,
+            template=task.task.template.iri,
+            compose=composer.compose,
+            standby=composer.standby,
+            policy=policy,
+            patient=patient,
+            tell=self.accounts.append,
+            settle=self.ended.append,
         )
         agent = Agent(self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time)
         agent.start()
@@ -166,10 +174,39 @@ class Lab:
 
     def node_of(self, name: str) -> MemoryBus:
         """The node of a component."""
-        bus = self.bodies[name].bus
-        assert isinstance(bus, MemoryBus)
-        return bus
+        return _node(self.bodies[name].bus)
+
+    def crash(self, program: Agent | Site | str) -> None:
+        """End a configurator, a site, or the component of that name, as kill -9 does."""
+        _node(self.bodies[program].bus if isinstance(program, str) else program.bus).close()
+
+    def isolate(self, program: Agent | Site | str) -> None:
+        """Cut a program off from everybody else."""
+        node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
+        for other in self.network.nodes:
+            if other is not node and self.network.reaches(node, other):
+                self.network.cut(node, other)
+
+    def rejoin(self, program: Agent | Site | str) -> None:
+        """Let a program reach everybody again."""
+        node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
+        for other in self.network.nodes:
+            if other is not node and not self.network.reaches(node, other):
+                self.network.mend(node, other)
+
+    def let_pass(self, seconds: float) -> None:
+        """Let simulated time pass."""
+        self.network.run(lambda: False, seconds)
+
+    def active(self) -> set[str]:
+        """The names of the components that act, crashed ones left out."""
+        return {name for name, body in self.bodies.items() if body.active and self.node_of(name).open}
 
     def acts(self, act: str) -> list[Account]:
         """The accounts of one kind."""
         return [account for account in self.accounts if account.act == act]
+
+
+def _node(bus: Bus) -> MemoryBus:
+    assert isinstance(bus, MemoryBus)
+    return bus

@@ -15,11 +15,14 @@ log = logging.getLogger(__name__)
 class Loop:
     """Says one thing after the other, in the thread that calls `poll` or `run`."""
 
+    MOST_AT_ONCE = 1000
+    """How many things a call of `poll` says at most, so that `run` gets to ask whether to go on, whatever comes in."""
+
     def __init__(self) -> None:
         self._waiting: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self._timers: list[tuple[float, int, Callable[[], None]]] = []
-        self._undone: set[int] = set()
+        self._timers: list[tuple[float, int, _Timer]] = []
         self._count = itertools.count()
+        self._ended = False
 
     def now(self) -> float:
         """Seconds of the machine's monotonic clock."""
@@ -31,55 +34,49 @@ class Loop:
 
     def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
         """Call `action` once, after that time; the result takes it back."""
-        number = next(self._count)
-        entry = (self.now() + seconds, number, action)
-        heapq.heappush(self._timers, entry)
-
-        def undo() -> None:
-            if any(timer is entry for timer in self._timers):
-                self._undone.add(number)
-
-        return undo
+        timer = _Timer(action)
+        heapq.heappush(self._timers, (self.now() + seconds, next(self._count), timer))
+        return timer.undo
 
     def poll(self, seconds: float = 0.0) -> None:
         """Say everything there is to say; wait up to that long for something if there is nothing."""
         deadline = self.now() + seconds
-        said = self._say_due()
-        while True:
-            try:
-                if said:
-                    action = self._waiting.get_nowait()
-                else:
-                    action = self._waiting.get(timeout=self._pause(deadline))
-            except queue.Empty:
-                if self._say_due():
-                    said = True
-                    continue
-                if said or self.now() >= deadline:
-                    return
-                continue
+        for said in range(self.MOST_AT_ONCE):
+            action = self._due() or self._next(None if said else deadline)
+            if action is None or self._ended:
+                return
             self._say(action)
-            said = True
 
     def run(self, until: Callable[[], bool]) -> None:
         """Say everything there is to say, until `until` holds; it is asked after each round."""
         while not until():
             self.poll(0.5)
 
-    def _pause(self, deadline: float) -> float:
-        soonest = min(deadline, self._timers[0][0]) if self._timers else deadline
-        return max(0.0, soonest - self.now())
+    def end(self) -> None:
+        """Say nothing any more."""
+        self._ended = True
+        self._timers.clear()
 
-    def _say_due(self) -> bool:
-        said = False
-        while self._timers and self._timers[0][0] <= self.now():
-            _, number, action = heapq.heappop(self._timers)
-            if number in self._undone:
-                self._undone.discard(number)
-                continue
-            self._say(action)
-            said = True
-        return said
+    def _due(self) -> Callable[[], None] | None:
+        """The timer whose time has come; timers go first, or whoever says much would hold them up."""
+        while self._timers and (self._timers[0][2].action is None or self._timers[0][0] <= self.now()):
+            action = heapq.heappop(self._timers)[2].action
+            if action is not None:
+                return action
+        return None
+
+    def _next(self, deadline: float | None) -> Callable[[], None] | None:
+        """The next thing to say, be it a timer; it is waited for until the deadline, if there is one."""
+        while True:
+            wait = 0.0 if deadline is None else deadline - self.now()
+            if self._timers:
+                wait = min(wait, self._timers[0][0] - self.now())
+            try:
+                return self._waiting.get(wait > 0, wait if wait > 0 else None)
+            except queue.Empty:
+                action = self._due()
+                if action is not None or deadline is None or self.now() >= deadline:
+                    return action
 
     def _say(self, action: Callable[[], None]) -> None:
         """The outermost loop: what breaks in a callback is logged, and the loop goes on."""
@@ -87,3 +84,15 @@ class Loop:
             action()
         except Exception:
             log.exception("a callback broke; going on")
+
+
+class _Timer:
+    """Something to be said at a time, until it is taken back."""
+
+    __slots__ = ("action",)
+
+    def __init__(self, action: Callable[[], None]) -> None:
+        self.action: Callable[[], None] | None = action
+
+    def undo(self) -> None:
+        self.action = None

@@ -20,7 +20,7 @@ _T = TypeVar("_T")
 
 
 def intersects(left: str, right: str) -> bool:
-    """Whether two key expressions have a key in common: `*` is one chunk, `**` any number, neither stands for `@...`."""
+    """Whether two key expressions meet: `*` is one chunk, `**` any number of them, neither stands for `@...`."""
     return _intersect(left.split("/"), right.split("/"))
 
 
@@ -72,20 +72,26 @@ class Network:
         self._cut.add(frozenset((left.number, right.number)))
         left.unsee(right)
         right.unsee(left)
+        left.match_all()
 
     def mend(self, left: MemoryBus, right: MemoryBus) -> None:
         """Two nodes reach each other again, and see each other's lives."""
         self._cut.discard(frozenset((left.number, right.number)))
         left.see(right)
         right.see(left)
+        left.match_all()
 
     def reaches(self, left: MemoryBus, right: MemoryBus) -> bool:
         """Whether a message gets through between two nodes."""
         return left.open and right.open and (left is right or frozenset((left.number, right.number)) not in self._cut)
 
+    def loses(self) -> bool:
+        """Whether the next message is lost."""
+        return self._chance.random() < self.faults.loss
+
     def deliver(self, sender: MemoryBus, receiver: MemoryBus, action: Callable[[], None], sure: bool = True) -> bool:
         """Have the receiver hear something after the network's delay; False if it is lost."""
-        if not self.reaches(sender, receiver) or (not sure and self._chance.random() < self.faults.loss):
+        if not self.reaches(sender, receiver) or (not sure and self.loses()):
             return False
         times = 2 if not sure and self._chance.random() < self.faults.doubling else 1
         for _ in range(times):
@@ -180,11 +186,11 @@ class MemoryBus:
     ) -> Callable[[], None]:
         """Hear every sample put on a key from now on."""
         undo = self._declare(self._subscribers, (key, receive))
-        self._match_all()
+        self.match_all()
 
         def undone() -> None:
             undo()
-            self._match_all()
+            self.match_all()
 
         return undone
 
@@ -216,11 +222,12 @@ class MemoryBus:
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
         """Hear of every life under a key, those that are there already first."""
         undo = self._declare(self._watchers, (key, changed))
+        number = max(self._watchers)
         for node in self.network.nodes:
             if self.network.reaches(self, node):
                 for token in list(node._tokens.values()):
                     if intersects(key, token):
-                        self.network.deliver(node, self, _said(changed, token, True))
+                        self.network.deliver(node, self, _said(self, number, changed, token, True))
         return undo
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
@@ -250,7 +257,7 @@ class MemoryBus:
             self._tell_life(key, False)
         self.open = False
         self._tokens.clear()
-        self._match_all()
+        self.match_all()
 
     def see(self, other: MemoryBus) -> None:
         """Hear of the lives of another node."""
@@ -262,15 +269,15 @@ class MemoryBus:
 
     def _hear_lives(self, other: MemoryBus, alive: bool) -> None:
         for token in other._tokens.values():
-            for key, changed in list(self._watchers.values()):
+            for number, (key, changed) in list(self._watchers.items()):
                 if intersects(key, token):
-                    self.network.at(self.network.time, self, _said(changed, token, alive))
+                    self.network.at(self.network.time, self, _said(self, number, changed, token, alive))
 
     def _tell_life(self, token: str, alive: bool) -> None:
         for node in self.network.nodes:
-            for key, changed in list(node._watchers.values()):
+            for number, (key, changed) in list(node._watchers.items()):
                 if intersects(key, token):
-                    self.network.deliver(self, node, _said(changed, token, alive))
+                    self.network.deliver(self, node, _said(node, number, changed, token, alive))
 
     def _declare(self, where: dict[int, _T], what: _T) -> Callable[[], None]:
         number = next(self._count)
@@ -281,7 +288,8 @@ class MemoryBus:
 
         return undo
 
-    def _match_all(self) -> None:
+    def match_all(self) -> None:
+        """Let every publisher of the network notice whether somebody subscribes."""
         for node in self.network.nodes:
             for declared in list(node._publishers.values()):
                 declared.match()
@@ -303,8 +311,14 @@ def _heard(node: MemoryBus, number: int, receive: Callable[[Sample], None], samp
     return hear
 
 
-def _said(changed: Callable[[str, bool], None], token: str, alive: bool) -> Callable[[], None]:
-    return lambda: changed(token, alive)
+def _said(
+    node: MemoryBus, number: int, changed: Callable[[str, bool], None], token: str, alive: bool
+) -> Callable[[], None]:
+    def say() -> None:
+        if number in node._watchers:
+            changed(token, alive)
+
+    return say
 
 
 class _Publisher:
@@ -383,6 +397,8 @@ class _Request:
     def __init__(self, question: _Question, node: MemoryBus, key: str, payload: bytes) -> None:
         self._question, self._node, self.key, self.payload = question, node, key, payload
         self._finished = False
+        self._lost = node.network.loses()
+        """Whether the answer is lost: all of it, and its end, so that it shows as a time-out."""
 
     def reply(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
         """One reply."""
@@ -399,4 +415,5 @@ class _Request:
             self._back(self._question.finished)
 
     def _back(self, action: Callable[[], None]) -> None:
-        self._node.network.deliver(self._node, self._question.bus, action)
+        if not self._lost:
+            self._node.network.deliver(self._node, self._question.bus, action)

@@ -22,7 +22,10 @@ class Urgency(str, Enum):
     BULK = "bulk"
     """Images and the like: dropped first."""
     EVENT = "event"
-    """FAIL and the like: never dropped, ahead of everything else, kept for a subscriber that was cut off."""
+    """FAIL and the like: never dropped, and ahead of everything else, between nodes that reach each other.
+
+    Nothing is kept for a subscriber that was cut off: that shows as a life that ended, which says more.
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,13 +74,22 @@ def _with_port(endpoint: str) -> str:
     host = head.partition("/")[2].strip("[]")
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as probe:
-        probe.bind((host, 0))
+        try:
+            probe.bind((host, 0))
+        except OSError as error:
+            raise NetworkError(f"cannot listen on {endpoint}: {error.strerror or error}") from None
         return f"{head}:{probe.getsockname()[1]}"
 
 
 def client(connect: Sequence[str], seconds: float = 5.0) -> ZenohBus:
-    """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers."""
-    return ZenohBus(_config("client", connect=connect, connect_seconds=seconds))
+    """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers.
+
+    Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one.
+    """
+    try:
+        return ZenohBus(_config("client", connect=connect, connect_seconds=0.0))
+    except NetworkError:
+        return ZenohBus(_config("client", connect=connect, connect_seconds=seconds))
 
 
 def _config(
@@ -102,23 +111,27 @@ def _config(
         "timestamping/enabled": {"router": True, "peer": True, "client": True},
     }
     for key, value in settings.items():
-        config.insert_json5(key, json.dumps(value))
+        try:
+            config.insert_json5(key, json.dumps(value))
+        except zenoh.ZError:
+            raise NetworkError(f"{', '.join(value)} is no endpoint; write it like tcp/127.0.0.1:7447") from None
     return config
 
 
 class _Publisher:
     """A declared publisher with its quality of service."""
 
-    def __init__(self, declared: Any) -> None:
-        self._declared = declared
+    def __init__(self, bus: ZenohBus, declared: Any) -> None:
+        self._bus, self._declared = bus, declared
+        self.undeclare = bus._keep(declared)
 
     def put(self, payload: bytes, attachment: bytes = b"") -> None:
         """Put a sample; with the link down it is lost without an error, as Zenoh has it."""
-        self._declared.put(payload, attachment=attachment)
-
-    def undeclare(self) -> None:
-        """Take the declaration back."""
-        self._declared.undeclare()
+        try:
+            self._declared.put(payload, attachment=attachment)
+        except zenoh.ZError:
+            if self._bus._open:
+                raise
 
 
 class _Request:
@@ -146,6 +159,28 @@ class _Request:
             self._query = None
 
 
+class _Ear:
+    """Says on the loop's thread what a declaration hears, until that is taken back."""
+
+    def __init__(self, bus: ZenohBus, say: Callable[..., None]) -> None:
+        self._bus, self._say = bus, say
+        self._listening = True
+
+    def hear(self, *words: Any) -> None:
+        """Called by Zenoh, on a thread of its own."""
+        self._bus.wake_up(lambda: self._say(*words) if self._listening else None)
+
+    def open(self, declared: Any) -> Callable[[], None]:
+        """Listen to what has been declared; the result takes it back, with what has not been said yet."""
+        undeclare = self._bus._keep(declared)
+
+        def undo() -> None:
+            self._listening = False
+            undeclare()
+
+        return undo
+
+
 class ZenohBus(Loop):
     """A Zenoh session as a bus."""
 
@@ -167,7 +202,7 @@ class ZenohBus(Loop):
     @property
     def linked(self) -> bool:
         """Whether a client has its router; a router stands for itself."""
-        return not self._client or (self._open and bool(self._session.info.routers_zid()))
+        return self._open and (not self._client or bool(self._session.info.routers_zid()))
 
     def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
         """Declare a key to put on."""
@@ -180,41 +215,24 @@ class ZenohBus(Loop):
                 self.wake_up(lambda: hear(matching))
 
             declared.declare_matching_listener(Callback(listen, indirect=False))
-        return _Publisher(declared)
+        return _Publisher(self, declared)
 
     def subscribe(
         self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL
     ) -> Callable[[], None]:
         """Hear every sample put on a key from now on."""
-        active = True
-
-        def listen(sample: zenoh.Sample) -> None:
-            heard = _sample(sample)
-
-            def say() -> None:
-                if active:
-                    receive(heard)
-
-            self.wake_up(say)
-
-        declared = self._session.declare_subscriber(key, Callback(listen, indirect=False))
-        undeclare = self._keep(declared)
-
-        def undo() -> None:
-            nonlocal active
-            active = False
-            undeclare()
-
-        return undo
+        ear = _Ear(self, receive)
+        return ear.open(
+            self._session.declare_subscriber(key, Callback(lambda sample: ear.hear(_sample(sample)), indirect=False))
+        )
 
     def serve(self, key: str, answer: Callable[[_Request], None]) -> Callable[[], None]:
         """Answer questions to a key."""
 
-        def listen(query: zenoh.Query) -> None:
-            request = _Request(query)
-            self.wake_up(lambda: answer(request))
-
-        return self._keep(self._session.declare_queryable(key, Callback(listen, indirect=False)))
+        ear = _Ear(self, answer)
+        return ear.open(
+            self._session.declare_queryable(key, Callback(lambda query: ear.hear(_Request(query)), indirect=False))
+        )
 
     def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
         """Ask everybody who serves a key."""
@@ -251,11 +269,12 @@ class ZenohBus(Loop):
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
         """Hear of every life under a key, those that are there already first."""
 
-        def listen(sample: zenoh.Sample) -> None:
-            name, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
-            self.wake_up(lambda: changed(name, alive))
+        ear = _Ear(self, changed)
 
-        return self._keep(
+        def listen(sample: zenoh.Sample) -> None:
+            ear.hear(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+
+        return ear.open(
             self._session.liveliness().declare_subscriber(key, Callback(listen, indirect=False), history=True)
         )
 
@@ -277,6 +296,7 @@ class ZenohBus(Loop):
         """Leave the network."""
         if self._open:
             self._open = False
+            self.end()
             self._declared.clear()
             self._session.close()
 

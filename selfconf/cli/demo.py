@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import importlib.util
+import os
 import sys
 from pathlib import Path
 
@@ -51,6 +52,8 @@ def run(given: argparse.Namespace) -> int:
         raise InstallationError(
             "PyBullet is missing; it has wheels for Python 3.10 and 3.11 on Linux x86_64: pip install 'selfconf[sim]'"
         )
+    if given.gui and not os.environ.get("DISPLAY"):
+        raise InstallationError("--gui opens a window, and there is no display; leave it out, the pictures need none")
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))
     code: int = importlib.import_module("sim.demo").run(given)

@@ -59,7 +59,15 @@ def run(given: argparse.Namespace) -> int:
     with _ecology(given) as (ecology, endpoints):
         bus = client(endpoints)
         ended: list[Refusal | None] = []
-        order = Order(task.task.template.iri, composer.compose, Policy(given.policy), given.wait, tell, ended.append)
+        order = Order(
+            template=task.task.template.iri,
+            compose=composer.compose,
+            standby=composer.standby,
+            policy=Policy(given.policy),
+            patient=given.wait,
+            tell=tell,
+            settle=ended.append,
+        )
         agent = Agent(bus, ecology, order)
         Ending(bus, agent.stop)
         try:

@@ -15,11 +15,16 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import Partition
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.term import IRI
+from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.templates import TaskDocument
 from selfconf.search import paper, solve
 from selfconf.search.problem import Problem
+
+
+STANDBY = 2
+"""How many candidates per role an input is told of in advance."""
 
 
 class Strategy(str, Enum):
@@ -40,6 +45,7 @@ class Composer:
         self.partitioner = Partitioner(task, hierarchy)
         self._ecology: Mapping[IRI, Advertisement] | None = None
         self._partition = Partition(())
+        self._problem: Problem | None = None
 
     def partition(self, ecology: Mapping[IRI, Advertisement]) -> Partition:
         """F1 ... Fn of an ecology."""
@@ -53,6 +59,7 @@ class Composer:
         """The configuration without the lost components, keeping what runs where that can be; or why there is none."""
         partition = self.partition(ecology)
         problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
+        self._problem = problem
         outcome: Configuration | Refusal | None
         if self.strategy is Strategy.PAPER:
             outcome = paper.search(problem)
@@ -66,3 +73,29 @@ class Composer:
             misses = tuple(miss for miss in self.partitioner.near_misses(present) if not short or miss.role in short)
             outcome = replace(outcome, near_misses=misses)
         return outcome
+
+    def standby(self, configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
+        """For each component and input of a configuration, the outputs of the next candidates that could feed it.
+
+        At most `STANDBY` candidates for each role that feeds; what was lost before the configuration was composed is
+        not among them.
+        """
+        problem, playing = self._problem, set(configuration.components)
+        found: dict[IRI, dict[str, tuple[Wire, ...]]] = {}
+        if problem is None:
+            return found
+        spare = [
+            [candidate for candidate in candidates if candidate.profile.component not in playing][:STANDBY]
+            for candidates in problem.candidates
+        ]
+        for position, candidates in enumerate(problem.candidates):
+            for candidate in candidates:
+                profile = candidate.profile
+                if configuration.role_of(profile.component) != problem.roles[position].iri:
+                    continue
+                for wanted in profile.inputs:
+                    feeders = problem.feeders(position, wanted, spare)
+                    wires = tuple(Wire(source.component, output.name) for source, output in feeders)
+                    if wires:
+                        found.setdefault(profile.component, {})[wanted.name] = wires
+        return found

@@ -71,8 +71,13 @@ class Appeared:
 
 
 @dataclass(frozen=True, slots=True)
+class Reconnected:
+    """We were cut off from the ecology and are not any more: whatever we believe of it may be outdated."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stopped:
     """Somebody wants the configuration to be taken down."""
 
 
-Event = Accepted | Discovered | Composed | Answered | Failed | Appeared | Stopped
+Event = Accepted | Discovered | Composed | Answered | Failed | Appeared | Reconnected | Stopped

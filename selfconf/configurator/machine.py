@@ -12,16 +12,20 @@ touched, so that nothing is left half deployed.
 
 Two policies for a loss. `REPAIR` keeps what runs and changes what must change; `DISMANTLE` first takes everything
 down, as the paper does (section 4.2). Either way the lost component is turned off and its profile dropped, and the
-search runs again.
+search runs again. A search that finds nothing counts only if nothing has appeared since the ecology was asked; else
+it is asked again.
 
-Invariants, each a test: a component is watched before it is applied to; epochs grow; what is *held* is a superset of
-what may be active because of us; in IDLE, REFUSED and STOPPED nothing is held; an answer to an older epoch, or the
-result of an older search, changes nothing.
+A component that was told to turn off is *owed* a release until it answers: one that was cut off meanwhile may still
+act, and is told again when it is seen again.
+
+Invariants, each a test: a component is watched before it is applied to; epochs grow; what is held or owed a release
+is a superset of what may be active because of us; in IDLE, REFUSED and STOPPED nothing is held; an answer to an older
+epoch, or the result of an older search, changes nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
@@ -46,6 +50,7 @@ from selfconf.configurator.events import (
     Discovered,
     Event,
     Failed,
+    Reconnected,
     Stopped,
 )
 from selfconf.model.configuration import Configuration
@@ -53,6 +58,8 @@ from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause, Verdict, Wire
 
+OBEYED = (Verdict.DONE, Verdict.STALE)
+"""The answers after which a component obeys no older call: a busy one may yet, when it is free and the call was late."""
 Inputs = Mapping[str, tuple[Wire, ...]]
 Step = tuple["State", tuple[Effect, ...]]
 
@@ -110,11 +117,15 @@ class State:
     target: Configuration | None = None
     held: Mapping[IRI, Held] = field(default_factory=dict)
     pending: frozenset[tuple[IRI, Call]] = frozenset()
+    owed: Mapping[IRI, int] = field(default_factory=dict)
+    """The components that were told to turn off and have not answered, each with the epoch of the release."""
     watched: frozenset[IRI] = frozenset()
     lost: Mapping[IRI, Loss] = field(default_factory=dict)
     afterwards: Phase = Phase.STOPPED
     """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""
     refusal: Refusal | None = None
+    news: bool = False
+    """Whether something has appeared since the ecology was last asked."""
 
 
 def step(state: State, event: Event) -> Step:
@@ -132,6 +143,8 @@ def step(state: State, event: Event) -> Step:
             return _failed(state, event)
         case Appeared():
             return _appeared(state, event)
+        case Reconnected():
+            return _reconnected(state)
         case Stopped():
             return _stopped(state)
 
@@ -151,7 +164,11 @@ def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]
 def _accepted(state: State, event: Accepted) -> Step:
     if state.phase is not Phase.IDLE:
         return state, ()
-    return replace(state, phase=Phase.DISCOVERING, epoch=event.epoch), (Discover(),)
+    return _discover(replace(state, epoch=event.epoch))
+
+
+def _discover(state: State) -> Step:
+    return replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False), (Discover(),)
 
 
 def _compose(state: State) -> Step:
@@ -168,6 +185,8 @@ def _composed(state: State, event: Composed) -> Step:
         return state, ()
     if isinstance(event.outcome, Configuration):
         return _deploy(replace(state, target=event.outcome, refusal=None))
+    if state.news:
+        return _discover(state)
     return _dismantle(replace(state, refusal=event.outcome), Phase.REFUSED)
 
 
@@ -178,6 +197,7 @@ def _deploy(state: State) -> Step:
     epoch = state.epoch + 1
     wires = wiring(target)
     surplus = [component for component in state.held if component not in wires]
+    unheard = sorted(component for component in state.watched if component not in wires)
     changed = [component for component, inputs in wires.items() if not _as_wanted(state.held.get(component), inputs)]
     held = {component: state.held[component] for component in state.held if component in wires}
     for component in changed:
@@ -188,14 +208,16 @@ def _deploy(state: State) -> Step:
     effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
     effects += [ApplyTo(component, epoch, wires[component]) for component in changed]
     effects += [ReleaseFrom(component, epoch) for component in surplus]
-    effects += [Unwatch(component) for component in surplus if component in state.watched]
+    effects += [Unwatch(component) for component in unheard]
+    owed = {component: since for component, since in state.owed.items() if component not in wires}
     deployed = replace(
         state,
         phase=Phase.DEPLOYING,
         epoch=epoch,
         held=held,
         pending=frozenset((component, Call.APPLY) for component in changed),
-        watched=(state.watched | wires.keys()) - frozenset(surplus),
+        owed={**owed, **dict.fromkeys(surplus, epoch)},
+        watched=frozenset(wires),
     )
     return _then(effects, _proceed(deployed))
 
@@ -215,36 +237,36 @@ def _proceed(state: State) -> Step:
         for setting in target.settings:
             if state.held[setting.component].values.get(setting.name) != setting.value:
                 wanted.setdefault(setting.component, {})[setting.name] = setting.value
-        held = dict(state.held)
-        for component, values in wanted.items():
-            held[component] = replace(held[component], values={**held[component].values, **values})
-        setting_ = replace(
-            state,
-            phase=Phase.SETTING,
-            held=held,
-            pending=frozenset((component, Call.SET) for component in wanted),
-        )
+        pending = frozenset((component, Call.SET) for component in wanted)
         effects = [SetOn(component, state.epoch, values) for component, values in wanted.items()]
-        return _then(effects, _proceed(setting_))
+        return _then(effects, _proceed(replace(state, phase=Phase.SETTING, pending=pending)))
     return replace(state, phase=Phase.RUNNING), (Running(target),)
 
 
 def _answered(state: State, event: Answered) -> Step:
-    waited_for = (event.component, event.call) in state.pending and event.epoch == state.epoch
-    if not waited_for:
-        return state, ()
-    rest = replace(state, pending=state.pending - {(event.component, event.call)})
+    known = state
+    if event.call is Call.RELEASE and event.verdict in OBEYED and event.epoch >= state.owed.get(event.component, 0):
+        known = replace(state, owed={c: since for c, since in state.owed.items() if c != event.component})
+    if (event.component, event.call) not in state.pending or event.epoch != state.epoch:
+        return known, ()
+    rest = replace(known, pending=state.pending - {(event.component, event.call)})
     if state.phase is Phase.DISMANTLING:
         return _released(rest)
     if event.verdict is Verdict.DONE:
-        held = state.held[event.component]
-        fresh = bool(held.life) and held.life != event.life
-        confirmed = replace(held, life=event.life, confirmed=True, values={} if fresh else held.values)
-        return _proceed(replace(rest, held={**state.held, event.component: confirmed}))
-    if event.verdict is Verdict.STALE:
+        held = _confirmed(state, state.held[event.component], event)
+        return _proceed(replace(rest, held={**state.held, event.component: held}))
+    if event.verdict is Verdict.STALE and event.newest > event.epoch:
         return _deploy(replace(rest, epoch=max(state.epoch, event.newest)))
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
     return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life))
+
+
+def _confirmed(state: State, held: Held, event: Answered) -> Held:
+    """What is known of a component that has done as it was told; a new life has nothing set on it."""
+    values = held.values if held.life in ("", event.life) else {}
+    if event.call is Call.SET and state.target is not None:
+        values = {**values, **{s.name: s.value for s in state.target.settings if s.component == event.component}}
+    return replace(held, life=event.life, confirmed=True, values=values)
 
 
 def _failed(state: State, event: Failed) -> Step:
@@ -253,36 +275,42 @@ def _failed(state: State, event: Failed) -> Step:
         return state, ()
     if event.life and held.life and event.life != held.life:
         return state, ()
+    if event.cause is Cause.SILENCE and not held.confirmed:
+        return state, ()  # it may not have begun
     return _lose(state, event.component, Loss(event.cause, event.detail, event.life or held.life))
 
 
 def _lose(state: State, component: IRI, loss: Loss) -> Step:
     """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
+    epoch = state.epoch + 1
     without = replace(
         state,
+        epoch=epoch,
         held={kept: held for kept, held in state.held.items() if kept != component},
-        watched=state.watched - {component},
+        owed={**state.owed, component: epoch},
         lost={**state.lost, component: loss},
     )
-    effects: list[Effect] = [Unwatch(component)]
-    if loss.cause is not Cause.CRASH:
-        effects.append(ReleaseFrom(component, state.epoch))
     if state.policy is Policy.DISMANTLE:
-        return _then(effects, _dismantle(without, Phase.COMPOSING))
+        return _dismantle(without, Phase.COMPOSING)
+    effects = [ReleaseFrom(component, epoch)] if loss.cause is not Cause.CRASH else []
+    if state.phase is Phase.DISCOVERING:
+        return without, tuple(effects)
     return _then(effects, _compose(without))
 
 
 def _dismantle(state: State, afterwards: Phase) -> Step:
-    """Release everything that is held; then comes `afterwards`."""
+    """Release everything that is held, and tell again whoever is owed a release; then comes `afterwards`."""
     epoch = state.epoch + 1
-    effects: list[Effect] = [ReleaseFrom(component, epoch) for component in state.held]
+    owed = dict.fromkeys((*state.owed, *state.held), epoch)
+    effects: list[Effect] = [ReleaseFrom(component, epoch) for component in owed]
     effects += [Unwatch(component) for component in sorted(state.watched)]
     dismantling = replace(
         state,
         phase=Phase.DISMANTLING,
         afterwards=afterwards,
         epoch=epoch,
-        pending=frozenset((component, Call.RELEASE) for component in state.held),
+        pending=frozenset((component, Call.RELEASE) for component in owed),
+        owed=owed,
         watched=frozenset(),
     )
     return _then(effects, _released(dismantling))
@@ -295,32 +323,47 @@ def _released(state: State) -> Step:
     if state.afterwards is Phase.COMPOSING:
         return _compose(empty)
     ended = replace(empty, phase=state.afterwards)
-    if state.afterwards is Phase.REFUSED:
-        return ended, () if state.patient else (Finish(state.refusal),)
-    return ended, (Finish(),)
+    if state.afterwards is Phase.STOPPED:
+        return ended, (Finish(),)
+    if not state.patient:
+        return ended, (Finish(state.refusal),)
+    return _discover(ended) if state.news else (ended, ())
 
 
 def _appeared(state: State, event: Appeared) -> Step:
-    """A component that lives a new life is not the one that was lost."""
+    """A component that lives a new life is not the one that was lost, and one that seemed dead was only cut off."""
+    if state.phase in (Phase.IDLE, Phase.STOPPED):
+        return state, ()
     lost = {
         component: loss
         for component, loss in state.lost.items()
-        if component not in event.lives or event.lives[component] == loss.life
+        if component not in event.lives or (loss.cause is not Cause.CRASH and event.lives[component] == loss.life)
     }
-    known = replace(state, lost=lost)
+    effects = [ReleaseFrom(component, since) for component, since in state.owed.items() if component in event.lives]
+    known = replace(state, lost=lost, news=True)
     if state.phase is Phase.REFUSED and state.patient:
-        return replace(known, phase=Phase.DISCOVERING), (Discover(),)
-    return known, ()
+        return _then(effects, _discover(known))
+    return known, tuple(effects)
+
+
+def _reconnected(state: State) -> Step:
+    """Components may have turned themselves off, or died: ask the ecology again, and apply to everybody anew."""
+    if state.phase in (Phase.IDLE, Phase.DISMANTLING, Phase.STOPPED):
+        return state, ()
+    if state.phase is Phase.REFUSED and not state.patient:
+        return state, ()
+    unsure = {component: Held(held.inputs, held.life) for component, held in state.held.items()}
+    return _discover(replace(state, held=unsure))
 
 
 def _stopped(state: State) -> Step:
-    if state.phase is Phase.STOPPED:
+    if state.phase is Phase.STOPPED or (state.phase is Phase.REFUSED and not state.patient):
         return state, ()
     if state.phase is Phase.DISMANTLING:
         return replace(state, afterwards=Phase.STOPPED), ()
     return _dismantle(state, Phase.STOPPED)
 
 
-def _then(effects: list[Effect] | list[SetOn], following: Step) -> Step:
+def _then(effects: Sequence[Effect], following: Step) -> Step:
     state, more = following
     return state, (*effects, *more)

@@ -204,6 +204,7 @@ _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "life"): _text for kind in (Answer, Fail, Stamp)},
     **{(kind, "detail"): _text for kind in (Answer, Fail)},
     (Apply, "inputs"): _inputs,
+    (Apply, "standby"): _inputs,
     (SetParameters, "values"): _values,
     (Answer, "verdict"): _verdict,
     (Answer, "active"): _truth,

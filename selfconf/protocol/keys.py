@@ -97,6 +97,9 @@ class Keys:
     def fail(self, component: IRI) -> str:
         return self._component(component, "fail")
 
+    def any_fail(self) -> str:
+        return f"selfconf/{self.ecology}/c/*/*/fail"
+
     def call(self, component: IRI, call: str = "*") -> str:
         return self._component(component, f"@ctl/{call}")
 
@@ -136,6 +139,14 @@ def owner_of(key: str) -> str:
     if len(chunks) < 3 or chunks[-2] != "live":
         raise PeerError(f"{key!r} is no liveliness key")
     return chunks[-3]
+
+
+def owner_of_fail(key: str) -> str:
+    """The component chunk of a FAIL key."""
+    chunks = key.split("/")
+    if len(chunks) != 6 or chunks[-1] != "fail":
+        raise PeerError(f"{key!r} is no FAIL key")
+    return chunks[-2]
 
 
 def site_of(key: str) -> str:

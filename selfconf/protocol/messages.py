@@ -38,12 +38,17 @@ class Wire:
 
 @dataclass(frozen=True, slots=True)
 class Apply:
-    """Be active, and let each input follow exactly these outputs."""
+    """Be active, and let each input follow exactly these outputs.
+
+    Outputs that stand by are listened to as well, but what they issue is passed over, until a later call makes them
+    inputs: then no time is lost with connecting.
+    """
 
     epoch: int
     supervisor: str
     """The liveliness key of the configurator that answers for this configuration."""
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    standby: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

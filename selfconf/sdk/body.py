@@ -7,10 +7,11 @@ that its inputs are told to follow, and issues what the component emits.
 connection carries a signal at once; inputs pass over what they have had already.
 
 *Supervision.* A component obeys a configurator only as long as that is alive: when its token has been gone for
-`GRACE` seconds, or this node is cut off for that long, the component turns itself off.
+`GRACE` seconds, or this node is cut off for that long, the component turns itself off. Meanwhile another configurator
+may take it over.
 
 *Silence.* An input that follows an output with a promised rate reports to the configurator when nothing has come for
-`PATIENCE` of the promised periods.
+`PATIENCE` of the promised periods, and again as long as nothing comes.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import logging
 import secrets
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from selfconf.bus.port import Bus, Publisher, Request, Sample, Undo, Urgency
@@ -51,6 +53,10 @@ GRACE = 1.0
 """Seconds after which a component without a living supervisor turns itself off."""
 PATIENCE = 4.0
 """After how many promised periods without a signal an output counts as silent."""
+BEGINNING = 20.0
+"""Seconds that an output may take to issue its first signal: its component may have to be started by its site."""
+JUST_COME = 0.5
+"""Seconds for which the signal of an output that stood by counts once it is heeded."""
 _RAW = b"raw"
 
 
@@ -68,6 +74,10 @@ class Body:
         self._sequence = itertools.count(1)
         self._timers: list[Undo] = []
         self._supervision: list[Undo] = []
+        self._supervisor = ""
+        """Whose life is watched."""
+        self._gone = False
+        """Whether that life was seen to end."""
         self._grace: Undo | None = None
         component._body = self
         self._outputs: dict[str, Publisher] = {
@@ -85,6 +95,8 @@ class Body:
         self._become(*lives.orphaned(self.life))
         self._served()
         self._token()
+        for output in (*self._outputs.values(), self._fail):
+            output.undeclare()
 
     # What the component does.
 
@@ -101,13 +113,24 @@ class Body:
         if isinstance(value, bytes):
             payload, attachment = value, _RAW + encode(stamp)
         else:
-            payload, attachment = json.dumps(value, separators=(",", ":")).encode(), encode(stamp)
+            payload, attachment = self._json(port, value), encode(stamp)
         self._last[port] = payload, attachment
         output.put(payload, attachment)
 
+    def _json(self, port: str, value: Any) -> bytes:
+        """A signal as JSON, which has neither NaN nor infinity: a component in another language could not read them."""
+        try:
+            return json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
+        except (TypeError, ValueError, RecursionError) as error:
+            name = self.profile.component.short
+            raise ProgrammerError(f"JSON cannot say what {name} emits on {port!r}: {error}") from None
+
     def fail(self, reason: str) -> None:
-        """Raise FAIL; may be called from any thread."""
-        self.bus.wake_up(lambda: self._failed(reason))
+        """Raise FAIL, at once; may be called from any thread."""
+        if self.active:
+            self.active = False
+            self._fail.put(encode(Fail(self.profile.component, self.name, self.life.epoch, Cause.FAIL, reason)))
+            self.bus.wake_up(self._fell)
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` at that interval until the component stops or fails."""
@@ -119,12 +142,9 @@ class Body:
 
         self._timers.append(self.bus.later(seconds, tick))
 
-    def _failed(self, reason: str) -> None:
-        epoch = self.life.epoch
-        life, told = lives.fail(self.life)
-        self._become(life, told)
-        if told is Told.TELL:
-            self._fail.put(encode(Fail(self.profile.component, self.name, epoch, Cause.FAIL, reason)))
+    def _fell(self) -> None:
+        """Take on the life of one that has failed."""
+        self._become(*lives.fail(self.life))
 
     def _matched(self, port: str) -> Callable[[bool], None]:
         def matched(matching: bool) -> None:
@@ -161,8 +181,11 @@ class Body:
             unknown = set(message.inputs) - {port.name for port in self.profile.inputs}
             if unknown:
                 return self._said(Verdict.REFUSED, f"it has no input {sorted(unknown)[0]!r}")
-        before = self.life
-        life, verdict, told = lives.obey(self.life, message)
+            if not self.keys.is_configurator_life(message.supervisor):
+                raise PeerError(f"{message.supervisor!r} is no life of a configurator")
+        free = self._gone and not isinstance(message, SetParameters)
+        before = replace(self.life, supervisor=None) if free else self.life
+        life, verdict, told = lives.obey(before, message)
         if verdict is not Verdict.DONE:
             return self._said(verdict)
         trouble = self._become(life, told)
@@ -172,7 +195,7 @@ class Body:
         elif trouble is None and isinstance(message, SetParameters):
             trouble = self._set(message)
         if trouble is not None:
-            if isinstance(message, Apply) and before.phase is Phase.IDLE:
+            if isinstance(message, Apply) and before.phase is not Phase.ACTIVE:
                 self._become(*lives.orphaned(self.life))
             return self._said(Verdict.REFUSED, trouble)
         return self._said(Verdict.DONE)
@@ -204,15 +227,17 @@ class Body:
     def _rest(self) -> None:
         """Be off: no timers, no inputs, no supervisor, and the component's code at rest."""
         self.active = False
-        for undo in (*self._timers, *self._supervision):
+        for undo in self._timers:
             undo()
         for following in self._following.values():
             following.end()
         self._timers.clear()
-        self._supervision.clear()
         self._following.clear()
-        self._keep_calm()
-        self._guarded(self.component.stopped)
+        self._unsupervise()
+        try:
+            self.component.stopped()
+        except Exception:  # it is off all the same
+            log.exception("%s broke when it was stopped", self.profile.component.short)
 
     def _set(self, message: SetParameters) -> str | None:
         known = {parameter.name for parameter in self.profile.parameters}
@@ -234,17 +259,25 @@ class Body:
             action()
         except Exception as error:
             log.exception("%s broke", self.profile.component.short)
-            self._failed(f"{type(error).__name__}: {error}")
+            self.fail(f"{type(error).__name__}: {error}")
 
     # Inputs.
 
     def _follow(self, message: Apply) -> None:
-        wanted = {(port, wire) for port, wires in message.inputs.items() for wire in wires}
-        for key in [key for key in self._following if key not in wanted]:
-            self._following.pop(key).end()
-        for port, wire in wanted:
+        """New connections first, for somebody waits for them; the old ones end when the call has been answered."""
+        wanted = dict.fromkeys((port, wire) for port, wires in message.inputs.items() for wire in wires)
+        spare = dict.fromkeys((port, wire) for port, wires in message.standby.items() for wire in wires)
+        for port, wire in (*wanted, *spare):
             if (port, wire) not in self._following:
                 self._following[port, wire] = _Following(self, port, wire)
+        for key, following in list(self._following.items()):
+            if key in wanted:
+                following.heed()
+                continue
+            following.mute()
+            if key not in spare:
+                del self._following[key]
+                self.bus.wake_up(following.end)
 
     def deliver(self, port: str, signal: Signal) -> None:
         """Hand a signal to the component."""
@@ -259,12 +292,27 @@ class Body:
     # Supervision.
 
     def _supervise(self, supervisor: str) -> None:
-        if self._supervision:
+        if supervisor == self._supervisor:
             return
+        self._unsupervise()
+        self._supervisor = supervisor
         self._worry()
-        self._supervision.append(self.bus.watch(supervisor, self._supervisor_changed))
+        self.bus.wake_up(lambda: self._watch(supervisor))
+
+    def _watch(self, supervisor: str) -> None:
+        """Watch the supervisor's life, unless this component has been turned off or taken over meanwhile."""
+        if self._supervisor == supervisor and not self._supervision:
+            self._supervision.append(self.bus.watch(supervisor, self._supervisor_changed))
+
+    def _unsupervise(self) -> None:
+        for undo in self._supervision:
+            undo()
+        self._supervision.clear()
+        self._supervisor, self._gone = "", False
+        self._keep_calm()
 
     def _supervisor_changed(self, _: str, alive: bool) -> None:
+        self._gone = not alive
         if alive:
             self._keep_calm()
         else:
@@ -286,22 +334,45 @@ class Body:
 
 
 class _Following:
-    """An input following one output: a subscription, and a watch for silence where a rate is promised."""
+    """An input following one output: a subscription, and a watch for silence where a rate is promised.
+
+    While it is muted, because the output only stands by or the connection is about to end, it passes over what it
+    hears, but for the newest signal: that counts if the output is heeded right after.
+    """
 
     def __init__(self, body: Body, port: str, wire: Wire) -> None:
         self._body, self._port, self._wire = body, port, wire
         self._life, self._sequence = "", 0
         self._deadline: Undo | None = None
+        self._muted = True
+        self._newest: tuple[float, Sample] | None = None
         self._undo = body.bus.subscribe(body.keys.output(wire.component, wire.output), self._heard)
-        self._expect()
 
-    def end(self) -> None:
-        """Follow no more."""
-        self._undo()
+    def heed(self) -> None:
+        """Hand on what is heard, from the newest signal on if that has only just come."""
+        if not self._muted:
+            return
+        self._muted = False
+        self._expect()
+        if self._newest is not None and self._body.bus.now() - self._newest[0] < JUST_COME:
+            self._heard(self._newest[1])
+        self._newest = None
+
+    def mute(self) -> None:
+        """Pass over what is heard."""
+        self._muted = True
         if self._deadline is not None:
             self._deadline()
 
+    def end(self) -> None:
+        """Follow no more."""
+        self.mute()
+        self._undo()
+
     def _heard(self, sample: Sample) -> None:
+        if self._muted:
+            self._newest = self._body.bus.now(), sample
+            return
         raw = sample.attachment.startswith(_RAW)
         try:
             stamp = decode(sample.attachment[len(_RAW) :] if raw else sample.attachment, Stamp)
@@ -322,8 +393,14 @@ class _Following:
             return
         if self._deadline is not None:
             self._deadline()
-        seconds = max(PATIENCE * self._wire.period, 0.1)
-        self._deadline = self._body.bus.later(seconds, lambda: self._body.report_silence(self._wire, seconds))
+        usual = max(PATIENCE * self._wire.period, 0.1)
+        seconds = usual if self._sequence else max(usual, BEGINNING)
+
+        def silent() -> None:
+            self._body.report_silence(self._wire, seconds)
+            self._expect()
+
+        self._deadline = self._body.bus.later(seconds, silent)
 
 
 def _python(value: Term) -> Any:
