@@ -70,9 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def check(paths: Iterable[str], ontologies: Iterable[str] = ()) -> Report:
     """Validate files and folders against the shapes that selfconf brings along."""
-    sources: dict[str, Source] = {}
+    sources: dict[Path, Source] = {}
     found: list[Diagnostic] = []
-    unreadable: list[str] = []
     for path in paths:
         names = list(_files(path))
         if not names:
@@ -80,15 +79,14 @@ def check(paths: Iterable[str], ontologies: Iterable[str] = ()) -> Report:
             found.append(Diagnostic(path, 1, 1, "SC-S04", message, Severity.WARNING))
         for name in names:
             try:
-                sources.setdefault(name, _read(name))
+                sources.setdefault(Path(name).resolve(), _read(name))
             except OSError as error:
-                unreadable.append(name)
                 message = f"This file cannot be read: {error.strerror or error}."
                 found.append(Diagnostic(name, 1, 1, "SC-S03", message))
     shapes = [_load(path) for path in library.shapes()]
     result = validate(sources.values(), shapes, [*map(_load, library.ontologies()), *_ontologies(ontologies)])
-    names = sorted({*result.files, *unreadable})
-    return report(names, (*result.diagnostics, *found), (*result.unreadable, *unreadable))
+    concerned = {*result.files, *(problem.file for problem in found if problem.code == "SC-S03")}
+    return report(sorted(concerned), (*result.diagnostics, *found))
 
 
 def explanation(code: str) -> str:

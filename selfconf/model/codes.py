@@ -1,0 +1,482 @@
+"""The catalogue of codes: every kind of problem that `selfconf validate` can report, with an example of
+each.
+
+A code never changes its meaning and is never given away again. The letter tells what the problem is
+about: S the file itself, A advertisements, T templates, K tasks, C configurations, O ontologies, L what
+reads well but is probably not what was meant. The shapes that earn a code are named here; a test holds
+this table and `shapes/` together, and checks every example: the bad one earns its code, the good one
+earns nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from selfconf.model.diagnostic import Severity
+
+PREAMBLE = """\
+@prefix : <https://example.org/home#> .
+@prefix sc: <https://w3id.org/selfconf#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+@prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix sh: <http://www.w3.org/ns/shacl#> .
+@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+@prefix unit: <http://qudt.org/vocab/unit/> .
+"""
+"""What stands at the head of each example."""
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """One kind of problem."""
+
+    code: str
+    title: str
+    """What has to hold, in a sentence."""
+    why: str
+    """Why that is so, or what to do about it."""
+    bad: str = ""
+    good: str = ""
+    shapes: tuple[str, ...] = ()
+    """The local names of the shapes that earn this code."""
+    severity: Severity = Severity.ERROR
+
+
+_TUNER = ":tuner a sc:Component, rob:Tuner"
+_TEMPLATE = ":radio a sc:Template ; sc:roles ( :source :sink ) ."
+_SOURCE = ":source a sc:Role ; sh:class rob:Tuner ; sc:feeds :sink ."
+_SINK = ":sink a sc:Role ; sh:class rob:Speaker ."
+_PAIR = f"{_TEMPLATE}\n{_SOURCE}\n{_SINK}"
+_CAST = (
+    "sc:assignment [ a sc:Assignment ; sc:role :source ; sc:component :tuner ] ,\n"
+    "                  [ a sc:Assignment ; sc:role :sink ; sc:component :speaker ]"
+)
+_LINK = '[ a sc:Connection ; sc:from :tuner ; sc:output "sound" ; sc:to :speaker ; sc:input "audio" ]'
+_PORTS = (
+    ':tuner a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .\n'
+    ':speaker a sc:Component, rob:Speaker ; sc:hasInput [ sc:name "audio" ; sc:signalType rob:Audio ] .'
+)
+_ANSWER = f":now a sc:Configuration ; sc:template :radio ;\n    {_CAST} ;\n    sc:connection {_LINK} ."
+
+CODES: tuple[Code, ...] = (
+    Code(
+        "SC-S01", "A file is Turtle.",
+        "Nothing else can be said of a file that is not Turtle (W3C RDF 1.1 Turtle, section 6).",
+        ":tuner a sc:Component, rob:Tuner ;\n    rdfs:label \"tuner .",
+        ":tuner a sc:Component, rob:Tuner ;\n    rdfs:label \"tuner\" .",
+    ),
+    Code(
+        "SC-S02", "A file is encoded in UTF-8.",
+        "Turtle is always UTF-8; save the file in that encoding.",
+    ),
+    Code(
+        "SC-S03", "A file can be opened.",
+        "The path does not exist, or may not be read.",
+    ),
+    Code(
+        "SC-S04", "There is something to validate.",
+        "A folder holds no Turtle files, or a file speaks of no component, template, task, configuration or ontology.",
+        ":kitchen rdfs:label \"Kitchen\" .", f"{_TUNER} .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-S05", "A file can be judged.",
+        "Brackets in brackets, a thousand deep, or a list of thousands: no one can have meant that.",
+    ),
+    Code(
+        "SC-S06", "A list has an end.",
+        "A list that comes back to one of its own cells has no order and no number of members.",
+        ":radio a sc:Template ; sc:roles _:cell .\n_:cell rdf:first :sink ; rdf:rest _:cell .\n" + _SINK,
+        ":radio a sc:Template ; sc:roles ( :sink ) .\n" + _SINK,
+    ),
+    Code(
+        "SC-A01", "A component has an IRI.",
+        "Other files and other sites speak of it by its IRI; a blank node has no name outside its file.",
+        "[] a sc:Component, rob:Tuner .", f"{_TUNER} .",
+        ("ComponentIri",),
+    ),
+    Code(
+        "SC-A02", "What has ports or parameters is a sc:Component.",
+        "Discovery looks for sc:Component; without the type the advertisement would be overlooked in silence.",
+        ':tuner a rob:Tuner ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        ("ComponentTyped",),
+    ),
+    Code(
+        "SC-A03", "A component says what kind of component it is.",
+        "Roles ask for types. Any IRI will do as a type, also one of your own.",
+        ":tuner a sc:Component .", f"{_TUNER} .",
+        ("ComponentKind", "ComponentTypeIri"),
+    ),
+    Code(
+        "SC-A04", "A component has at most one preference, a finite number.",
+        "The eligible component with the highest preference is tried first; a component without one has 0.",
+        f'{_TUNER} ; sc:preference "high" .', f"{_TUNER} ; sc:preference 10 .",
+        ("PreferenceOnce", "PreferenceNumber"),
+    ),
+    Code(
+        "SC-A05", "A component has at most one grounding, with at most one command.",
+        "The command is the command line with which the component's own site starts its process.",
+        f'{_TUNER} ; sc:grounding "radio-tuner --band fm" .',
+        f'{_TUNER} ; sc:grounding [ a sc:Grounding ; sc:command "radio-tuner --band fm" ] .',
+        ("GroundingOnce", "GroundingNode", "CommandOnce", "CommandText"),
+    ),
+    Code(
+        "SC-A06", "A port or parameter is a node with properties.",
+        "Its name and its type are said of it, so it cannot be a mere name; write [ ... ].",
+        f'{_TUNER} ; sc:hasOutput "sound" .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        ("PortNode", "OperationalNode"),
+    ),
+    Code(
+        "SC-A07", "A port has exactly one name, a plain string.",
+        "Programs use the name, so it has no language and no other datatype.",
+        f"{_TUNER} ; sc:hasOutput [ sc:signalType rob:Audio ] .",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        ("PortNameOnce", "PortNameText"),
+    ),
+    Code(
+        "SC-A08", "A port has exactly one signal type, an IRI.",
+        "Ports are connected by type; one without a type can be connected to nothing.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ] .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        ("PortSignalOnce", "PortSignalIri"),
+    ),
+    Code(
+        "SC-A09", "The inputs of a component have different names, and so have its outputs.",
+        "A connection names its two ports. An input and an output may share a name.",
+        ":mixer a sc:Component, :Mixer ;\n"
+        '    sc:hasInput [ sc:name "in" ; sc:signalType rob:Audio ] , [ sc:name "in" ; sc:signalType rob:Text ] .',
+        ":mixer a sc:Component, :Mixer ;\n"
+        '    sc:hasInput [ sc:name "one" ; sc:signalType rob:Audio ] , [ sc:name "two" ; sc:signalType rob:Text ] .',
+        ("PortNamesDistinct",),
+    ),
+    Code(
+        "SC-A10", "A rate is promised by an output, as a number above zero in hertz.",
+        "When such an output falls silent, the component counts as failed.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:rate 50 ] .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ;\n'
+        "    sc:rate [ sc:value 50 ; sc:unit unit:HZ ] ] .",
+        ("RateOnce", "RateOfInput", "RateNode", "RateValue", "RateUnit"),
+    ),
+    Code(
+        "SC-A11", "An operational parameter has exactly one name, a plain string.",
+        "The name is how the component knows which of its parameters is set.",
+        f"{_TUNER} ; sc:hasParameter [ sc:parameterType rob:Station ] .",
+        f'{_TUNER} ; sc:hasParameter [ sc:name "station" ; sc:parameterType rob:Station ] .',
+        ("OperationalNameOnce", "OperationalNameText"),
+    ),
+    Code(
+        "SC-A12", "An operational parameter has exactly one type, an IRI.",
+        "A role sets a parameter by its type.",
+        f'{_TUNER} ; sc:hasParameter [ sc:name "station" ] .',
+        f'{_TUNER} ; sc:hasParameter [ sc:name "station" ; sc:parameterType rob:Station ] .',
+        ("OperationalTypeOnce", "OperationalTypeIri"),
+    ),
+    Code(
+        "SC-A13", "The operational parameters of a component have different names.",
+        "A setting names the parameter that it sets.",
+        f'{_TUNER} ; sc:hasParameter [ sc:name "a" ; sc:parameterType rob:Station ] ,\n'
+        '    [ sc:name "a" ; sc:parameterType rob:Volume ] .',
+        f'{_TUNER} ; sc:hasParameter [ sc:name "station" ; sc:parameterType rob:Station ] ,\n'
+        '    [ sc:name "volume" ; sc:parameterType rob:Volume ] .',
+        ("OperationalNamesDistinct",),
+    ),
+    Code(
+        "SC-T01", "A template has an IRI and is a sc:Template.",
+        "Tasks and command lines speak of it by its IRI.",
+        f":radio sc:roles ( :source :sink ) .\n{_SOURCE}\n{_SINK}", _PAIR,
+        ("TemplateIri", "TemplateTyped"),
+    ),
+    Code(
+        "SC-T02", "A template has exactly one list of roles, and at least one role in it.",
+        "The order of the list is the order in which roles are cast; without parentheses there is no order.",
+        f":radio a sc:Template ; sc:roles :source, :sink .\n{_SOURCE}\n{_SINK}", _PAIR,
+        ("RolesOnce", "RolesList", "RolesSome", "ListFirst", "ListRest"),
+    ),
+    Code(
+        "SC-T03", "A role has an IRI and is a sc:Role.",
+        "A role is a shape; what is not declared a role asks for nothing, and any component would fit.",
+        f"{_TEMPLATE}\n{_SOURCE}\n:sink sh:class rob:Speaker .", _PAIR,
+        ("RoleIri", "RoleTyped", "Feeder"),
+    ),
+    Code(
+        "SC-T04", "A role stands in the list of roles only once.",
+        "To have a role played by several components, give it sc:minCount and sc:maxCount.",
+        f":radio a sc:Template ; sc:roles ( :source :sink :sink ) .\n{_SOURCE}\n{_SINK}",
+        f":radio a sc:Template ; sc:roles ( :source :sink ) .\n{_SOURCE}\n"
+        ":sink a sc:Role ; sh:class rob:Speaker ; sc:minCount 2 ; sc:maxCount 2 .",
+        ("RolesDistinct",),
+    ),
+    Code(
+        "SC-T05", "A role feeds only roles of its own template.",
+        "Mostly a misspelt role, or one that was left out of sc:roles.",
+        f"{_TEMPLATE}\n:source a sc:Role ; sh:class rob:Tuner ; sc:feeds :snik .\n{_SINK}", _PAIR,
+        ("FedRoleListed",),
+    ),
+    Code(
+        "SC-T06", "An interaction has one role that feeds and one that is fed, and names at most one port of each.",
+        "For more than one pair of ports write more than one interaction.",
+        f"{_PAIR}\n[] a sc:Interaction ; sc:from :source .",
+        f'{_PAIR}\n[] a sc:Interaction ; sc:from :source ; sc:output "sound" ; sc:to :sink ; sc:input "audio" .',
+        (
+            "InteractionTyped", "InteractionFromOnce", "InteractionToOnce", "InteractionRole", "InteractionOutput",
+            "InteractionInput",
+        ),
+    ),
+    Code(
+        "SC-T07", "Both roles of an interaction belong to one template.",
+        "Components of different configurations are not connected.",
+        f"{_PAIR}\n:third a sc:Role ; sh:class rob:Display .\n[] a sc:Interaction ; sc:from :source ; sc:to :third .",
+        f"{_PAIR}\n[] a sc:Interaction ; sc:from :source ; sc:to :sink .",
+        ("InteractionListed",),
+    ),
+    Code(
+        "SC-T08", "A parameter of a template has an IRI and is a sc:Parameter.",
+        "Its IRI stands in the roles where the value will stand.",
+        f"{_PAIR}\n:radio sc:parameter :room .",
+        f'{_PAIR}\n:radio sc:parameter :room .\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n'
+        ':room a sc:Parameter ; sc:name "room" .',
+        ("ParameterIri", "ParameterTyped"),
+    ),
+    Code(
+        "SC-T09", "A parameter of a template has exactly one name, and at most one default, which it allows.",
+        "The name is what is written in --bind NAME=VALUE, so it holds no blank and no =.",
+        f"{_PAIR}\n:radio sc:parameter :room .\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n"
+        ":room a sc:Parameter .",
+        f'{_PAIR}\n:radio sc:parameter :room .\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n'
+        ':room a sc:Parameter ; sc:name "room" .',
+        ("ParameterNameOnce", "ParameterNameText", "ParameterDefaultOnce", "ParameterDefaultFits"),
+    ),
+    Code(
+        "SC-T10", "The parameters of a template have different names.",
+        "Otherwise --bind could not tell them apart.",
+        f"{_PAIR}\n:radio sc:parameter :near, :far .\n"
+        ":sink sh:property [ sh:path rob:place ; sh:in ( :near :far ) ] .\n"
+        ':near a sc:Parameter ; sc:name "room" .\n:far a sc:Parameter ; sc:name "room" .',
+        f"{_PAIR}\n:radio sc:parameter :near, :far .\n"
+        ":sink sh:property [ sh:path rob:place ; sh:in ( :near :far ) ] .\n"
+        ':near a sc:Parameter ; sc:name "near" .\n:far a sc:Parameter ; sc:name "far" .',
+        ("ParameterNamesDistinct",),
+    ),
+    Code(
+        "SC-T11", "What a role sets has exactly one type and exactly one value.",
+        "The component that plays the role has to declare a parameter of that type.",
+        f"{_PAIR}\n:source sc:sets [ sc:parameterType rob:Station ] .",
+        f'{_PAIR}\n:source sc:sets [ sc:parameterType rob:Station ; sc:value "89.3" ] .',
+        ("SettingNode", "SettingTypeOnce", "SettingTypeIri", "SettingValueOnce"),
+    ),
+    Code(
+        "SC-T12", "The counts of a role are whole numbers, the least not above the most.",
+        "Without sc:minCount the least is 1. The number of values of a property is another thing: sh:minCount.",
+        f"{_PAIR}\n:sink sc:minCount 3 ; sc:maxCount 2 .", f"{_PAIR}\n:sink sc:minCount 1 ; sc:maxCount 2 .",
+        ("MinCount", "MaxCount", "CountOrder", "CountDefault"),
+    ),
+    Code(
+        "SC-T13", "The shape of a role is well-formed SHACL.",
+        "A shape that cannot be evaluated would let nobody play the role, or everybody.",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount \"one\" ] .",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 1 ] .",
+    ),
+    Code(
+        "SC-K01", "A task has exactly one template, given by its IRI.",
+        "A task is a template with bindings.",
+        ":music a sc:Task .", ":music a sc:Task ; sc:template :radio .",
+        ("TaskTyped", "TaskTemplateOnce", "TaskTemplateIri"),
+    ),
+    Code(
+        "SC-K02", "A binding has exactly one parameter and exactly one value.",
+        "To leave a parameter free, leave out its binding.",
+        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ] .",
+        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
+        ("BindingNode", "BindingParameterOnce", "BindingParameterIri", "BindingValueOnce"),
+    ),
+    Code(
+        "SC-K03", "A task binds each parameter at most once.",
+        "A parameter has one value for all roles that mention it.",
+        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] ,\n"
+        "    [ sc:parameter :room ; sc:value :bedroom ] .",
+        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
+        ("BindingsDistinct",),
+    ),
+    Code(
+        "SC-K04", "A task binds only parameters that its template has.",
+        "This is checked where task and template stand in one file.",
+        f"{_PAIR}\n:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
+        f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
+        ("BindingKnown",),
+    ),
+    Code(
+        "SC-C01", "A configuration has exactly one template, and at most one task, epoch and time.",
+        "These say which question it answers, and when it was the answer.",
+        ":now a sc:Configuration ; sc:epoch 3 .", ":now a sc:Configuration ; sc:template :radio ; sc:epoch 3 .",
+        (
+            "ConfigurationTyped", "ConfigurationTemplate", "ConfigurationTask", "EpochOnce", "GeneratedOnce",
+            "RevisionIri",
+        ),
+    ),
+    Code(
+        "SC-C02", "An assignment has exactly one role and exactly one component.",
+        "For a role that several components play, write several assignments.",
+        ":now a sc:Configuration ; sc:template :radio ; sc:assignment [ a sc:Assignment ; sc:role :sink ] .",
+        ":now a sc:Configuration ; sc:template :radio ;\n"
+        "    sc:assignment [ a sc:Assignment ; sc:role :sink ; sc:component :speaker ] .",
+        ("AssignmentRole", "AssignmentComponent"),
+    ),
+    Code(
+        "SC-C03", "A connection names its two components and its two ports.",
+        "It leads from exactly one output to exactly one input.",
+        f":now a sc:Configuration ; sc:template :radio ;\n    {_CAST} ;\n"
+        "    sc:connection [ a sc:Connection ; sc:from :tuner ; sc:to :speaker ; sc:input \"audio\" ] .",
+        _ANSWER,
+        ("ConnectionFrom", "ConnectionTo", "ConnectionOutput", "ConnectionInput"),
+    ),
+    Code(
+        "SC-C04", "A setting of a configuration has one component, one name and one value.",
+        "It is what was injected into the component when it was activated.",
+        f":now a sc:Configuration ; sc:template :radio ;\n    {_CAST} ;\n"
+        '    sc:setting [ a sc:Setting ; sc:component :tuner ; sc:name "station" ] .',
+        f":now a sc:Configuration ; sc:template :radio ;\n    {_CAST} ;\n"
+        '    sc:setting [ a sc:Setting ; sc:component :tuner ; sc:name "station" ; sc:value "89.3" ] .',
+        ("SettingComponent", "SettingName", "SettingGiven"),
+    ),
+    Code(
+        "SC-C05", "A component plays only one role of a configuration.",
+        "A configuration casts distinct components.",
+        ":now a sc:Configuration ; sc:template :radio ;\n"
+        "    sc:assignment [ a sc:Assignment ; sc:role :source ; sc:component :speaker ] ,\n"
+        "                  [ a sc:Assignment ; sc:role :sink ; sc:component :speaker ] .",
+        _ANSWER,
+        ("ComponentPlaysOnce",),
+    ),
+    Code(
+        "SC-C06", "Connections and settings concern components that have a role.",
+        "A component without a role is no part of the configuration.",
+        _ANSWER.replace(":speaker ;", ":amplifier ;", 1).replace("sc:to :speaker", "sc:to :amplifier"), _ANSWER,
+        ("ConnectionAssigned", "SettingAssigned"),
+    ),
+    Code(
+        "SC-C07", "The roles of the template, and no others, are played by as many components as they ask for.",
+        "This is checked where configuration and template stand in one file.",
+        f"{_PAIR}\n:now a sc:Configuration ; sc:template :radio ;\n"
+        "    sc:assignment [ a sc:Assignment ; sc:role :source ; sc:component :tuner ] .",
+        f"{_PAIR}\n{_ANSWER}",
+        ("AssignedRoleListed", "RoleCast"),
+    ),
+    Code(
+        "SC-C08", "Every connection follows an interaction of the template.",
+        "This is checked where configuration and template stand in one file.",
+        _PAIR.replace(" ; sc:feeds :sink", "") + "\n" + _ANSWER, f"{_PAIR}\n{_ANSWER}",
+        ("ConnectionWanted",),
+    ),
+    Code(
+        "SC-C09", "The two ports of a connection exist and their types match.",
+        "This is checked where configuration and advertisements stand in one file.",
+        f"{_PORTS}\n{_ANSWER}".replace("rob:Audio", "rob:Text", 1), f"{_PORTS}\n{_ANSWER}",
+        ("ConnectionMatches",),
+    ),
+    Code(
+        "SC-C10", "Every matching pair of ports along an interaction is connected, and every input is fed.",
+        "This is checked where configuration, template and advertisements stand in one file.",
+        f"{_PORTS}\n{_PAIR}\n:now a sc:Configuration ; sc:template :radio ;\n    {_CAST} .",
+        f"{_PORTS}\n{_PAIR}\n{_ANSWER}",
+        ("ConnectionMissing", "InputFed"),
+    ),
+    Code(
+        "SC-C11", "A failure has one component, one cause, and at most one detail and time.",
+        'The causes are "fail", "crash", "silence" and "refused".',
+        '[] a sc:Failure ; sc:component :tuner ; sc:cause "tired" .',
+        '[] a sc:Failure ; sc:component :tuner ; sc:cause "crash" .',
+        ("FailureComponent", "FailureCause", "FailureDetail", "FailureTime"),
+    ),
+    Code(
+        "SC-O01", "A hierarchy is made of classes, or of properties.",
+        "Matching follows rdfs:subClassOf, rdfs:subPropertyOf and the equivalences; a literal leads nowhere.",
+        ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf "rob:Tuner" .',
+        ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf rob:Tuner .',
+        ("SuperclassNode", "EquivalentClassNode", "SuperpropertyIri", "EquivalentPropertyIri"),
+    ),
+    Code(
+        "SC-O02", "A term of an ontology has a label.",
+        "People read labels, also in the report of a refusal.",
+        ":Jukebox a owl:Class ; rdfs:subClassOf rob:Tuner .",
+        ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf rob:Tuner .',
+        ("TermLabelled",),
+        Severity.WARNING,
+    ),
+    Code(
+        "SC-L01", "Terms of sc: and sh: are spelt as they are declared.",
+        "SHACL and RDF pass over a term that does not exist, so that a misspelt constraint asks for nothing.",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCnt 1 ] .",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 1 ] .",
+    ),
+    Code(
+        "SC-L02", "Terms of a loaded ontology are spelt as they are declared.",
+        "A type that nobody declares matches nothing but itself.",
+        ":tuner a sc:Component, rob:Tuneer .", f"{_TUNER} .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L03", "The signal types of ports are declared by a loaded ontology.",
+        "Without a declaration the type matches only itself, and its fields and units are unknown.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType :Sound ] .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L04", "A component is described in one file.",
+        "Two descriptions of one component contradict each other sooner or later; one IRI means one component.",
+    ),
+    Code(
+        "SC-L05", "A prefix keeps its meaning throughout a file.",
+        "Turtle allows to bind it anew, but readers do not expect it.",
+        f"{_TUNER} .\n@prefix : <https://example.org/garden#> .", f"{_TUNER} .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L06", "A namespace is written exactly as it is declared.",
+        "With http for https, or / for #, all its terms are other terms, and the file says nothing to anybody. "
+        "An error for sc: and sh:, a warning for others.",
+        "@prefix old: <http://w3id.org/selfconf#> .\n:tuner a old:Component, rob:Tuner .",
+        f"{_TUNER} .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L07", "Where an ontology wants a thing, there is an IRI.",
+        "The literal and the IRI are different values, and a role that asks for one does not accept the other.",
+        f'{_TUNER} ; rob:place "kitchen" .', f"{_TUNER} ; rob:place :kitchen .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L08", "The IRI of a component does not depend on where its file lies.",
+        "A relative IRI is another one on another site.",
+        "<tuner> a sc:Component, rob:Tuner .", f"{_TUNER} .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L09", "A role stands in the list of roles of a template.",
+        "A role that no template lists is played by nobody.",
+        f"{_PAIR}\n:spare a sc:Role ; sh:class rob:Speaker .", _PAIR,
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L10", "A parameter is mentioned by a role.",
+        "Binding a parameter that stands nowhere changes nothing.",
+        f'{_PAIR}\n:radio sc:parameter :room .\n:room a sc:Parameter ; sc:name "room" .',
+        f'{_PAIR}\n:radio sc:parameter :room .\n:room a sc:Parameter ; sc:name "room" .\n'
+        ":sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L11", "A role asks for nothing impossible.",
+        "If a property shape contradicts itself, nobody can ever play the role.",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 2 ; sh:maxCount 1 ] .",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 1 ; sh:maxCount 2 ] .",
+        severity=Severity.WARNING,
+    ),
+)  # fmt: skip
+
+BY_CODE = {entry.code: entry for entry in CODES}
+BY_SHAPE = {shape: entry for entry in CODES for shape in entry.shapes}

@@ -1,0 +1,248 @@
+"""Turtle with the place of every triple: line and column of its subject, its predicate and its object.
+
+An RDF graph has no lines, and rdflib's parser forgets them; a report that says which file is wrong, but
+not where, leaves the search to its reader. rdflib's Turtle parser hands every term on together with its
+offset in the text, though, so a subclass can write the offsets down as they go by. The methods it
+overrides are private to rdflib: `tests/rdf/test_positions.py` pins them, and checks every position
+against a tokenizer that shares nothing with them.
+
+The parser works depth first. An object list is complete before its statements are made, so each keeps the
+offsets of its own objects until then; each list in parentheses does so with its members, which have a
+cell each.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator, MutableSequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from rdflib import RDF, Graph
+from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
+from rdflib.term import Node
+
+Triple = tuple[Node, Node, Node]
+
+_BLANK = re.compile(r"(?:[ \t\r\n]+|#[^\n]*)*")
+_LONE_RETURN = re.compile(r"\r(?!\n)")
+_TOKEN = re.compile(
+    r"""<[^>\n]*>|(?:"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*')(?:@[\w-]+|\^\^(?:<[^>]*>|[^\s;,.\])]+))?"""
+    r"""|[^\s"'<>\[\](){};,]*[^\s"'<>\[\](){};,.]"""
+)
+
+
+class Place(NamedTuple):
+    """A place in a text; line and column count from one, columns in characters."""
+
+    line: int
+    column: int
+
+
+class Offsets(NamedTuple):
+    """Where the three terms of a triple begin, as offsets into the text."""
+
+    subject: int
+    predicate: int
+    object: int
+
+
+class NotTurtle(ValueError):
+    """A text is not Turtle, with the offset where that shows."""
+
+    def __init__(self, message: str, offset: int) -> None:
+        super().__init__(message)
+        self.message, self.offset = message, offset
+
+
+@dataclass
+class Positions:
+    """The places of the triples and of the prefixes of one text."""
+
+    file: str
+    text: str
+    triples: dict[Triple, Offsets] = field(default_factory=dict)
+    prefixes: list[tuple[str, str, int]] = field(default_factory=list)
+    """Each declaration in order: prefix, namespace, offset."""
+
+    def __post_init__(self) -> None:
+        self._lines = [0, *(match.end() for match in re.finditer("\n", self.text))]
+        self._nodes: dict[Node, int] | None = None
+
+    def place(self, offset: int) -> Place:
+        """Line and column of an offset; the end of the text for one beyond it."""
+        offset = min(max(offset, 0), len(self.text))
+        line = bisect_right(self._lines, offset)
+        return Place(line, offset - self._lines[line - 1] + 1)
+
+    def line(self, number: int) -> str:
+        """The text of a line without its end."""
+        end = self._lines[number] if number < len(self._lines) else len(self.text)
+        return self.text[self._lines[number - 1] : end].rstrip("\r\n")
+
+    def width(self, place: Place) -> int:
+        """How many characters the token at a place takes, at least one: as much as there is to underline."""
+        match = _TOKEN.match(self.line(place.line), place.column - 1)
+        return match.end() - match.start() if match else 1
+
+    def of_subject(self, triple: Triple) -> Place | None:
+        """Where the subject of a triple stands: of a node in brackets the bracket, of a cell its member."""
+        return self.place(self.triples[triple].subject) if triple in self.triples else None
+
+    def of_predicate(self, triple: Triple) -> Place | None:
+        """Where the predicate of a triple stands; for the triples of a list, where their object does."""
+        return self.place(self.triples[triple].predicate) if triple in self.triples else None
+
+    def of_object(self, triple: Triple) -> Place | None:
+        """Where the object of a triple stands; the end of a list stands at its last member."""
+        return self.place(self.triples[triple].object) if triple in self.triples else None
+
+    def of_node(self, node: Node) -> Place | None:
+        """Where a node is first the subject of a statement, or else where it is first spoken of."""
+        offset = self.offset(node)
+        return None if offset is None else self.place(offset)
+
+    def offset(self, node: Node) -> int | None:
+        """The offset that belongs to `of_node`."""
+        if self._nodes is None:
+            self._nodes = {}
+            for (subject, _, _), offsets in self.triples.items():
+                self._nodes[subject] = min(offsets.subject, self._nodes.get(subject, offsets.subject))
+            for (_, _, value), offsets in self.triples.items():
+                self._nodes.setdefault(value, offsets.object)
+        return self._nodes.get(node)
+
+
+def parse(text: str, file: str, base: str = "file:///") -> tuple[Graph, Positions]:
+    """The triples of a Turtle text and their places; raises NotTurtle, or RecursionError for brackets too deep."""
+    text = _LONE_RETURN.sub("\n", text.removeprefix("\ufeff"))  # white space in Turtle, but not to rdflib
+    graph = Graph()
+    positions = Positions(file, text)
+    parser = _Parser(_Sink(graph, positions), base)
+    try:
+        parser.loadBuf(text)
+    except BadSyntax as error:
+        raise NotTurtle(str(error._why), parser.blamed(error)) from None
+    except IndexError:
+        raise NotTurtle("the text ends in the middle of a statement", len(text)) from None
+    except (AssertionError, ValueError) as error:
+        raise NotTurtle(str(error) or "cannot be read", parser.reached) from None
+    for prefix, namespace, _ in positions.prefixes:
+        graph.bind(prefix, namespace, replace=True)
+    return graph, positions
+
+
+class _Sink(RDFSink):
+    """Takes the triples from the parser, and writes down where it says they stand."""
+
+    def __init__(self, graph: Graph, positions: Positions) -> None:
+        super().__init__(graph)
+        self.positions = positions
+        self.at = Offsets(0, 0, 0)
+        self.open: list[list[int]] = []
+        """For each node being read: its own offset and, if it is a list, those of its members so far."""
+
+    def makeStatement(self, quadruple: tuple[Any, Any, Any, Any], why: Any = None) -> None:
+        _, predicate, subject, value = (self.normalise(None, term) for term in quadruple)
+        self.graph.add((subject, predicate, value))
+        self.positions.triples.setdefault((subject, predicate, value), self.at)
+
+    def newList(self, n: list[Any], f: Any) -> Any:
+        opening, *members = self.open[-1]
+        head: Any = RDF.nil
+        for index in reversed(range(len(n))):
+            cell, member = self.newBlankNode(f), members[index]
+            start = member if index else opening
+            following = members[index + 1] if index + 1 < len(n) else member
+            self.at = Offsets(start, member, member)
+            self.makeStatement((f, RDF.first, cell, n[index]))
+            self.at = Offsets(start, following, following)
+            self.makeStatement((f, RDF.rest, cell, head))
+            head = cell
+        return head
+
+
+class _Parser(SinkParser):
+    """rdflib's parser; its methods know where in the text they are, so each notes it before it goes on."""
+
+    _store: _Sink
+
+    def __init__(self, store: _Sink, base: str) -> None:
+        super().__init__(store, baseURI=base, turtle=True)
+        self.reached = 0
+        """How far the reading has come."""
+        self._statement = 0
+        self._latest = 0
+        """Where the term stands that was read last; a property list that follows now speaks of it."""
+        self._subject = 0
+        self._verb = 0
+        self._objects: list[int] = []
+        self._made: Iterator[Offsets] = iter(())
+
+    def blamed(self, error: BadSyntax) -> int:
+        """Where an error shows; rdflib says -1 when it ran out of text, or did not find the end of an IRI."""
+        if error._i >= 0:
+            return int(error._i)
+        return len(self._store.positions.text) if str(error._why).startswith("EOF") else self.reached
+
+    def _start(self, argstr: str, i: int) -> int:
+        blank = _BLANK.match(argstr, i)
+        self.reached = blank.end() if blank else i
+        return self.reached
+
+    def directiveOrStatement(self, argstr: str, h: int) -> int:
+        self._statement = self._start(argstr, h)
+        return super().directiveOrStatement(argstr, h)
+
+    def bind(self, qn: str, uri: bytes) -> None:
+        super().bind(qn, uri)
+        self._store.positions.prefixes.append((qn, str(self._bindings[qn]), self._statement))
+
+    def node(self, argstr: str, i: int, res: MutableSequence[Any], subjectAlready: Any = None) -> int:
+        start = self._latest = self._start(argstr, i)
+        self._store.open.append([start])
+        try:
+            return super().node(argstr, i, res, subjectAlready)
+        finally:
+            self._store.open.pop()
+
+    def item(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
+        self._store.open[-1].append(self._start(argstr, i))
+        return self.path(argstr, i, res)
+
+    def subject(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
+        return self.path(argstr, i, res)  # not by way of `item`, which is left to the members of lists
+
+    def prop(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
+        return self.path(argstr, i, res)
+
+    def object(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
+        start = self._start(argstr, i)
+        end = super().object(argstr, i, res)
+        self._latest = start
+        self._objects.append(start)
+        return end
+
+    def verb(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
+        self._verb = self._start(argstr, i)
+        return super().verb(argstr, i, res)
+
+    def property_list(self, argstr: str, i: int, subj: Any) -> int:
+        outer, self._subject = self._subject, self._latest
+        try:
+            return super().property_list(argstr, i, subj)
+        finally:
+            self._subject = outer
+
+    def objectList(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
+        outer, verb, self._objects = self._objects, self._verb, []
+        try:
+            return super().objectList(argstr, i, res)
+        finally:
+            self._made = iter([Offsets(self._subject, verb, start) for start in self._objects])
+            self._objects = outer
+
+    def makeStatement(self, quadruple: Any) -> None:
+        self._store.at = next(self._made)
+        super().makeStatement(quadruple)

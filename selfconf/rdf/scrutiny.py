@@ -1,0 +1,50 @@
+"""The close look at one file: everything that can be found in it, each with its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+from rdflib import Graph
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.familiar import Familiar
+from selfconf.rdf.findings import at
+from selfconf.rdf.judging import Shapes, judge
+from selfconf.rdf.lints import File, lint
+from selfconf.rdf.positions import NotTurtle, Positions, parse
+from selfconf.rdf.wellformed import endless_lists, malformed_roles
+
+
+@lru_cache(maxsize=2)
+def shapes_of(*texts: str) -> Shapes:
+    """The shapes in some Turtle texts, read once."""
+    graph = Graph()
+    for text in texts:
+        graph.parse(data=text, format="turtle")
+    return Shapes.of(graph)
+
+
+@dataclass(frozen=True, slots=True)
+class Scrutiny:
+    """What a close look needs, for any number of files."""
+
+    shapes: Shapes
+    familiar: Familiar
+
+    def of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
+        """The problems of one file, in no particular order."""
+        try:
+            graph, positions = parse(text, name, base)
+            violations = list(endless_lists(graph, positions))
+            if not violations:  # pySHACL does not come back from a list without an end
+                violations = [*judge(graph, positions, self.shapes), *malformed_roles(graph, positions)]
+            file = File(graph, positions, self.familiar, elsewhere)
+            return violations + lint(file, conforms=not violations)
+        except NotTurtle as error:
+            message = f"This is not Turtle 1.1: {error.message.rstrip('.')}."
+            return [at(Positions(name, text), error.offset, "SC-S01", message)]
+        except RecursionError:
+            message = "This file nests too deeply, or holds too long a list, to be judged."
+            return [at(Positions(name, text), 0, "SC-S05", message)]

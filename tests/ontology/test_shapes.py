@@ -1,0 +1,147 @@
+"""The shapes: each constraint has a sentence, a code, and a bad file that breaks it; what the manual shows conforms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rdflib import RDF, SH, Graph, Namespace, URIRef
+from rdflib.term import Node
+
+from selfconf import library
+from selfconf.model.codes import BY_SHAPE
+from selfconf.rdf.judging import violations
+from selfconf.rdf.wellformed import shape_of_shapes
+
+SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
+BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.ttl"))
+ALL = sum((Graph().parse(path) for path in library.shapes()), Graph())
+
+COMPONENTS = {
+    SH.minCount: SH.MinCountConstraintComponent,
+    SH.maxCount: SH.MaxCountConstraintComponent,
+    SH.datatype: SH.DatatypeConstraintComponent,
+    SH["class"]: SH.ClassConstraintComponent,
+    SH.nodeKind: SH.NodeKindConstraintComponent,
+    SH.minLength: SH.MinLengthConstraintComponent,
+    SH.pattern: SH.PatternConstraintComponent,
+    SH.minInclusive: SH.MinInclusiveConstraintComponent,
+    SH.minExclusive: SH.MinExclusiveConstraintComponent,
+    SH.maxExclusive: SH.MaxExclusiveConstraintComponent,
+    SH.lessThanOrEquals: SH.LessThanOrEqualsConstraintComponent,
+    SH["in"]: SH.InConstraintComponent,
+    SH["not"]: SH.NotConstraintComponent,
+    SH["or"]: SH.OrConstraintComponent,
+    SH.sparql: SH.SPARQLConstraintComponent,
+}
+STRUCTURE = {SH.property, SH.path, SH.message, SH.severity, SH.declare, SH.targetClass, SH.targetSubjectsOf,
+             SH.targetObjectsOf, RDF.type}  # fmt: skip
+
+
+def constraints() -> set[tuple[Node, Node]]:
+    """Every constraint of every shape with a name, as shape and constraint component."""
+    found: set[tuple[Node, Node]] = set()
+    for shape in ALL.subjects(SH.message):
+        for predicate in set(ALL.predicates(shape)):
+            if predicate not in STRUCTURE:
+                found.add((shape, COMPONENTS[predicate]))
+    return found
+
+
+def broken(path: Path) -> set[tuple[Node, Node]]:
+    """The constraints that a file breaks."""
+    graph = Graph()
+    try:
+        graph.parse(path)
+    except SyntaxError:
+        return set()
+    return {(found.shape, found.constraint) for found in violations(graph, ALL) if found.constraint is not None}
+
+
+def test_every_constraint_is_broken_by_a_bad_file() -> None:
+    missing = constraints() - set().union(*map(broken, BAD))
+    assert not {(shape.removeprefix(SHAPES), component.removeprefix(SH)) for shape, component in missing}
+
+
+def test_every_constraint_belongs_to_a_named_shape_with_one_sentence() -> None:
+    for shape in set(ALL.subjects(RDF.type, SH.NodeShape)) | set(ALL.subjects(RDF.type, SH.PropertyShape)):
+        assert isinstance(shape, URIRef)
+        assert shape.startswith(SHAPES)
+        if any(predicate in COMPONENTS for predicate in ALL.predicates(shape)):
+            (message,) = ALL.objects(shape, SH.message)
+            assert str(message).endswith(".")
+
+
+def test_the_catalogue_and_the_shapes_name_each_other() -> None:
+    named = {str(shape).removeprefix(SHAPES) for shape in ALL.subjects(SH.message)}
+    assert named == set(BY_SHAPE)
+
+
+def test_the_shapes_are_well_formed() -> None:
+    assert not list(violations(ALL, shape_of_shapes()))
+
+
+@pytest.mark.parametrize("path", library.shapes(), ids=lambda path: path.stem)
+def test_each_file_of_shapes_can_be_used_alone(path: Path) -> None:
+    alone = Graph().parse(path)
+    for query in alone.objects(None, SH.prefixes):
+        assert list(alone.objects(query, SH.declare))
+    for shape in alone.objects(None, SH.property):
+        assert (shape, SH.path, None) in alone
+
+
+ADVERTISEMENTS = """\
+@prefix sc:  <https://w3id.org/selfconf#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix :    <https://example.org/peis-home#> .
+
+:astrid-drive a sc:Component, rob:MotorDrive ;
+    sc:hasInput [ sc:name "velocity" ; sc:signalType rob:Velocity2D ] ;
+    rob:support :Astrid .
+
+:thinking-cap a sc:Component, rob:NavigationControl ;
+    sc:hasInput  [ sc:name "sonar" ;    sc:signalType rob:RangeScan ] ,
+                 [ sc:name "position" ; sc:signalType rob:PlanarPose2D ] ,
+                 [ sc:name "localize" ; sc:signalType rob:Odometry2D ] ;
+    sc:hasOutput [ sc:name "set.velocity" ; sc:signalType rob:Velocity2D ] ;
+    sc:hasParameter [ sc:name "goal" ; sc:parameterType rob:BehaviouralGoal ] .
+
+:person-tracker a sc:Component, rob:PositionSensor ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType rob:PlanarPose2D ] ;
+    rob:place :living-room ;
+    sc:preference 10 .                          # tried before absolute odometry, which has none (that is 0)
+
+:bare a sc:Component, <https://example.org/unheard-of#Thing> .
+"""
+TEMPLATE = """\
+@prefix sc:  <https://w3id.org/selfconf#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+@prefix sh:  <http://www.w3.org/ns/shacl#> .
+@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+@prefix :    <https://example.org/peis-home#> .
+
+:navigate a sc:Template ;
+    rdfs:label "Drive a robot to a place"@en ;
+    sc:parameter :robot, :goal ;
+    sc:roles ( :sonar :encoder :position :control :drive ) .
+
+:robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .
+:goal  a sc:Parameter ; sc:name "goal"  ; sh:datatype xsd:string .
+
+:sonar a sc:Role ; sh:class rob:SonarArray ; sc:feeds :control ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:encoder a sc:Role ; sh:class rob:Encoder ; sc:feeds :control ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:position a sc:Role ; sh:class rob:PositionSensor ; sc:feeds :control ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+:control a sc:Role ; sh:class rob:NavigationControl ; sc:feeds :drive ;
+    sc:sets [ sc:parameterType rob:BehaviouralGoal ; sc:value :goal ] .
+:drive a sc:Role ; sh:class rob:MotorDrive ;
+    sh:property [ sh:path rob:support ; sh:in ( :robot ) ] .
+"""
+
+
+@pytest.mark.parametrize("text", [ADVERTISEMENTS, TEMPLATE, *(path.read_text() for path in library.ontologies())])
+def test_what_is_right_conforms(text: str) -> None:
+    assert not list(violations(Graph().parse(data=text, format="turtle"), ALL))

@@ -1,0 +1,136 @@
+"""Lints: what reads well and is probably not what was meant."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf import library
+from selfconf.model.codes import PREAMBLE
+from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.rdf.validation import Source, validate
+
+HEAD = PREAMBLE.count("\n")
+SHAPES = [Source(path.name, path.read_bytes()) for path in library.shapes()]
+ONTOLOGIES = [Source(path.name, path.read_bytes()) for path in library.ontologies()]
+TEMPLATE = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class rob:Lamp .\n"
+
+
+def lints(text: str, head: str = PREAMBLE) -> list[Diagnostic]:
+    return list(validate([Source("a.ttl", (head + text).encode())], SHAPES, ONTOLOGIES).diagnostics)
+
+
+def only(text: str, head: str = PREAMBLE) -> Diagnostic:
+    (found,) = lints(text, head)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        (":a a sc:Compnent, sc:Component, rob:Tuner .", "sc:Component"),
+        (":a a sc:Component, rob:Tuner ; sc:preferance 1 .", "sc:preference"),
+        (":a a sc:Component, rob:Tuner ; sc:Preference 1 .", "sc:preference"),
+        (TEMPLATE + ":r sh:property [ sh:path rob:place ; sh:minCnt 1 ] .", "sh:minCount"),
+        (TEMPLATE + ":r sh:targetClas rob:Lamp .", "sh:targetClass"),
+        (TEMPLATE + ":r sh:nodeKind sh:IR .", "sh:IRI"),
+        (TEMPLATE + ":r sc:feedss :r .", "sc:feeds"),
+    ],
+)
+def test_a_misspelt_term_of_selfconf_or_shacl_is_an_error(text: str, meant: str) -> None:
+    found = [each for each in lints(text) if each.code == "SC-L01"]
+    assert [each.hint for each in found] == [f"Did you mean {meant}?"]
+    assert found[0].severity is Severity.ERROR
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        (":a a sc:Component, rob:Tunr .", "rob:Tuner"),
+        (":a a sc:Component, rob:Tuner ; rob:plcae :x .", "rob:place"),
+        (":a a sc:Component, rob:Tuner ; rdfs:lable 'x' .", "rdfs:label"),
+        (":a a sc:Component, rob:Tuner ; :weight '5'^^xsd:integr .", "xsd:integer"),
+        (TEMPLATE.replace("rob:Lamp", "rob:Lmap"), "rob:Lamp"),
+        (TEMPLATE + ":r sh:property [ sh:path rob:palce ; sh:minCount 1 ] .", "rob:place"),
+    ],
+)
+def test_a_misspelt_term_of_a_loaded_ontology_is_a_warning(text: str, meant: str) -> None:
+    found = only(text)
+    assert (found.code, found.severity, found.hint) == ("SC-L02", Severity.WARNING, f"Did you mean {meant}?")
+
+
+def test_every_occurrence_of_a_misspelt_term_is_reported() -> None:
+    assert [each.column for each in lints(":a a sc:Component, rob:Tuner ; sc:nme 1 ; sc:nme 2 .")] == [32, 43]
+
+
+def test_terms_of_an_ontology_that_is_not_loaded_are_left_alone() -> None:
+    assert not lints(":a a sc:Component, <https://example.org/x#Tunr> ; <https://example.org/x#y> 1 .")
+
+
+def test_membership_properties_of_rdf_are_no_misspelling() -> None:
+    rdf = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+    assert not lints(f":a a sc:Component, rob:Tuner ; :uses [ <{rdf}_1> 5 ] .")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("http://w3id.org/selfconf#", "https://w3id.org/selfconf#"),
+        ("https://w3id.org/selfconf/", "https://w3id.org/selfconf#"),
+        ("https://www.w3.org/ns/shacl#", "http://www.w3.org/ns/shacl#"),
+        ("https://www.w3.org/ns/shacl/", "http://www.w3.org/ns/shacl#"),
+    ],
+)
+def test_nearly_the_namespace_of_selfconf_or_shacl_is_an_error(wrong: str, right: str) -> None:
+    found = only(":a a sc:Component, rob:Tuner .", PREAMBLE + f"@prefix x: <{wrong}> .\n")
+    assert (found.code, found.severity, found.hint) == ("SC-L06", Severity.ERROR, f"Did you mean <{right}>?")
+
+
+def test_nearly_the_namespace_of_another_vocabulary_is_a_warning() -> None:
+    head = PREAMBLE + "@prefix x: <https://www.w3.org/2000/01/rdf-schema#> .\n"
+    assert only(":a a sc:Component, rob:Tuner .", head).severity is Severity.WARNING
+
+
+def test_a_prefix_may_be_declared_twice_alike() -> None:
+    assert not lints("@prefix rob: <https://w3id.org/selfconf/robotics#> .\n:a a sc:Component, rob:Tuner .")
+
+
+def test_a_literal_where_a_thing_is_wanted_is_noticed_in_every_known_ontology() -> None:
+    assert only(':a a sc:Component, rob:Tuner ; rob:support "Astrid" .').code == "SC-L07"
+
+
+def test_a_label_is_a_literal_and_stays_one() -> None:
+    assert not lints(':a a sc:Component, rob:Tuner ; rdfs:label "tuner" ; :note "x" .')
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "sh:minCount 2 ; sh:maxCount 1",
+        "sh:minCount 1 ; sh:in ()",
+        "sh:minCount 3 ; sh:in ( :x :y )",
+        "sh:hasValue :z ; sh:in ( :x :y )",
+    ],
+)
+def test_a_property_shape_that_contradicts_itself_is_noticed(shape: str) -> None:
+    assert only(TEMPLATE + f":r sh:property [ sh:path rob:place ; {shape} ] .").code == "SC-L11"
+
+
+@pytest.mark.parametrize(
+    "shape", ["sh:minCount 1 ; sh:maxCount 1", "sh:minCount 2 ; sh:in ( :x :y )", "sh:hasValue :x ; sh:in ( :x )"]
+)
+def test_a_property_shape_that_can_be_kept_is_left_alone(shape: str) -> None:
+    assert not lints(TEMPLATE + f":r sh:property [ sh:path rob:place ; {shape} ] .")
+
+
+def test_a_closed_loop_of_roles_is_no_mistake() -> None:
+    text = """
+:t a sc:Template ; sc:roles ( :control :drive ) .
+:control a sc:Role ; sh:class rob:NavigationControl ; sc:feeds :drive .
+:drive a sc:Role ; sh:class rob:MotorDrive ; sc:feeds :control .
+"""
+    assert not lints(text)
+
+
+def test_what_is_wrong_with_a_template_hides_what_is_merely_strange_about_it() -> None:
+    text = ":t a sc:Template ; sc:roles :r . :r a sc:Role ; sh:class rob:Lamp ."
+    assert {each.code for each in lints(text)} == {"SC-T02"}
