@@ -1,1 +1,1 @@
-"""What selfconf claims about speed, measured side by side with its peers; each module is a command of its own."""
+"""Measurements, each side by side with what it is measured against."""

@@ -37,7 +37,7 @@ class ParameterSetting:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Who plays which role (in template order), every connection, every setting, and the values of parameters by name."""
+    """Who plays which role (in template order), every connection and setting, the values of parameters by name."""
 
     template: IRI
     assignments: tuple[Assignment, ...]

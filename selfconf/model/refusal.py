@@ -6,56 +6,14 @@ The search records facts; each fact words itself in one sentence for people. `co
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.partition import NearMiss
+from selfconf.model.repair import Repair
+from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.term import IRI
-
-
-@dataclass(frozen=True, slots=True)
-class RolePlayed:
-    """A role is played by as many components as it asks for at least."""
-
-    role: IRI
-
-    def __str__(self) -> str:
-        return f"{self.role.short} is played"
-
-
-@dataclass(frozen=True, slots=True)
-class InputFed:
-    """Whoever plays a role gets a signal; `input` is named where an interaction of the template names it."""
-
-    role: IRI
-    signal: IRI
-    input: str | None = None
-
-    def __str__(self) -> str:
-        port = f" at {self.input!r}" if self.input else ""
-        return f"{self.role.short} gets the {self.signal.short} that it needs{port}"
-
-
-@dataclass(frozen=True, slots=True)
-class OneValue:
-    """A free parameter, by name, has one value that suits everybody."""
-
-    parameter: str
-
-    def __str__(self) -> str:
-        return f"there is one {self.parameter} for all"
-
-
-@dataclass(frozen=True, slots=True)
-class OneRoleEach:
-    """No component plays two roles."""
-
-    def __str__(self) -> str:
-        return "nobody plays two parts"
-
-
-Requirement = RolePlayed | InputFed | OneValue | OneRoleEach
+from selfconf.model.wording import listed
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +74,12 @@ class TooFewEligible:
     def __str__(self) -> str:
         if not self.found:
             return f"no component is eligible for the role {self.role.short}"
-        return f"the role {self.role.short} asks for {self.wanted} components, and only {self.found} are eligible"
+        return f"the role {self.role.short} asks for {self.wanted} components, and only {_eligible(self.found)}"
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step of a derivation: candidates of a role that are in no configuration, since one of their inputs is not fed."""
+    """A step of a derivation: candidates of a role play in no configuration, as one of their inputs is not fed."""
 
     role: IRI
     component: IRI
@@ -134,7 +92,7 @@ class Step:
 
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
-        roles = _listed(source.short for source in self.sources)
+        roles = listed(source.short for source in self.sources)
         lack = f"nobody left in {roles} issues a {self.signal.short}" if self.sources else "no role feeds it"
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
 
@@ -158,7 +116,7 @@ class InputUnfed:
         if not self.sources:
             words = f"{name} cannot be fed: no role feeds the role {self.role.short}"
         else:
-            roles = _listed(source.short for source in self.sources)
+            roles = listed(source.short for source in self.sources)
             words = f"{name} cannot be fed: no candidate of {roles} issues a {self.signal.short} for it"
         return "; so ".join([words, *map(str, self.consequences)])
 
@@ -183,9 +141,9 @@ class TooFewDistinct:
         return (*map(RolePlayed, self.roles), OneRoleEach())
 
     def __str__(self) -> str:
-        names = _listed(role.short for role in self.roles)
+        names = listed(role.short for role in self.roles)
         return (
-            f"the roles {names} together ask for {self.wanted} different components, and only {self.found} are eligible"
+            f"the roles {names} together ask for {self.wanted} different components, and only {_eligible(self.found)}"
         )
 
 
@@ -208,92 +166,15 @@ class Conflict:
         conditions = [f"one {name} for all" for name in self.parameters]
         if any(isinstance(r, OneRoleEach) for r in self.requirements):
             conditions.append("a different component for each")
-        shared = f" with {_listed(conditions)}" if conditions else ""
-        so_that = f" so that {_listed(needs)}" if needs else ""
+        shared = f" with {listed(conditions)}" if conditions else ""
+        so_that = f" so that {listed(needs)}" if needs else ""
         if len(self.roles) == 1:
             return f"the role {self.roles[0].short} cannot be played{shared}{so_that}"
-        names = _listed(role.short for role in self.roles)
+        names = listed(role.short for role in self.roles)
         return f"the roles {names} cannot all be played{shared}{so_that}"
 
 
 Reason = Contradiction | ValueUnknown | TooFewEligible | InputUnfed | TooFewDistinct | Conflict
-
-
-@dataclass(frozen=True, slots=True)
-class Addition:
-    """Components to be added: so many for a role, each without inputs and issuing these signals."""
-
-    role: IRI
-    count: int
-    signals: tuple[IRI, ...] = ()
-
-    def __str__(self) -> str:
-        number = "one more component" if self.count == 1 else f"{self.count} more components"
-        issuing = f" that issues {_listed(s.short for s in self.signals)}" if self.signals else ""
-        return f"{number} for the role {self.role.short}{issuing}"
-
-
-@dataclass(frozen=True, slots=True)
-class AddComponents:
-    """Fewest components whose addition makes the task possible."""
-
-    code: ClassVar[str] = "add-components"
-    additions: tuple[Addition, ...]
-
-    @property
-    def role(self) -> IRI:
-        """The first of the roles that get a component."""
-        return self.additions[0].role
-
-    def __str__(self) -> str:
-        return f"add {_listed(map(str, self.additions))}"
-
-
-@dataclass(frozen=True, slots=True)
-class AskForFewer:
-    """A role that asks for fewer components, or for none, makes the task possible."""
-
-    code: ClassVar[str] = "ask-for-fewer"
-    role: IRI
-    minimum: int
-
-    def __str__(self) -> str:
-        if not self.minimum:
-            return f"let the role {self.role.short} be optional (sc:minCount 0)"
-        return f"let the role {self.role.short} ask for {self.minimum} (sc:minCount {self.minimum})"
-
-
-@dataclass(frozen=True, slots=True)
-class AddInteraction:
-    """One more interaction makes the task possible."""
-
-    code: ClassVar[str] = "add-interaction"
-    role: IRI
-    """The role that feeds."""
-    sink: IRI
-
-    def __str__(self) -> str:
-        return f"let the role {self.role.short} feed the role {self.sink.short} (sc:feeds)"
-
-
-@dataclass(frozen=True, slots=True)
-class AcceptNearMiss:
-    """A component that was kept out by one thing would make the task possible."""
-
-    code: ClassVar[str] = "accept-near-miss"
-    near: NearMiss
-    candidate: Candidate = field(repr=False)
-
-    @property
-    def role(self) -> IRI:
-        """The role that would take the component."""
-        return self.near.role
-
-    def __str__(self) -> str:
-        return f"let {self.near.component.short} play {self.near.role.short}, although {self.near.obstacle}"
-
-
-Repair = AddComponents | AskForFewer | AddInteraction | AcceptNearMiss
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,8 +201,5 @@ class Undecided:
         return f"not decided within {self.steps} steps; allow more, or install selfconf[solvers]"
 
 
-def _listed(names: Iterable[str]) -> str:
-    words = list(names)
-    if len(words) < 2:
-        return "".join(words)
-    return f"{', '.join(words[:-1])} and {words[-1]}"
+def _eligible(number: int) -> str:
+    return "one is eligible" if number == 1 else f"{number} are eligible"

@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from selfconf.model.cost import CostLevel
 from selfconf.model.profile import Place
 from selfconf.model.term import IRI, Term
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A role sets an operational parameter, known by its type, to a value or to what a template parameter stands for."""
+    """A role sets an operational parameter, known by its type, to a value or to that of a template parameter."""
 
     type: IRI
     value: Term
@@ -64,6 +65,8 @@ class Template:
     interactions: tuple[Interaction, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     label: str | None = None
+    cost: tuple[CostLevel, ...] = ()
+    """What the strategy `best` minimises, the most important level first; nothing if the template states none."""
 
     def role(self, iri: IRI) -> Role:
         """The role of that IRI; KeyError if the template has none."""

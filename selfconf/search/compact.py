@@ -1,22 +1,23 @@
-"""The problem in small integers, without what cannot matter: kinds, arc consistency and the kernel.
+"""The problem in small integers, without what cannot matter: kinds, the kernel and arc consistency.
 
 *Needs.* An input that role r must have fed is a *need*: the role, the links that may feed it, and the signal. Needs
 are numbered. What a candidate needs in a role, what it gives to the roles fed by that role, and what it lets the
 variables be make its *kind*; two candidates of a role with the same ports have the same kind, which is worked out
 once. Output types are expanded upward, once per output and role, to the needs they serve.
 
+*Kernel.* Two cuts, each of which keeps the least solution.
+(1) Let S be the number of all slots. Of each kind of a role the first S suffice: were a later one in a slot of the
+least solution, then at most S - 1 of the first S would play, one of them would be free, and putting it there would
+give a lesser solution. This needs no knowledge of who is eligible for what else.
+(2) Let a group be the candidates that are eligible for exactly the same roles R, with the same kind in each, and k
+the number of slots of R. For each role of R the first k of the group suffice, by the same argument: members can only
+play in the k slots of R. Keeping one per kind would be wrong as soon as roles share candidates.
+Roles with no slots take no part: nobody plays them before the extension.
+
 *Arc consistency.* A kind that needs what no kind left gives is in no solution, nor is a kind whose variables could
 only have values that some role cannot have. Both leave, until nothing changes; each leaving is recorded with its
 cause, so that a refusal can tell how a role ran out of candidates. Counting the givers of each need makes it linear
 in the number of needs and gifts of all kinds.
-
-*Kernel.* Let a group be the candidates that are eligible for exactly the same roles R and are of the same kind in
-each. Members are interchangeable: swapping two in a solution, or one in it for one outside, gives a solution. Let k
-be the number of slots of R. Then for each role of R only the first k members, in the order of that role, can occur
-in the least solution: were another one in a slot of role r, then at most k - 1 of the first k would play (in the
-other slots of R), one of them would be free, and putting it there would give a lesser solution. So the least
-solution of the kernel is the least solution. Keeping one member per kind would be wrong as soon as roles share
-candidates. Roles with no slots take no part: nobody plays them before the extension.
 
 Cost: one pass over the candidates of roles that have slots; after it only kinds and kept candidates are touched.
 """
@@ -24,35 +25,33 @@ Cost: one pass over the candidates of roles that have slots; after it only kinds
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
-from selfconf.model.partition import ANY_VALUE
+from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.profile import Input, Output
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
+from selfconf.search.wiring import Need, Wiring
 
 Ports = tuple[tuple[Input, ...], tuple[Output, ...], tuple[int, ...]]
-
-
-@dataclass(frozen=True, slots=True)
-class Need:
-    """A signal that an input of whoever plays `role` must get; `input` only where an interaction names it."""
-
-    role: int
-    signal: IRI
-    sources: tuple[tuple[int, str | None], ...]
-    """The roles that may feed it, each with the name of the output, if the interaction names one."""
-    input: str | None = None
 
 
 class Kind:
     """What a candidate is to the search, in one role: numbers of needs, and masks of values."""
 
-    __slots__ = ("admits", "gives", "needs", "role")
+    __slots__ = ("admits", "count", "gives", "needs", "number", "role")
 
     def __init__(self, role: int, needs: tuple[int, ...], gives: tuple[int, ...], admits: tuple[int, ...]) -> None:
         self.role, self.needs, self.gives, self.admits = role, needs, gives, admits
+        self.number, self.count = -1, 0
+        """The number of the first candidate of this kind, and how many there are."""
+
+    def include(self, number: int, count: int) -> None:
+        """Count so many candidates more, the first of which has this number."""
+        self.number = number if self.number < 0 else min(self.number, number)
+        self.count += count
 
 
 class Option:
@@ -66,7 +65,7 @@ class Option:
 
 @dataclass(frozen=True, slots=True)
 class Departure:
-    """Why a kind left: a need that nobody left could serve, or a variable with no value that every role can have."""
+    """Why a kind left: a need that nobody left can serve, or a variable with no value that every role can have."""
 
     kind: Kind
     need: int | None = None
@@ -75,7 +74,7 @@ class Departure:
 
 @dataclass(frozen=True, slots=True)
 class Compact:
-    """The kernel of a problem: options per role, the needs by number, and how the rest left."""
+    """The kernel of a problem: options per role, the needs by number, and how others left."""
 
     slots: tuple[int, ...]
     """The role of each slot, in order; a role that asks for k components has k slots."""
@@ -90,73 +89,77 @@ class Compact:
         asked = Counter(self.slots)
         return next((role for role, slots in asked.items() if len(self.options[role]) < slots), None)
 
-
-class Wiring:
-    """Numbers the needs of a problem and says which of them an output serves."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        self.needs: list[Need] = []
-        self._number: dict[tuple[int, tuple[tuple[int, str | None], ...], IRI], int] = {}
-        self._served: dict[tuple[int, IRI], list[tuple[int, str | None]]] = {}
-
-    def need(self, role: int, wanted: Input) -> int:
-        """The number of the need that an input is."""
-        links = [link for link in self.problem.links[role] if link.input in (None, wanted.name)]
-        sources = tuple(dict.fromkeys((link.source, link.output) for link in links))
-        key = role, sources, wanted.signal
-        number = self._number.get(key)
-        if number is None:
-            number = self._number[key] = len(self.needs)
-            named = any(link.input for link in self.problem.links[role])
-            self.needs.append(Need(role, wanted.signal, sources, wanted.name if named else None))
-            for source, output in sources:
-                self._served.setdefault((source, wanted.signal), []).append((number, output))
-        return number
-
-    def served(self, role: int, outputs: Sequence[Output]) -> tuple[int, ...]:
-        """The needs that somebody with these outputs serves by playing a role; every need must be known by now."""
-        found: dict[int, None] = {}
-        for output in outputs:
-            for signal in self.problem.hierarchy.superclasses(output.signal):
-                for number, name in self._served.get((role, signal), ()):
-                    if name is None or name == output.name:
-                        found[number] = None
-        return tuple(sorted(found))
+    def kinds(self) -> list[Kind]:
+        """The kinds that options are of, in order."""
+        return list({id(o.kind): o.kind for options in self.options for o in options}.values())
 
 
-def compact(problem: Problem, prune: bool = True) -> Compact:
-    """The kernel of a problem, after arc consistency unless that is left out."""
+def compact(problem: Problem, apart: Collection[IRI] = (), order: Mapping[int, Sequence[int]] | None = None) -> Compact:
+    """The kernel of a problem; components that are set apart are of no kind but their own.
+
+    `order` is another order of the candidates of each role, by number: then the first and the least are by that.
+    """
     slots = tuple(role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum))
     wiring = Wiring(problem)
-    played = list(dict.fromkeys(slots))
-    members = {role: _members(problem, wiring, role) for role in played}
-    of: dict[tuple[int, Ports], Kind] = {}
-    for role in played:
-        for ports, needs in members[role][1].items():
-            of[role, ports] = Kind(role, needs, wiring.served(role, ports[1]), ports[2])
-    gone: set[int] = set()
-    departures: list[Departure] = []
-    if prune:
-        gone, departures = consistent(tuple(of.values()), len(wiring.needs), problem.open_values, played)
+    minima = Counter(slots)
+    orders = order or {role: range(len(problem.candidates[role])) for role in minima}
+    alike = {role: _alike(problem.candidates[role], orders[role], len(slots), apart) for role in minima}
+    needs = {
+        role: [tuple(dict.fromkeys([wiring.need(role, wanted) for wanted in same.ports[0]])) for same in some]
+        for role, some in alike.items()
+    }
     left: dict[int, list[Option]] = {}
-    for role in played:
+    for role, some in alike.items():
+        left[role] = []
         candidates = problem.candidates[role]
-        left[role] = [
-            Option(number, candidates[number].profile.component, kind)
-            for number, ports in enumerate(members[role][0])
-            if id(kind := of[role, ports]) not in gone
-        ]
-    kept = kernel(left, {role: problem.roles[role].minimum for role in left})
+        for same, needed in zip(some, needs[role], strict=True):
+            kind = Kind(role, needed, wiring.served(role, same.ports[1]), same.ports[2])
+            kind.include(same.numbers[0], same.count)
+            left[role] += [Option(number, candidates[number].profile.component, kind) for number in same.numbers]
+        if order is None:
+            left[role].sort(key=_number)
+        else:
+            place = {number: index for index, number in enumerate(order[role])}
+            left[role].sort(key=lambda option: place[option.number])
+    kept = kernel(left, minima)
     options = tuple(tuple(kept.get(role, ())) for role in range(len(problem.roles)))
-    return Compact(slots, options, tuple(wiring.needs), problem.open_values, tuple(departures))
+    return Compact(slots, options, tuple(wiring.needs), problem.open_values)
 
 
-def _members(problem: Problem, wiring: Wiring, role: int) -> tuple[list[Ports], dict[Ports, tuple[int, ...]]]:
-    """The ports of each candidate of a role, in order, and the needs of each different one."""
-    ports: list[Ports] = [(c.profile.inputs, c.profile.outputs, c.admits) for c in problem.candidates[role]]
-    different = dict.fromkeys(ports, ())
-    return ports, {one: tuple(dict.fromkeys(wiring.need(role, wanted) for wanted in one[0])) for one in different}
+def _number(option: Option) -> int:
+    return option.number
+
+
+class _Alike:
+    """Candidates with the same ports: the numbers of the first ones, and how many there are."""
+
+    __slots__ = ("count", "numbers", "ports")
+
+    def __init__(self, ports: Ports) -> None:
+        self.ports, self.count = ports, 0
+        self.numbers: list[int] = []
+
+
+def _alike(candidates: Sequence[Candidate], order: Iterable[int], most: int, apart: Collection[IRI]) -> list[_Alike]:
+    """The different sets of ports among candidates.
+
+    The one loop over all candidates: ports are hashed once, and nothing is kept of one whose ports are known.
+    """
+    found: list[_Alike] = []
+    known: dict[tuple[Ports, IRI | None], int] = {}
+    for number in order:
+        candidate = candidates[number]
+        profile = candidate.profile
+        own = profile.component if apart and profile.component in apart else None
+        ports = profile.inputs, profile.outputs, candidate.admits
+        index = known.setdefault((ports, own), len(found))
+        if index == len(found):
+            found.append(_Alike(ports))
+        same = found[index]
+        same.count += 1
+        if same.count <= most:
+            same.numbers.append(number)
+    return found
 
 
 def consistent(
@@ -217,36 +220,38 @@ def _valueless(kinds: Sequence[Kind], values: Sequence[int], required: Collectio
                     yield Departure(kind, variable=number)
 
 
-def kernel(left: dict[int, list[Option]], minima: dict[int, int]) -> dict[int, list[Option]]:
+def kernel(left: Mapping[int, list[Option]], minima: Mapping[int, int]) -> dict[int, list[Option]]:
     """Of each group as many options as there are slots for it, the first ones."""
-    eligible: dict[IRI, tuple[int, ...]] = {}
-    shared = len(left) > 1 and _any_shared(left)
-    if shared:
-        for options in left.values():
-            for option in options:
-                eligible[option.component] = (*eligible.get(option.component, ()), id(option.kind))
-    role_of = {id(option.kind): option.kind.role for options in left.values() for option in options} if shared else {}
+    group: dict[IRI, int] = {}
+    limit: list[int] = [0]
+    following: dict[tuple[int, int], int] = {}
+    for role, options in left.items():
+        for option in options:
+            step = group.get(option.component, 0), id(option.kind)
+            after = following.get(step)
+            if after is None:
+                after = following[step] = len(limit)
+                limit.append(limit[step[0]] + minima[role])
+            group[option.component] = after
     kept: dict[int, list[Option]] = {}
     for role, options in left.items():
-        count: dict[tuple[int, ...], int] = {}
-        limit: dict[tuple[int, ...], int] = {}
+        count: dict[int, int] = {}
         kept[role] = []
         for option in options:
-            group = eligible[option.component] if shared else (id(option.kind),)
-            seen = count[group] = count.get(group, 0) + 1
-            if seen == 1:
-                roles = {role_of[kind] for kind in group} if shared else {role}
-                limit[group] = sum(minima[r] for r in roles)
-            if seen <= limit[group]:
+            number = group[option.component]
+            seen = count[number] = count.get(number, 0) + 1
+            if seen <= limit[number]:
                 kept[role].append(option)
     return kept
 
 
-def _any_shared(left: dict[int, list[Option]]) -> bool:
-    everybody: set[IRI] = set()
-    for options in left.values():
-        before = len(everybody)
-        everybody.update(option.component for option in options)
-        if len(everybody) < before + len(options):
-            return True
-    return False
+class Prepared:
+    """A problem, made compact when that is first asked for."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+
+    @cached_property
+    def compact(self) -> Compact:
+        """The kernel of the problem."""
+        return compact(self.problem)

@@ -4,18 +4,20 @@
 2. Arc consistency runs a role out of candidates. The requirements that its derivation used, from that role back to
    the needs that nobody serves, cannot hold together.
 3. Matching fails: Hall's set of roles.
-4. Otherwise the clause-learning engine names assumptions that cannot hold together; without it, all requirements.
+4. Otherwise the clause-learning engine names assumptions that cannot hold together, again and again with one of
+   them left out, until each is needed.
 
-What 2 to 4 give is then made irreducible by QuickXplain (Junker, AAAI 2004): a question of the kind "can these hold
-together?" for about k log(n / k) subsets, k being what remains of n. Each is decided on a problem with only these
-requirements in force, which is small when they are few. Irreducible does not mean smallest.
+What 2 and 3 give is made irreducible by QuickXplain (Junker, AAAI 2004), and so is everything together where there is
+no such engine: a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains
+of n. Each is decided on a problem with only these requirements in force, which is small when they are few.
+Irreducible does not mean smallest.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from selfconf.model import refusal as model
+from selfconf.model import requirement as model
 from selfconf.model.refusal import (
     Conflict,
     Contradiction,
@@ -28,9 +30,8 @@ from selfconf.model.refusal import (
     Undecided,
     ValueUnknown,
 )
-from selfconf.model.term import IRI
 from selfconf.search import sat
-from selfconf.search.compact import Compact, Departure, compact, consistent
+from selfconf.search.compact import Compact, Kind, Prepared, consistent
 from selfconf.search.matching import shortage
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import (
@@ -40,6 +41,7 @@ from selfconf.search.requirement import (
     Requirement,
     Shared,
     all_of,
+    pruned,
     relaxed,
 )
 from selfconf.search.walk import Budget, walk
@@ -50,15 +52,16 @@ WALK_STEPS = 1000
 """Steps of depth-first search for one question before clauses are written."""
 
 
-def reasons(problem: Problem, steps: int = EFFORT) -> tuple[tuple[Reason, ...], bool]:
-    """The reasons of a problem that has no solution, and whether each is proved irreducible."""
+def refusal(given: Prepared, steps: int = EFFORT) -> Refusal:
+    """The refusal of a problem that has no solution."""
+    problem = given.problem
+    template = problem.task.template.iri
     plain = tuple(_plain(problem))
     if plain:
-        return plain, True
-    given = compact(problem, prune=False)
-    questions = Questions(given, Budget(steps))
-    found = questions.irreducible(_start(problem, given, questions.budget))
-    return (_worded(problem, given, found),), questions.settled
+        return Refusal(template, plain)
+    questions = Questions(given.compact, Budget(steps))
+    found = core(questions)
+    return Refusal(template, (_worded(problem, given.compact, found),), irreducible=questions.settled)
 
 
 def _plain(problem: Problem) -> Iterator[Reason]:
@@ -100,7 +103,7 @@ class Questions:
 
     def irreducible(self, together: Sequence[Requirement]) -> tuple[Requirement, ...]:
         """Of requirements that cannot hold together, as many as still cannot, but could without any one of them."""
-        order = sorted(together, key=_KEEP_LAST)
+        order = sorted(together, key=_rank)
         return tuple(sorted(self._explain((), order, False), key=order.index)) if order else ()
 
     def _explain(
@@ -126,48 +129,65 @@ class Questions:
         return not answer
 
 
-def _KEEP_LAST(requirement: Requirement) -> int:
+def _rank(requirement: Requirement) -> int:
     """QuickXplain drops what comes late: first roles, then needs, then what people think of last."""
     return [Played, Fed, Shared, Distinct].index(type(requirement))
 
 
-def _start(problem: Problem, given: Compact, budget: Budget) -> tuple[Requirement, ...]:
-    """Requirements that cannot hold together, as few as are found for little."""
-    everything = all_of(given)
-    played = list(dict.fromkeys(given.slots))
-    kinds = list({id(o.kind): o.kind for options in given.options for o in options}.values())
-    gone, departures = consistent(kinds, len(given.needs), given.values, played)
-    for role in played:
-        if sum(id(o.kind) not in gone for o in given.options[role]) < given.slots.count(role):
-            return derivation(given, role, departures)
+def core(questions: Questions) -> tuple[Requirement, ...]:
+    """An irreducible set of requirements that cannot hold together."""
+    given = questions.given
+    whole = pruned(given)
+    role = whole.short()
+    if role is not None:
+        return questions.irreducible(derivation(given, role))
     lack = shortage(given.slots, [[o.component for o in options] for options in given.options])
     if lack is not None:
-        return (*map(Played, lack.roles), Distinct())
+        together: tuple[Requirement, ...] = (*map(Played, lack.roles), Distinct())
+        return together if lack.wanted == lack.found + 1 else questions.irreducible(together)
     if not sat.available():
-        return everything
-    with sat.Clauses(given, guarded=True) as clauses:
-        assumed = [clauses.guards[r] for r in everything if r in clauses.guards]
-        while clauses.solve(assumed, budget) is False:
-            core = clauses.core()
-            if len(core) == len(assumed):
-                break
-            assumed = [guard for guard in assumed if guard in core]
-        return tuple(r for r in everything if clauses.guards.get(r) in set(assumed))
+        return questions.irreducible(all_of(given))
+    return _clash(questions)
 
 
-def derivation(given: Compact, role: int, departures: Sequence[Departure]) -> tuple[Requirement, ...]:
-    """The requirements by which arc consistency emptied a role."""
-    before: dict[int, int] = {id(departure.kind): place for place, departure in enumerate(departures)}
-    givers: dict[int, list[int]] = {}
-    members: dict[int, list[int]] = {}
-    for options in given.options:
-        for kind in {id(o.kind): o.kind for o in options}.values():
-            members.setdefault(kind.role, []).append(id(kind))
-            for need in kind.gives:
-                givers.setdefault(need, []).append(id(kind))
+def _clash(questions: Questions) -> tuple[Requirement, ...]:
+    """Assumptions that the clause-learning engine finds to clash, made irreducible by leaving out one at a time.
+
+    All questions go to one solver, which keeps what it learned; each answer "no" names a smaller set to go on with.
+    """
+    everything = sorted(all_of(questions.given), key=_rank)
+    with sat.Clauses(questions.given, guarded=True) as clauses:
+        left = [clauses.guards[r] for r in everything if r in clauses.guards]
+        needed: set[int] = set()
+        if clauses.solve(left, questions.budget) is False:
+            named = clauses.core()
+            left = [guard for guard in left if guard in named]
+        for guard in reversed(list(left)):
+            if guard not in left:
+                continue
+            answer = clauses.solve([other for other in left if other != guard], questions.budget)
+            if answer is False:
+                named = clauses.core() | needed
+                left = [other for other in left if other in named]
+            else:
+                needed.add(guard)
+                questions.settled &= answer is True
+        return tuple(r for r in everything if clauses.guards.get(r) in set(left))
+
+
+def derivation(given: Compact, role: int) -> tuple[Requirement, ...]:
+    """The requirements by which arc consistency empties a role: back from it to what nobody gives."""
+    played = list(dict.fromkeys(given.slots))
+    kinds = given.kinds()
+    _, departures = consistent(kinds, len(given.needs), given.values, played)
+    before = {id(departure.kind): place for place, departure in enumerate(departures)}
+    givers: dict[int, list[Kind]] = {}
+    for kind in kinds:
+        for need in kind.gives:
+            givers.setdefault(need, []).append(kind)
     found: dict[Requirement, None] = {Played(role): None}
-    waiting = [before[kind] for kind in members.get(role, ()) if kind in before]
-    seen: set[int] = set(waiting)
+    waiting = [before[id(kind)] for kind in kinds if kind.role == role and id(kind) in before]
+    seen = set(waiting)
     while waiting:
         place = waiting.pop()
         departure = departures[place]
@@ -176,10 +196,10 @@ def derivation(given: Compact, role: int, departures: Sequence[Departure]) -> tu
             causes = givers.get(departure.need, [])
         else:
             found[Shared(departure.variable or 0)] = None
-            found.update(dict.fromkeys(map(Played, dict.fromkeys(given.slots))))
-            causes = [kind for some in members.values() for kind in some]
+            found.update(dict.fromkeys(map(Played, played)))
+            causes = kinds
         for kind in causes:
-            earlier = before.get(kind, place)
+            earlier = before.get(id(kind), place)
             if earlier < place and earlier not in seen:
                 seen.add(earlier)
                 waiting.append(earlier)
@@ -217,38 +237,19 @@ def _parameters(told: Iterable[model.Requirement]) -> tuple[str, ...]:
 def _steps(problem: Problem, given: Compact, found: Sequence[Requirement]) -> Iterator[Step]:
     """The derivation with these requirements alone, if arc consistency makes one: who leaves, and why."""
     part = relaxed(given, set(found))
-    if part.short() is None:
+    if part.short() is None or any(departure.need is None for departure in part.departures):
         return
-    whole: dict[tuple[int, int], list[int]] = {}
+    leaving: dict[tuple[int, int], list[Kind]] = {}
     for departure in part.departures:
-        if departure.need is None:
-            return
-        whole.setdefault((departure.kind.role, departure.need), [])
-    kept_needs = {r.need for r in found if isinstance(r, Fed)}
-    gone: set[tuple[int, int]] = set()
-    for role, need in whole:
-        leaving = [
-            number
-            for number, candidate in enumerate(problem.candidates[role])
-            if (role, number) not in gone
-            and need in kept_needs
-            and any(
-                _is_need(given, need, role, problem, wanted.name, wanted.signal) for wanted in candidate.profile.inputs
-            )
-        ]
-        if not leaving:
-            continue
-        gone.update((role, number) for number in leaving)
-        profile = problem.candidates[role][leaving[0]].profile
-        wanted = next(w for w in profile.inputs if _is_need(given, need, role, problem, w.name, w.signal))
-        sources = tuple(dict.fromkeys(problem.roles[s].iri for s, _ in given.needs[need].sources))
-        yield Step(problem.roles[role].iri, profile.component, len(leaving) - 1, wanted.name, wanted.signal, sources)
-
-
-def _is_need(given: Compact, need: int, role: int, problem: Problem, name: str, signal: IRI) -> bool:
-    known = given.needs[need]
-    sources = tuple(dict.fromkeys((k.source, k.output) for k in problem.links[role] if k.input in (None, name)))
-    return (known.role, known.signal, known.sources) == (role, signal, sources)
+        leaving.setdefault((departure.kind.role, departure.need or 0), []).append(departure.kind)
+    for (role, number), kinds in leaving.items():
+        need = given.needs[number]
+        profile = problem.candidates[role][min(kind.number for kind in kinds)].profile
+        ports = [port for port in profile.inputs if port.signal == need.signal]
+        port = next((port for port in ports if port.name == need.input), ports[0])
+        sources = tuple(dict.fromkeys(problem.roles[source].iri for source, _ in need.sources))
+        more = sum(kind.count for kind in kinds) - 1
+        yield Step(problem.roles[role].iri, profile.component, more, port.name, need.signal, sources)
 
 
 def _told(problem: Problem, given: Compact, requirement: Requirement) -> model.Requirement:
@@ -262,9 +263,3 @@ def _told(problem: Problem, given: Compact, requirement: Requirement) -> model.R
         names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
         return model.OneValue(names[problem.variables[requirement.variable].parameter])
     return model.OneRoleEach()
-
-
-def refusal(problem: Problem, steps: int = EFFORT) -> Refusal:
-    """The refusal of a problem that has no solution."""
-    found, irreducible = reasons(problem, steps)
-    return Refusal(problem.task.template.iri, found, irreducible=irreducible)

@@ -110,17 +110,27 @@ class Problem:
         narrowed = tuple(value & allowed for value, allowed in zip(values, candidate.admits, strict=True))
         return narrowed if all(narrowed) else None
 
-    def solved(self, playing: Playing) -> Configuration:
-        """The configuration that a least solution stands for, extended by every further candidate that fits."""
+    def solved(self, playing: Playing, running: Configuration | None = None) -> Configuration:
+        """The configuration that a solution stands for, extended by every further candidate that fits.
+
+        With a running configuration, what runs and plays the same role there is tried before all others.
+        """
         extended = [list(role) for role in playing]
         values = self.open_values
         for role in extended:
             for candidate in role:
                 values = tuple(v & allowed for v, allowed in zip(values, candidate.admits, strict=True))
-        return self.configuration(extended, self._extend(extended, values))
+        if running is not None:
+            played = {a.role: a.components for a in running.assignments}
+            kept = [
+                [c for c in candidates if c.profile.component in played.get(role.iri, ())]
+                for role, candidates in zip(self.roles, self.candidates, strict=True)
+            ]
+            values = self._extend(extended, values, kept)
+        return self.configuration(extended, self._extend(extended, values, self.candidates))
 
-    def _extend(self, playing: list[list[Candidate]], values: tuple[int, ...]) -> tuple[int, ...]:
-        """Add every further candidate that fits, the first one first; returns what the variables may be then.
+    def _extend(self, playing: list[list[Candidate]], values: tuple[int, ...], candidates: Playing) -> tuple[int, ...]:
+        """Add every one of some candidates that fits, the first one first; returns what the variables may be then.
 
         Who is taken or allows no value left never fits later; who is unfed may, once a role that feeds his gets
         outputs that it did not have: he waits for that. So nearly every candidate is looked at once.
@@ -130,12 +140,12 @@ class Problem:
             return values
         taken = {candidate.profile.component for role in playing for candidate in role}
         offered = [{candidate.profile.outputs for candidate in role} for role in playing]
-        trying = [(p, index) for p in open_roles for index in range(len(self.candidates[p]))]
+        trying = [(p, index) for p in open_roles for index in range(len(candidates[p]))]
         waiting: dict[int, list[tuple[int, int]]] = {}
         unfed: dict[int, set[tuple[tuple[Input, ...], tuple[Output, ...]]]] = {}
         while trying:
             position, index = heappop(trying)
-            candidate, maximum = self.candidates[position][index], self.roles[position].maximum
+            candidate, maximum = candidates[position][index], self.roles[position].maximum
             profile = candidate.profile
             if profile.component in taken or (maximum is not None and len(playing[position]) >= maximum):
                 continue

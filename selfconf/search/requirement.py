@@ -6,6 +6,7 @@ unserved, a variable without a common value, a component in several roles. Less 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Set
 from dataclasses import dataclass
 
@@ -69,16 +70,21 @@ def relaxed(given: Compact, force: Set[Requirement]) -> Compact:
     required = {r.role for r in force if isinstance(r, Played)}
     matter = required | {source for need in needs for source, _ in given.needs[need].sources}
     slots = tuple(role for role in given.slots if role in matter)
-    kinds: dict[tuple[object, ...], Kind] = {}
-    options: dict[int, list[Option]] = {}
-    for role in dict.fromkeys(slots):
-        options[role] = [
-            Option(option.number, option.component, _relaxed_kind(option.kind, needs, variables, kinds))
+    known: dict[tuple[object, ...], Kind] = {}
+    became: dict[int, Kind] = {}
+    for kind in given.kinds():
+        if kind.role in matter:
+            became[id(kind)] = _relaxed_kind(kind, needs, variables, known)
+    gone, departures = consistent(tuple(known.values()), len(given.needs), given.values, required)
+    left = {
+        role: [
+            Option(option.number, option.component, kind)
             for option in given.options[role]
+            if id(kind := became[id(option.kind)]) not in gone
         ]
-    gone, departures = consistent(tuple(kinds.values()), len(given.needs), given.values, required)
-    left = {role: [o for o in some if id(o.kind) not in gone] for role, some in options.items()}
-    minima = {role: slots.count(role) for role in left}
+        for role in dict.fromkeys(slots)
+    }
+    minima = Counter(slots)
     kept = kernel(left, minima)
     free = tuple(ANY_VALUE for _ in given.values)
     for role in left:
@@ -94,6 +100,16 @@ def relaxed(given: Compact, force: Set[Requirement]) -> Compact:
     )
 
 
+def pruned(given: Compact) -> Compact:
+    """The problem with everything in force, after arc consistency."""
+    played = dict.fromkeys(given.slots)
+    gone, departures = consistent(given.kinds(), len(given.needs), given.values, played)
+    if not gone:
+        return given
+    options = tuple(tuple(o for o in some if id(o.kind) not in gone) for some in given.options)
+    return Compact(given.slots, options, given.needs, given.values, tuple(departures))
+
+
 def _relaxed_kind(kind: Kind, needs: Set[int], variables: Set[int], known: dict[tuple[object, ...], Kind]) -> Kind:
     key = (
         kind.role,
@@ -104,4 +120,5 @@ def _relaxed_kind(kind: Kind, needs: Set[int], variables: Set[int], known: dict[
     found = known.get(key)
     if found is None:
         found = known[key] = Kind(*key)
+    found.include(kind.number, kind.count)
     return found

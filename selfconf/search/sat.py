@@ -22,7 +22,9 @@ possible.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
 from importlib.util import find_spec
+from typing import Any
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.refusal import Undecided
@@ -197,6 +199,50 @@ class Clauses:
         if found:
             self._true = {literal for literal in self._solver.get_model() if literal > 0}
         return found
+
+    def maximise(self, literals: Sequence[int], budget: Budget) -> bool:
+        """Make as many of the literals hold as can, from the last model upwards; False if the budget ends before.
+
+        The bound stays in force, at what was reached.
+        """
+        from pysat.card import ITotalizer
+
+        missing = sum(not self.holds(literal) for literal in literals)
+        if not missing:
+            for literal in literals:
+                self.add([literal])
+            return True
+        with ITotalizer([-literal for literal in literals], ubound=missing, top_id=self._top) as counter:
+            self._top = max(self._top, counter.top_id)
+            for clause in counter.cnf.clauses:
+                self.add(clause)
+            found: bool | Undecided = True
+            while missing and found is True:
+                found = self.solve((-counter.rhs[missing - 1],), budget)
+                if found is True:
+                    missing = sum(not self.holds(literal) for literal in literals)
+            if missing < len(literals):
+                self.add([-counter.rhs[missing]])
+        return not isinstance(found, Undecided)
+
+    def counter(self, literals: Sequence[int], stack: ExitStack) -> Any:
+        """A totalizer over literals, to be counted on by `at_least`; it lives as long as the stack."""
+        from pysat.card import ITotalizer
+
+        counter = stack.enter_context(ITotalizer(list(literals), ubound=1, top_id=self._top))
+        self._top = max(self._top, counter.top_id)
+        for clause in counter.cnf.clauses:
+            self.add(clause)
+        return counter
+
+    def at_least(self, counter: Any, number: int) -> int:
+        """The literal that holds whenever so many (two or more) of a counter's literals do."""
+        if number - 1 > counter.ubound:
+            counter.increase(ubound=number - 1, top_id=self._top)
+            self._top = max(self._top, counter.top_id)
+            for clause in counter.cnf.clauses[-counter.nof_new :] if counter.nof_new else ():
+                self.add(clause)
+        return int(counter.rhs[number - 1])
 
     def _conflicts(self) -> int:
         return int(self._solver.accum_stats()["conflicts"])

@@ -11,7 +11,7 @@ partial configurations in the order of their roles and candidates, so that the f
 (`paper`). The least is unique: which engine finds it, and how long each was allowed to try, changes the time alone.
 
 *Invariants.* Every step keeps the least solution: arc consistency and the kernel by their proofs (`compact`), depth
-first by its order (`probe`, `walk`), the clause-learning engine by asking for a lesser solution until there is none
+first by its order (`filling`, `walk`), the clause-learning engine by asking for a lesser solution until there is none
 (`sat`). "None" comes from a role that runs out of candidates, from Hall's theorem (`matching`), from an exhausted
 search or from a refuted set of clauses, never from a budget that ended.
 
@@ -23,52 +23,58 @@ case. Without a solver library depth-first search goes on by itself.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.term import IRI
 from selfconf.search import explain, sat
-from selfconf.search.compact import Compact, Option, compact
-from selfconf.search.matching import shortage
-from selfconf.search.probe import probe
+from selfconf.search.compact import Compact, Option, Prepared
+from selfconf.search.filling import Filling
+from selfconf.search.matching import Partners, Shortage, impossible
 from selfconf.search.problem import Problem
+from selfconf.search.requirement import pruned
 from selfconf.search.walk import Budget, walk
 
-PROBE_STEPS = 8
-"""Steps per slot before anything is prepared."""
-WALK_STEPS = 1000
-"""Steps of depth-first search before clauses are written, and one more per option."""
+FILL_STEPS = 4
+"""Steps per slot before anything is prepared; a few slots more, for the smallest problems."""
+WALK_STEPS = 100
+"""Steps of depth-first search before clauses are written, and two more per option."""
 
 
 def search(problem: Problem) -> Configuration | Refusal:
     """The lexicographically first configuration, or why there is none."""
-    playing = solution(problem, Budget())
-    if isinstance(playing, list):
-        return problem.solved(playing)
-    return explain.refusal(problem)
+    given = Prepared(problem)
+    playing = solution(given, Budget())
+    return problem.solved(playing) if isinstance(playing, list) else explain.refusal(given)
 
 
 def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
     """The same within a number of steps, which mean the same on every machine."""
-    playing = solution(problem, Budget(steps))
+    given = Prepared(problem)
+    playing = solution(given, Budget(steps))
     if isinstance(playing, Undecided):
         return playing
-    return explain.refusal(problem, steps) if playing is None else problem.solved(playing)
+    return explain.refusal(given, steps) if playing is None else problem.solved(playing)
 
 
-def solution(problem: Problem, budget: Budget) -> list[list[Candidate]] | Undecided | None:
+def solution(given: Prepared, budget: Budget) -> list[list[Candidate]] | Undecided | None:
     """The least solution as candidates per role; None if there is none."""
+    problem = given.problem
     if problem.unvalued or any(
         len(candidates) < role.minimum or (role.maximum is not None and role.maximum < role.minimum)
         for role, candidates in zip(problem.roles, problem.candidates, strict=True)
     ):
         return None
     slots = sum(role.minimum for role in problem.roles)
-    most = budget.part(PROBE_STEPS * (slots + 4)).steps
-    found = probe(problem, most or 0)
-    if found is not None:
+    part = budget.part(FILL_STEPS * (slots + 8))
+    steps = part.steps or 0
+    found = Filling(problem, part).first()
+    if found is not None or (part.steps or 0) > 0:
         return found
-    budget.spend(most or 0)
-    chosen = least(compact(problem), budget)
+    budget.spend(steps)
+    chosen = least(given.compact, budget)
     if not isinstance(chosen, list):
         return chosen
     playing: list[list[Candidate]] = [[] for _ in problem.roles]
@@ -80,14 +86,31 @@ def solution(problem: Problem, budget: Budget) -> list[list[Candidate]] | Undeci
 
 def least(given: Compact, budget: Budget) -> list[Option] | Undecided | None:
     """The least solution of a compact problem, by whichever engine finds it."""
-    if given.short() is not None:
+    part = pruned(given)
+    if part.short() is not None:
         return None
-    if shortage(given.slots, [[option.component for option in options] for options in given.options]):
-        return None
+    components = [[option.component for option in options] for options in part.options]
+    partners: Partners | None = None
+    if len(set().union(*components)) < sum(map(len, components)):
+        never = impossible(part.slots, components)
+        if isinstance(never, Shortage):
+            return None
+        part = _without(part, never)
+        partners = Partners(part.slots, [[option.component for option in options] for options in part.options])
     if not sat.available():
-        return walk(given, budget)
-    part = budget.part(WALK_STEPS + sum(map(len, given.options)))
-    steps = part.steps or 0
-    chosen = walk(given, part)
-    budget.spend(steps - (part.steps or 0))
-    return sat.least(given, budget) if isinstance(chosen, Undecided) else chosen
+        return walk(part, budget, partners=partners)
+    first = budget.part(WALK_STEPS + 2 * sum(map(len, part.options)))
+    steps = first.steps or 0
+    chosen = walk(part, first, partners=partners)
+    budget.spend(steps - (first.steps or 0))
+    return sat.least(part, budget) if isinstance(chosen, Undecided) else chosen
+
+
+def _without(part: Compact, never: set[tuple[int, IRI]]) -> Compact:
+    return replace(
+        part,
+        options=tuple(
+            tuple(option for option in options if (role, option.component) not in never)
+            for role, options in enumerate(part.options)
+        ),
+    )

@@ -2,15 +2,18 @@
 
 The slots are filled in order, and each takes its options in order, so that the first solution met is the least. A
 partial solution is given up as soon as a need of somebody in it can no longer be served: it is not served yet, and no
-slot left has an option that gives it. No recursion: ten thousand roles are as deep as ten thousand slots.
+slot left has an option that gives it; and, where roles share candidates, as soon as the slots left cannot all have a
+component of their own. No recursion: ten thousand roles are as deep as ten thousand slots.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.compact import Compact, Option
+from selfconf.search.matching import Partners
 
 
 @dataclass(slots=True)
@@ -29,14 +32,18 @@ class Budget:
             self.steps = max(0, self.steps - steps)
 
 
-def walk(compact: Compact, budget: Budget, distinct: bool = True) -> list[Option] | Undecided | None:
+def walk(
+    compact: Compact, budget: Budget, distinct: bool = True, partners: Partners | None = None
+) -> list[Option] | Undecided | None:
     """The least solution, one option per slot; None if there is none; Undecided when the steps are used up."""
-    return _Walk(compact, distinct).run(budget)
+    return next(Walk(compact, distinct, partners).solutions(budget), None)
 
 
-class _Walk:
-    def __init__(self, compact: Compact, distinct: bool) -> None:
-        self.compact, self.distinct = compact, distinct
+class Walk:
+    """A depth-first search that may be resumed after each solution; a subclass may refuse options."""
+
+    def __init__(self, compact: Compact, distinct: bool = True, partners: Partners | None = None) -> None:
+        self.compact, self.distinct, self.partners = compact, distinct, partners
         slots = compact.slots
         self.chosen: list[Option] = []
         self.taken: set[str] = set()
@@ -55,41 +62,47 @@ class _Walk:
             if place >= 0:
                 self.expiring[place].append(need)
 
-    def run(self, budget: Budget) -> list[Option] | Undecided | None:
+    def solutions(self, budget: Budget) -> Iterator[list[Option] | Undecided]:
+        """Solutions in lexicographic order; Undecided, and then no more, when the steps are used up."""
         slots, options = self.compact.slots, self.compact.options
         cursor = [0] * (len(slots) + 1)
         place, steps = 0, 0
         limit = budget.steps
-        while place < len(slots):
-            role = slots[place]
-            waiting, index = options[role], cursor[place]
-            while index < len(waiting):
-                if steps == limit:
-                    budget.spend(steps)
-                    return Undecided(steps)
-                steps += 1
-                index += 1
-                if self._push(place, waiting[index - 1]):
-                    break
-            else:
-                if not place:
-                    budget.spend(steps)
-                    return None
-                place -= 1
-                self._pop()
-                continue
-            cursor[place] = index
-            place += 1
+        while place >= 0:
             if place < len(slots):
-                cursor[place] = index if slots[place] == role else 0
+                role = slots[place]
+                waiting, index = options[role], cursor[place]
+                pushed = False
+                while index < len(waiting) and not pushed:
+                    if steps == limit:
+                        budget.spend(steps)
+                        yield Undecided(steps)
+                        return
+                    steps += 1
+                    pushed = self.push(place, waiting[index])
+                    index += 1
+                if pushed:
+                    cursor[place] = index
+                    place += 1
+                    cursor[place] = index if place < len(slots) and slots[place] == role else 0
+                    continue
+            else:
+                budget.spend(steps)
+                limit, steps = budget.steps, 0
+                yield list(self.chosen)
+            place -= 1
+            if place >= 0:
+                self.pop()
         budget.spend(steps)
-        return self.chosen
 
-    def _push(self, place: int, option: Option) -> bool:
+    def push(self, place: int, option: Option) -> bool:
+        """Put an option into a slot, unless it cannot be there."""
         kind = option.kind
         if option.component in self.taken:
             return False
         values = self.values[-1]
+        if self.partners is not None and not self.partners.give(place, option.component):
+            return False
         if values:
             values = tuple(value & allowed for value, allowed in zip(values, kind.admits, strict=True))
             if not all(values):
@@ -104,15 +117,16 @@ class _Walk:
         self.chosen.append(option)
         for need in kind.needs:
             if not self.fed[need] and self.last[need] <= place:
-                self._pop()
+                self.pop()
                 return False
         for need in self.expiring[place]:
             if self.needed[need] and not self.fed[need]:
-                self._pop()
+                self.pop()
                 return False
         return True
 
-    def _pop(self) -> None:
+    def pop(self) -> None:
+        """Take the last option out again."""
         option = self.chosen.pop()
         self.taken.discard(option.component)
         self.values.pop()

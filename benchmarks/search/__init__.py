@@ -1,0 +1,1 @@
+"""The search beside general solvers."""

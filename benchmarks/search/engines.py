@@ -1,0 +1,193 @@
+"""The search of selfconf and the engines beside it, each fed with the problem as its users would write it down.
+
+An engine gets a problem and answers whether there is a configuration. Ours gives the first one; the general solvers
+may give any, which is the easier question. Building the model is part of the time, importing a library is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TypeVar
+
+from selfconf.search import paper, solve
+from selfconf.search.compact import Prepared
+from selfconf.search.problem import Problem
+from selfconf.search.walk import Budget
+
+L = TypeVar("L")
+
+
+def selfconf(problem: Problem) -> bool:
+    """The strategy `first`."""
+    return isinstance(solve.solution(Prepared(problem), Budget()), list)
+
+
+def algorithm_1(problem: Problem) -> bool:
+    """The paper's algorithm."""
+    return paper.search(problem) is not None
+
+
+PROGRAM = """
+1 { plays(R,C) : candidate(R,C) } 1 :- role(R).
+:- component(C), 2 { plays(R,C) }.
+fed(R,S) :- feeds(Q,R), plays(Q,C), output(C,S).
+:- plays(R,C), input(C,S), not fed(R,S).
+1 { value(V,K) : domain(V,K) } 1 :- variable(V).
+:- plays(R,C), constrained(R,C,V), value(V,K), not allows(R,C,V,K).
+"""
+
+
+def clingo(problem: Problem) -> bool:
+    """Answer set programming (Potassco), one program from facts; default configuration, first answer set."""
+    import clingo as asp
+
+    control = asp.Control(["--warn=none"])
+    control.add("base", [], PROGRAM + "\n".join(_facts(problem)))
+    control.ground([("base", [])])
+    return bool(control.solve().satisfiable)
+
+
+def _facts(problem: Problem) -> Iterator[str]:
+    signals: dict[str, int] = {}
+    components: dict[str, int] = {}
+    for role, candidates in enumerate(problem.candidates):
+        yield f"role({role})."
+        for link in problem.links[role]:
+            yield f"feeds({link.source},{role})."
+        for candidate in candidates:
+            profile = candidate.profile
+            known = profile.component in components
+            number = components.setdefault(profile.component, len(components))
+            yield f"candidate({role},{number})."
+            if not known:
+                yield f"component({number})."
+                for wanted in profile.inputs:
+                    yield f"input({number},{signals.setdefault(wanted.signal, len(signals))})."
+                for output in profile.outputs:
+                    yield f"output({number},{signals.setdefault(output.signal, len(signals))})."
+            for variable, mask in enumerate(candidate.admits):
+                if mask >= 0:
+                    yield f"constrained({role},{number},{variable})."
+                    for value in _bits(mask):
+                        yield f"allows({role},{number},{variable},{value})."
+    for number, variable_ in enumerate(problem.variables):
+        yield f"variable({number})."
+        for value in range(len(variable_.domain)):
+            yield f"domain({number},{value})."
+
+
+def _bits(mask: int) -> Iterator[int]:
+    while mask:
+        yield (mask & -mask).bit_length() - 1
+        mask &= mask - 1
+
+
+def cp_sat(problem: Problem) -> bool:
+    """OR-tools CP-SAT with Boolean variables, one worker."""
+    from ortools.sat.python import cp_model
+
+    model = cp_model.CpModel()
+    plays = [[model.new_bool_var("") for _ in candidates] for candidates in problem.candidates]
+    for literals in plays:
+        model.add_exactly_one(literals)
+    for same in _shared(problem, plays):
+        model.add_at_most_one(same)
+    for needing, givers in _needs(problem, plays):
+        fed = model.new_bool_var("")
+        model.add_bool_or([*givers, ~fed])
+        for literal in needing:
+            model.add_implication(literal, fed)
+    for values, some in _values(problem, plays, lambda: model.new_bool_var("")):
+        model.add_exactly_one(values)
+        for literal, mask in some:
+            model.add_bool_or([~literal, *(values[k] for k in _bits(mask))])
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    return bool(solver.solve(model) in (cp_model.OPTIMAL, cp_model.FEASIBLE))
+
+
+def python_sat(problem: Problem) -> bool:
+    """python-sat with Glucose 4, cardinalities by its own encodings."""
+    from pysat.card import CardEnc, EncType
+    from pysat.solvers import Solver
+
+    top = 0
+
+    def new() -> int:
+        nonlocal top
+        top += 1
+        return top
+
+    plays = [[new() for _ in candidates] for candidates in problem.candidates]
+    needs = list(_needs(problem, plays))
+    values = list(_values(problem, plays, new))
+    with Solver(name="glucose4") as solver:
+        for needing, givers in needs:
+            fed = new()
+            solver.add_clause([*givers, -fed])
+            for literal in needing:
+                solver.add_clause([-literal, fed])
+        groups = [(literals, True) for literals in plays]
+        groups += [(same, False) for same in _shared(problem, plays)]
+        for domain, some in values:
+            groups.append((domain, True))
+            for literal, mask in some:
+                solver.add_clause([-literal, *(domain[k] for k in _bits(mask))])
+        for literals, one in groups:
+            if one:
+                solver.add_clause(literals)
+            encoded = CardEnc.atmost(literals, 1, top_id=top, encoding=EncType.seqcounter)
+            top = max(top, encoded.nv)
+            solver.append_formula(encoded.clauses)
+        return bool(solver.solve())
+
+
+def _shared(problem: Problem, plays: list[list[L]]) -> list[list[L]]:
+    """The literals of components that are candidates for several roles."""
+    by_name: dict[str, list[L]] = {}
+    for candidates, literals in zip(problem.candidates, plays, strict=True):
+        for candidate, literal in zip(candidates, literals, strict=True):
+            by_name.setdefault(candidate.profile.component, []).append(literal)
+    return [same for same in by_name.values() if len(same) > 1]
+
+
+def _needs(problem: Problem, plays: list[list[L]]) -> Iterator[tuple[list[L], list[L]]]:
+    """For each role and signal: who needs it there, and who gives it."""
+    gives: list[dict[str, list[L]]] = [{} for _ in plays]
+    for role, candidates in enumerate(problem.candidates):
+        for candidate, literal in zip(candidates, plays[role], strict=True):
+            for output in candidate.profile.outputs:
+                gives[role].setdefault(output.signal, []).append(literal)
+    for role, candidates in enumerate(problem.candidates):
+        needing: dict[str, list[L]] = {}
+        for candidate, literal in zip(candidates, plays[role], strict=True):
+            for wanted in candidate.profile.inputs:
+                needing.setdefault(wanted.signal, []).append(literal)
+        for signal, some in needing.items():
+            yield some, [g for link in problem.links[role] for g in gives[link.source].get(signal, ())]
+
+
+def _values(
+    problem: Problem, plays: list[list[L]], new: Callable[[], L]
+) -> Iterator[tuple[list[L], list[tuple[L, int]]]]:
+    """For each variable a literal per value, and who allows which."""
+    for number, variable in enumerate(problem.variables):
+        yield (
+            [new() for _ in variable.domain],
+            [
+                (literal, candidate.admits[number])
+                for candidates, literals in zip(problem.candidates, plays, strict=True)
+                for candidate, literal in zip(candidates, literals, strict=True)
+                if candidate.admits[number] >= 0
+            ],
+        )
+
+
+ENGINES: dict[str, Callable[[Problem], bool]] = {
+    "selfconf": selfconf,
+    "clingo": clingo,
+    "CP-SAT": cp_sat,
+    "python-sat": python_sat,
+    "Algorithm 1": algorithm_1,
+}
+LIBRARIES = {"clingo": "clingo", "CP-SAT": "ortools.sat.python.cp_model", "python-sat": "pysat.solvers"}

@@ -1,0 +1,151 @@
+"""A certificate: whether a configuration is one, checked by rules that share nothing with the search.
+
+It reads the contract as a list of conditions on a finished configuration (section 2 of the paper: <B, S>, the two
+rules of section 2.3) and says which of them it breaks. It imports values alone, and no code of the search, so that a
+mistake there does not repeat itself here. Linear in the connections that there could be.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+
+from selfconf.model.configuration import Configuration, Connection, ParameterSetting
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.partition import Candidate, Partition
+from selfconf.model.template import Task
+from selfconf.model.term import IRI, Term
+
+Players = Mapping[IRI, Sequence[Candidate]]
+
+
+def check(
+    task: Task, partition: Partition, configuration: Configuration, hierarchy: Hierarchy = NOTHING_ABOVE
+) -> list[str]:
+    """Every condition that a configuration breaks, each in a sentence; empty if it is one."""
+    return list(_Check(task, partition, configuration, hierarchy).problems())
+
+
+class _Check:
+    def __init__(self, task: Task, partition: Partition, configuration: Configuration, hierarchy: Hierarchy) -> None:
+        self.task, self.partition = task, partition
+        self.configuration, self.hierarchy = configuration, hierarchy
+        self.template = task.template
+
+    def problems(self) -> Iterator[str]:
+        """Roles first: what rests on them can only be checked when the right components play."""
+        wrong = list(self._roles())
+        yield from wrong
+        if not wrong:
+            players = self._players()
+            yield from self._connections(players)
+            yield from self._values(players)
+            yield from self._settings(players)
+
+    def _roles(self) -> Iterator[str]:
+        configuration = self.configuration
+        if configuration.template != self.template.iri:
+            yield f"it is a configuration of {configuration.template.short}, not of {self.template.iri.short}"
+        roles = [role.iri for role in self.template.roles]
+        if [assignment.role for assignment in configuration.assignments] != roles:
+            yield "its roles are not those of the template, each once and in order"
+            return
+        for component, times in Counter(configuration.components).items():
+            if times > 1:
+                yield f"{component.short} plays {times} parts"
+        for role, assignment, eligible in zip(
+            self.template.roles, configuration.assignments, self.partition.candidates, strict=True
+        ):
+            number = len(assignment.components)
+            if number < role.minimum:
+                yield f"{role.iri.short} asks for {role.minimum} components and has {number}"
+            if role.maximum is not None and number > role.maximum:
+                yield f"{role.iri.short} allows {role.maximum} components and has {number}"
+            known = {candidate.profile.component for candidate in eligible}
+            for component in assignment.components:
+                if component not in known:
+                    yield f"{component.short} is not eligible for {role.iri.short}"
+
+    def _players(self) -> dict[IRI, list[Candidate]]:
+        players: dict[IRI, list[Candidate]] = {}
+        for assignment, eligible in zip(self.configuration.assignments, self.partition.candidates, strict=True):
+            chosen = set(assignment.components)
+            by_name = {c.profile.component: c for c in eligible if c.profile.component in chosen}
+            players[assignment.role] = [by_name[component] for component in assignment.components]
+        return players
+
+    def _connections(self, players: Players) -> Iterator[str]:
+        possible = {
+            Connection(source.profile.component, output.name, sink.profile.component, wanted.name)
+            for interaction in self.template.interactions
+            for source in players[interaction.source]
+            for sink in players[interaction.sink]
+            for output in source.profile.outputs
+            if interaction.output is None or interaction.output == output.name
+            for wanted in sink.profile.inputs
+            if interaction.input is None or interaction.input == wanted.name
+            if self.hierarchy.matches(output.signal, wanted.signal)
+        }
+        actual = Counter(self.configuration.connections)
+        for connection in sorted(set(actual) - possible):
+            yield f"{_words(connection)}: no interaction makes this connection"
+        for connection in sorted(possible - set(actual)):
+            yield f"{_words(connection)}: this connection is missing"
+        for connection, times in actual.items():
+            if times > 1:
+                yield f"{_words(connection)}: this connection is there {times} times"
+        fed = {(connection.sink, connection.input) for connection in actual}
+        for some in players.values():
+            for candidate in some:
+                for wanted in candidate.profile.inputs:
+                    if (candidate.profile.component, wanted.name) not in fed:
+                        yield f"the input {wanted.name!r} of {candidate.profile.component.short} is not fed"
+
+    def _values(self, players: Players) -> Iterator[str]:
+        names = {parameter.iri: parameter.name for parameter in self.template.parameters}
+        bindings = self.configuration.bindings
+        for iri, value in self.task.bindings.items():
+            if bindings.get(names[iri]) != value:
+                yield f"the parameter {names[iri]} is bound to {value}, not to {bindings.get(names[iri])}"
+        for number, variable in enumerate(self.partition.variables):
+            name = names[variable.parameter]
+            constrained = [
+                candidate for some in players.values() for candidate in some if candidate.admits[number] >= 0
+            ]
+            found: Term | None = bindings.get(name)
+            if found is None:
+                if constrained:
+                    yield f"the parameter {name} has no value, and {len(constrained)} components depend on it"
+            elif found not in variable.domain:
+                yield f"the parameter {name} is {found}, which no candidate allows"
+            else:
+                bit = 1 << variable.domain.index(found)
+                for candidate in constrained:
+                    if not candidate.admits[number] & bit:
+                        yield f"{candidate.profile.component.short} does not allow {name} to be {found}"
+
+    def _settings(self, players: Players) -> Iterator[str]:
+        names = {parameter.iri: parameter.name for parameter in self.template.parameters}
+        expected: list[ParameterSetting] = []
+        for role in self.template.roles:
+            for setting in role.settings:
+                value: Term | None = setting.value
+                if isinstance(value, IRI) and value in names:
+                    value = self.configuration.bindings.get(names[value])
+                if value is None:
+                    yield f"the role {role.iri.short} sets a parameter to something that has no value"
+                    return
+                for candidate in players[role.iri]:
+                    for parameter in candidate.profile.parameters:
+                        if self.hierarchy.matches(setting.type, parameter.type):
+                            expected.append(ParameterSetting(candidate.profile.component, parameter.name, value))
+        actual = self.configuration.settings
+        for one in dict.fromkeys((*actual, *expected)):
+            if actual.count(one) != expected.count(one):
+                fault = "is missing" if one not in actual else "is not asked for"
+                yield f"setting {one.name!r} of {one.component.short} to {one.value} {fault}"
+
+
+def _words(connection: Connection) -> str:
+    source = f"{connection.source.short}.{connection.output}"
+    return f"{source} to {connection.sink.short}.{connection.input}"

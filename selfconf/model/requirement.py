@@ -1,0 +1,51 @@
+"""What a configuration has to meet, one by one: the words in which a refusal says what cannot hold together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from selfconf.model.term import IRI
+
+
+@dataclass(frozen=True, slots=True)
+class RolePlayed:
+    """A role is played by as many components as it asks for at least."""
+
+    role: IRI
+
+    def __str__(self) -> str:
+        return f"{self.role.short} is played"
+
+
+@dataclass(frozen=True, slots=True)
+class InputFed:
+    """Whoever plays a role gets a signal; `input` is named where an interaction of the template names it."""
+
+    role: IRI
+    signal: IRI
+    input: str | None = None
+
+    def __str__(self) -> str:
+        port = f" at {self.input!r}" if self.input else ""
+        return f"{self.role.short} gets the {self.signal.short} that it needs{port}"
+
+
+@dataclass(frozen=True, slots=True)
+class OneValue:
+    """A free parameter, by name, has one value that suits everybody."""
+
+    parameter: str
+
+    def __str__(self) -> str:
+        return f"there is one {self.parameter} for all"
+
+
+@dataclass(frozen=True, slots=True)
+class OneRoleEach:
+    """No component plays two roles."""
+
+    def __str__(self) -> str:
+        return "nobody plays two parts"
+
+
+Requirement = RolePlayed | InputFed | OneValue | OneRoleEach

@@ -1,0 +1,97 @@
+"""Depth first over the candidates themselves: a few steps solve most real instances before anything is prepared.
+
+Slots are filled in order and take their candidates in order, so that solutions come in lexicographic order, the
+least first. It looks at no candidate that it does not try, where making a problem compact costs a pass over all of
+them; in return it sees late that a need cannot be served: once a role and all that feed it are filled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from selfconf.model.partition import Candidate
+from selfconf.search.problem import Problem
+from selfconf.search.walk import Budget
+
+
+class Filling:
+    """Fills the slots of a problem; a subclass may leave candidates out."""
+
+    def __init__(self, problem: Problem, budget: Budget) -> None:
+        self.problem, self.budget = problem, budget
+        self.slots = [role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum)]
+        self.playing: list[list[Candidate]] = [[] for _ in problem.roles]
+        self.taken: set[str] = set()
+        self._values = [problem.open_values]
+        self._due, self._work = self._checks()
+
+    def _checks(self) -> tuple[list[list[int]], list[int]]:
+        """After which slot the inputs of which roles can be checked, and about how many steps that is worth."""
+        last = {role: place for place, role in enumerate(self.slots)}
+        due: list[list[int]] = [[] for _ in self.slots]
+        work = [1 for _ in self.slots]
+        for role in last:
+            place = max(last[r] for r in (role, *self.problem.sources[role]) if r in last)
+            due[place].append(role)
+            first = self.problem.candidates[role][0].profile if self.problem.candidates[role] else None
+            work[place] += len(self.problem.links[role]) * len(first.inputs if first else ()) // 16
+        return due, work
+
+    def candidates(self, role: int, start: int) -> Iterator[tuple[int, Candidate]]:
+        """The candidates for the next slot of a role from a number on, in order, with their numbers."""
+        candidates = self.problem.candidates[role]
+        for number in range(start, len(candidates)):
+            yield number, candidates[number]
+
+    def first(self) -> list[list[Candidate]] | None:
+        """The least solution, if it is met within the budget."""
+        return next(self.solutions(), None)
+
+    def solutions(self) -> Iterator[list[list[Candidate]]]:
+        """Solutions in lexicographic order, until there are no more or the budget is used up."""
+        slots = self.slots
+        self._values = [self.problem.open_values]
+        following = [0] * (len(slots) + 1)
+        place = 0
+        while place >= 0:
+            if place < len(slots):
+                number = self._next(place, following[place])
+                if number is not None:
+                    following[place] = number + 1
+                    place += 1
+                    same = place < len(slots) and slots[place] == slots[place - 1]
+                    following[place] = number + 1 if same else 0
+                    continue
+                if self.budget.steps is not None and self.budget.steps <= 0:
+                    return
+            else:
+                yield self.playing
+            place -= 1
+            if place >= 0:
+                self.taken.discard(self.playing[slots[place]].pop().profile.component)
+                self._values.pop()
+
+    def _next(self, place: int, start: int) -> int | None:
+        """Put the next candidate that fits into a slot; its number, or None if there is none or the budget ends."""
+        role = self.slots[place]
+        for number, candidate in self.candidates(role, start):
+            if self.budget.steps is not None:
+                if self.budget.steps <= 0:
+                    return None
+                self.budget.steps -= self._work[place]
+            if candidate.profile.component in self.taken:
+                continue
+            narrowed = self.problem.narrowed(self._values[-1], candidate)
+            if narrowed is None:
+                continue
+            self.playing[role].append(candidate)
+            if self._fed(place):
+                self.taken.add(candidate.profile.component)
+                self._values.append(narrowed)
+                return number
+            self.playing[role].pop()
+        return None
+
+    def _fed(self, place: int) -> bool:
+        compatible, playing = self.problem.compatible, self.playing
+        return all(compatible(role, c.profile, playing) for role in self._due[place] for c in playing[role])

@@ -1,0 +1,225 @@
+"""What would make a refused task possible: small changes, each of which was tried and found to work.
+
+*Components to add.* A component without inputs that issues whatever the roles fed by its own want is the most helpful
+that could be added for a role. Wherever there is no solution, an irreducible set of requirements cannot hold; only a
+component for one of its roles, or for a role that may feed one of its inputs, changes that. So breadth-first search
+over sets of such additions, each extended by these roles alone, finds the fewest; then outputs that are not needed
+are taken away again.
+
+*Things to relax.* A role that asks for fewer; one interaction more, where some candidate issues what is lacking; a
+near miss let in. Each alone.
+
+All this is tried on the kernel of the problem (`compact`): adding, relaxing and linking leave its argument intact,
+since candidates of one kind have the same ports. The number of trials is limited, so that a hard case may end with
+fewer repairs than there are, never with a wrong one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition
+from selfconf.model.profile import Output, Profile
+from selfconf.model.refusal import Refusal
+from selfconf.model.repair import AcceptNearMiss, AddComponents, AddInteraction, Addition, AskForFewer, Repair
+from selfconf.model.requirement import InputFed, RolePlayed
+from selfconf.model.template import Interaction, Role
+from selfconf.model.term import IRI
+from selfconf.search import solve
+from selfconf.search.compact import Prepared, compact
+from selfconf.search.explain import Questions, core
+from selfconf.search.problem import Problem
+from selfconf.search.requirement import Fed, Played
+from selfconf.search.walk import Budget
+
+TRIALS = 24
+"""How many changed problems are looked at for each sort of repair."""
+RELAXED = 8
+"""How many roles of a conflict are tried with a smaller count; where more clash, that is no advice."""
+ADDITION = "urn:selfconf:addition:"
+"""What the names of components begin with that are not there yet."""
+STEPS = 100_000
+"""Steps for each of them."""
+
+
+def with_repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMiss, Candidate]] = ()) -> Refusal:
+    """The refusal with repairs; `near` are near misses with what they would be as candidates."""
+    return replace(refused, repairs=tuple(repairs(problem, refused, near)))
+
+
+def repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMiss, Candidate]] = ()) -> Iterator[Repair]:
+    """Changes that make a refused problem possible, what is easiest to do first."""
+    small = _kernel(problem)
+    for one, candidate in near[:TRIALS]:
+        accepted = AcceptNearMiss(one, candidate)
+        if _possible(mended(small, accepted)):
+            yield accepted
+    added = _additions(small)
+    if added is not None:
+        yield added
+    yield from (r for r in _interactions(small, refused) if _possible(mended(small, r)))
+    yield from _fewer(small, refused)
+
+
+def mended(problem: Problem, repair: Repair) -> Problem:
+    """The problem after a repair."""
+    if isinstance(repair, AddComponents):
+        more: dict[IRI, list[Candidate]] = {}
+        for addition in repair.additions:
+            some = more.setdefault(addition.role, [])
+            some += [_newcomer(problem, addition.role, len(some) + k, addition.outputs) for k in range(addition.count)]
+        return _with_candidates(problem, more)
+    if isinstance(repair, AcceptNearMiss):
+        return _with_candidates(problem, {repair.role: [repair.candidate]})
+    template = problem.task.template
+    if isinstance(repair, AddInteraction):
+        interactions = (*template.interactions, Interaction(repair.role, repair.sink))
+        template = replace(template, interactions=interactions)
+    else:
+        roles = tuple(
+            replace(role, minimum=repair.minimum) if role.iri == repair.role else role for role in template.roles
+        )
+        template = replace(template, roles=roles)
+    return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
+
+
+def _solution(problem: Problem) -> list[list[Candidate]] | None:
+    found = solve.solution(Prepared(problem), Budget(STEPS))
+    return found if isinstance(found, list) else None
+
+
+def _possible(problem: Problem) -> bool:
+    return _solution(problem) is not None
+
+
+def _kernel(problem: Problem) -> Problem:
+    kept = compact(problem).options
+    candidates = tuple(
+        tuple(candidates[option.number] for option in options)
+        for candidates, options in zip(problem.candidates, kept, strict=True)
+    )
+    return Problem(problem.task, Partition(candidates, problem.variables), problem.hierarchy)
+
+
+def _with_candidates(problem: Problem, more: dict[IRI, list[Candidate]]) -> Problem:
+    candidates = tuple(
+        (*known, *more.get(role.iri, ())) for role, known in zip(problem.roles, problem.candidates, strict=True)
+    )
+    return Problem(problem.task, Partition(candidates, problem.variables), problem.hierarchy)
+
+
+def _newcomer(problem: Problem, role: IRI, number: int, outputs: tuple[Output, ...]) -> Candidate:
+    name = IRI(f"{ADDITION}{number}:{role}")
+    return Candidate(Profile(name, outputs=outputs), tuple(ANY_VALUE for _ in problem.variables))
+
+
+def _additions(problem: Problem) -> AddComponents | None:
+    """The fewest components to add, if a few are enough."""
+    if any(role.maximum is not None and role.maximum < role.minimum for role in problem.roles):
+        return None
+    lacking: Counter[int] = Counter()
+    for number, (role, candidates) in enumerate(zip(problem.roles, problem.candidates, strict=True)):
+        lacking[number] = max(0, role.minimum - len(candidates))
+    outputs = [wanted_of(problem, role) for role in range(len(problem.roles))]
+    waiting, seen = [+lacking], {frozenset((+lacking).items())}
+    for trial in range(TRIALS):
+        if trial >= len(waiting):
+            return None
+        here = waiting[trial]
+        changed = mended(problem, _added(problem, here, outputs))
+        playing = _solution(changed) if here else None
+        if playing is not None:
+            return _trimmed(problem, here, outputs, playing)
+        for number in _helpful(changed):
+            further = here + Counter({number: 1})
+            if frozenset(further.items()) not in seen:
+                seen.add(frozenset(further.items()))
+                waiting.append(further)
+    return None
+
+
+def wanted_of(problem: Problem, role: int) -> tuple[Output, ...]:
+    """All that the roles fed by a role could want of it."""
+    wanted: dict[Output, None] = {}
+    for sink in problem.sinks[role]:
+        for link in problem.links[sink]:
+            if link.source == role:
+                for candidate in problem.candidates[sink]:
+                    for port in candidate.profile.inputs:
+                        if link.input in (None, port.name):
+                            wanted[Output(link.output or port.signal.short, port.signal)] = None
+    return tuple(wanted)
+
+
+def _helpful(problem: Problem) -> list[int]:
+    """The roles for which one more component could resolve the conflict that there is."""
+    given = compact(problem)
+    if given.short() is not None:
+        return []
+    together = core(Questions(given, Budget(STEPS)))
+    sources = [s for r in together if isinstance(r, Fed) for s, _ in given.needs[r.need].sources]
+    played = set(given.slots)
+    # What feeds comes first: a component that needs no inputs where others do is the less likely one to be had.
+    found = dict.fromkeys((*sources, *(r.role for r in together if isinstance(r, Played))))
+    return [role for role in found if role in played]
+
+
+def _added(problem: Problem, here: Counter[int], outputs: Sequence[tuple[Output, ...]]) -> AddComponents:
+    return AddComponents(tuple(Addition(problem.roles[role].iri, here[role], outputs[role]) for role in sorted(here)))
+
+
+def _trimmed(
+    problem: Problem, here: Counter[int], outputs: Sequence[tuple[Output, ...]], playing: list[list[Candidate]]
+) -> AddComponents:
+    """The same additions with only the outputs that the solution which was found needs."""
+    left = list(outputs)
+    for role in sorted(here):
+        for output in outputs[role]:
+            fewer = tuple(one for one in left[role] if one != output)
+            # All that is added for the role changes alike, so that one addition can stand for them all.
+            changed = [*playing[:role], [_without(c, fewer) for c in playing[role]], *playing[role + 1 :]]
+            if all(problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]):
+                left[role], playing = fewer, changed
+    return _added(problem, here, left)
+
+
+def _without(candidate: Candidate, outputs: tuple[Output, ...]) -> Candidate:
+    if not candidate.profile.component.startswith(ADDITION):
+        return candidate
+    return replace(candidate, profile=replace(candidate.profile, outputs=outputs))
+
+
+def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction]:
+    """Links that are not there, from roles with a candidate that issues a signal which is lacking."""
+    lacking = [r for reason in refused.reasons for r in reason.requirements if isinstance(r, InputFed)]
+    index = {role.iri: number for number, role in enumerate(problem.roles)}
+    tried: set[tuple[IRI, IRI]] = set()
+    for need in lacking:
+        for number, role in enumerate(problem.roles):
+            pair = role.iri, need.role
+            known = any(
+                link.source == number and link.output is None and link.input is None
+                for link in problem.links[index[need.role]]
+            )
+            issues = any(
+                problem.hierarchy.matches(output.signal, need.signal)
+                for candidate in problem.candidates[number]
+                for output in candidate.profile.outputs
+            )
+            if issues and not known and pair not in tried and len(tried) < TRIALS:
+                tried.add(pair)
+                yield AddInteraction(*pair)
+
+
+def _fewer(problem: Problem, refused: Refusal) -> Iterator[AskForFewer]:
+    """For each role of the conflict the most that it can ask for."""
+    named = [r.role for reason in refused.reasons for r in reason.requirements if isinstance(r, RolePlayed)]
+    for iri in list(dict.fromkeys(named))[:RELAXED]:
+        role: Role = problem.task.template.role(iri)
+        for minimum in reversed(range(max(0, role.minimum - TRIALS), role.minimum)):
+            repair = AskForFewer(iri, minimum)
+            if _possible(mended(problem, repair)):
+                yield repair
+                break

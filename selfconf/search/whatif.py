@@ -1,0 +1,58 @@
+"""What if one component fails (N - 1): for each component of a configuration, what would come instead of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+from selfconf.search import repair
+from selfconf.search.problem import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """A component that may fail, the role it plays, and the configuration after that, or why there is none."""
+
+    component: IRI
+    role: IRI
+    after: Configuration | Refusal
+    started: tuple[IRI, ...] = ()
+    """Components that would begin to play a part, in the order of the roles."""
+    stopped: tuple[IRI, ...] = ()
+    """Components that would no longer play one, apart from the one that failed."""
+
+    @property
+    def fatal(self) -> bool:
+        """Whether it is a single point of failure."""
+        return isinstance(self.after, Refusal)
+
+    def __str__(self) -> str:
+        head = f"{self.component.short} ({self.role.short})"
+        if self.fatal:
+            return f"{head}: none, a single point of failure"
+        if not self.started:
+            return f"{head}: none needed"
+        stops = f", and {', '.join(one.short for one in self.stopped)} would stop" if self.stopped else ""
+        return f"{head}: {', '.join(one.short for one in self.started)}{stops}"
+
+
+def losses(problem: Problem, running: Configuration) -> Iterator[Loss]:
+    """The loss of each component of a configuration by itself, in the order of the roles."""
+    for assignment in running.assignments:
+        for component in assignment.components:
+            left = Problem(problem.task, problem.partition.without(frozenset((component,))), problem.hierarchy)
+            after = repair.search(left, running)
+            if isinstance(after, Refusal):
+                yield Loss(component, assignment.role, after)
+            else:
+                before, now = running.components, after.components
+                yield Loss(
+                    component,
+                    assignment.role,
+                    after,
+                    tuple(one for one in now if one not in before),
+                    tuple(one for one in before if one not in now and one != component),
+                )

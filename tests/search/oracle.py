@@ -1,0 +1,153 @@
+"""The semantics once more, by enumeration: nothing here comes from the search, and nothing here is clever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations, product
+
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.partition import Candidate, Partition, Variable
+from selfconf.model.template import Role, Task
+from selfconf.model.term import IRI
+
+Players = tuple[tuple[Candidate, ...], ...]
+
+
+class World:
+    """A task, a partition and a hierarchy, with the rules of the contract as plain loops."""
+
+    def __init__(self, task: Task, partition: Partition, hierarchy: Hierarchy) -> None:
+        self.task, self.partition, self.hierarchy = task, partition, hierarchy
+        self.template = task.template
+        self.roles: tuple[Role, ...] = task.template.roles
+        self.candidates = partition.candidates
+        self.variables: tuple[Variable, ...] = partition.variables
+        self.place = {role.iri: number for number, role in enumerate(self.roles)}
+
+    def connections(self, players: Sequence[Sequence[Candidate]]) -> set[Connection]:
+        """Every pair of ports that an interaction of the template connects."""
+        found = set()
+        for interaction in self.template.interactions:
+            for source in players[self.place[interaction.source]]:
+                for sink in players[self.place[interaction.sink]]:
+                    for output in source.profile.outputs:
+                        for wanted in sink.profile.inputs:
+                            if interaction.output not in (None, output.name):
+                                continue
+                            if interaction.input not in (None, wanted.name):
+                                continue
+                            if wanted.signal in self.hierarchy.superclasses(output.signal):
+                                found.add(
+                                    Connection(
+                                        source.profile.component,
+                                        output.name,
+                                        sink.profile.component,
+                                        wanted.name,
+                                    )
+                                )
+        return found
+
+    def unfed(self, players: Sequence[Sequence[Candidate]]) -> list[tuple[IRI, str]]:
+        """The inputs of players that nothing is connected to."""
+        fed = {(c.sink, c.input) for c in self.connections(players)}
+        return [
+            (candidate.profile.component, wanted.name)
+            for role in players
+            for candidate in role
+            for wanted in candidate.profile.inputs
+            if (candidate.profile.component, wanted.name) not in fed
+        ]
+
+    def values(self, players: Sequence[Sequence[Candidate]]) -> list[set[int] | None]:
+        """For each variable the numbers of the values that every player allows; None where nobody constrains it."""
+        found: list[set[int] | None] = []
+        for number, variable in enumerate(self.variables):
+            masks = [c.admits[number] for role in players for c in role if c.admits[number] >= 0]
+            is_set = any(p.is_set for p in self.template.parameters if p.iri == variable.parameter)
+            if not masks and not is_set:
+                found.append(None)
+            else:
+                found.append({k for k in range(len(variable.domain)) if all(mask >> k & 1 for mask in masks)})
+        return found
+
+    def valid(self, players: Sequence[Sequence[Candidate]]) -> bool:
+        """Distinct, fed, and of one mind about the free parameters."""
+        everybody = [candidate.profile.component for role in players for candidate in role]
+        return (
+            len(everybody) == len(set(everybody))
+            and not self.unfed(players)
+            and all(allowed is None or allowed for allowed in self.values(players))
+        )
+
+    def solutions(self) -> Iterator[Players]:
+        """Every solution with the minima, in lexicographic order."""
+        for players in product(
+            *(combinations(c, role.minimum) for c, role in zip(self.candidates, self.roles, strict=True))
+        ):
+            if self.valid(players):
+                yield players
+
+    def all_sizes(self) -> Iterator[Players]:
+        """Every configuration whatever its cardinalities, from the minima to the maxima."""
+        sized = [
+            [
+                chosen
+                for size in range(role.minimum, 1 + min(len(c), len(c) if role.maximum is None else role.maximum))
+                for chosen in combinations(c, size)
+            ]
+            for c, role in zip(self.candidates, self.roles, strict=True)
+        ]
+        return (players for players in product(*sized) if self.valid(players))
+
+    def extended(self, players: Sequence[Sequence[Candidate]]) -> list[list[Candidate]]:
+        """With every further candidate that fits, in order, up to the maxima."""
+        grown = [list(role) for role in players]
+        while True:
+            for number, role in enumerate(self.roles):
+                if role.maximum is not None and len(grown[number]) >= role.maximum:
+                    continue
+                more = next((c for c in self.candidates[number] if self._fits(grown, number, c)), None)
+                if more is not None:
+                    grown[number].append(more)
+                    break
+            else:
+                return grown
+
+    def _fits(self, grown: list[list[Candidate]], number: int, more: Candidate) -> bool:
+        return self.valid([[*role, more] if k == number else role for k, role in enumerate(grown)])
+
+    def configuration(self, players: Sequence[Sequence[Candidate]]) -> Configuration:
+        """The configuration that players are, extended."""
+        grown = self.extended(players)
+        bindings = self.task.by_name()
+        names = {p.iri: p.name for p in self.template.parameters}
+        for variable, allowed in zip(self.variables, self.values(grown), strict=True):
+            if allowed:
+                bindings[names[variable.parameter]] = variable.domain[min(allowed)]
+        settings = []
+        for role, chosen in zip(self.roles, grown, strict=True):
+            for setting in role.settings:
+                value = setting.value
+                if isinstance(value, IRI) and value in names:
+                    value = bindings[names[value]]
+                for candidate in chosen:
+                    for parameter in candidate.profile.parameters:
+                        if parameter.type in self.hierarchy.superclasses(setting.type):
+                            settings.append(ParameterSetting(candidate.profile.component, parameter.name, value))
+        order = {c.profile.component: k for k, c in enumerate(c for role in grown for c in role)}
+        return Configuration(
+            self.template.iri,
+            tuple(
+                Assignment(role.iri, tuple(c.profile.component for c in chosen))
+                for role, chosen in zip(self.roles, grown, strict=True)
+            ),
+            tuple(sorted(self.connections(grown), key=lambda c: (order[c.source], c.output, order[c.sink], c.input))),
+            tuple(settings),
+            dict(sorted(bindings.items())),
+        )
+
+    def first(self) -> Configuration | None:
+        """The answer: the first solution, extended."""
+        players = next(self.solutions(), None)
+        return None if players is None else self.configuration(players)

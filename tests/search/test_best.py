@@ -1,0 +1,149 @@
+"""The strategy `best` finds a solution of least cost, and among those the first."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.cost import CostTerm, cost, number
+from selfconf.model.partition import Partition
+from selfconf.model.profile import Profile
+from selfconf.model.term import IRI, XSD, Literal
+from selfconf.search import best, solve
+from selfconf.search.best import Optimum
+from selfconf.search.problem import Problem
+from tests.search.oracle import Players, World
+from tests.search.worlds import agreement, component, iri, problem, problems
+
+LATENCY, ERROR = iri("latency"), iri("error")
+
+
+def priced(profile: Profile, **values: float) -> Profile:
+    """A component with numbers for properties."""
+    said = tuple((iri(name), Literal(str(value), IRI(XSD + "decimal"))) for name, value in values.items())
+    return replace(profile, properties=said)
+
+
+def stating(problem: Problem, *levels: tuple[CostTerm, ...]) -> Problem:
+    """The problem with a cost."""
+    template = replace(problem.task.template, cost=levels)
+    return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
+
+
+@st.composite
+def priced_problems(draw: st.DrawFn) -> Problem:
+    """Problems with a cost of one or two levels over properties that some components have."""
+    plain = draw(problems())
+    names = sorted({c.profile.component for role in plain.candidates for c in role})
+    amounts = st.integers(-2, 3)
+    known = {
+        name: tuple(
+            (predicate, Literal(str(draw(amounts) / 2), IRI(XSD + "decimal")))
+            for predicate in (LATENCY, ERROR)
+            if draw(st.integers(0, 3))
+        )
+        for name in names
+    }
+    candidates = tuple(
+        tuple(replace(c, profile=replace(c.profile, properties=known[c.profile.component])) for c in role)
+        for role in plain.candidates
+    )
+    terms = st.builds(
+        CostTerm,
+        st.sampled_from([LATENCY, ERROR]),
+        st.sampled_from([Fraction(1), Fraction(-1, 3), Fraction(2)]),
+        st.sampled_from([None, Fraction(1)]),
+        st.sampled_from([None, None, *(role.iri for role in plain.roles)]),
+    )
+    levels = draw(st.lists(st.lists(terms, min_size=1, max_size=2).map(tuple), max_size=2))
+    whole = Problem(plain.task, Partition(candidates, plain.variables), plain.hierarchy)
+    return stating(whole, *levels)
+
+
+def _total(world: World, players: Players) -> tuple[Fraction, ...]:
+    rows = [
+        cost(world.template.cost, role.iri, c.profile, world.hierarchy)
+        for role, some in zip(world.roles, players, strict=True)
+        for c in some
+    ]
+    return tuple(sum((row[k] for row in rows), Fraction(0)) for k in range(1 + len(world.template.cost)))
+
+
+@given(priced_problems())
+@agreement(0.4)
+def test_the_best_is_the_first_of_least_cost(problem: Problem) -> None:
+    world = World(problem.task, problem.partition, problem.hierarchy)
+    solutions = list(world.solutions())
+    answer = best.search(problem)
+    if not solutions:
+        assert not isinstance(answer, Optimum)
+        return
+    least = min(solutions, key=lambda players: _total(world, players))
+    assert isinstance(answer, Optimum)
+    assert answer.proved
+    assert (answer.unknown, *answer.cost) == _total(world, least)
+    assert answer.configuration == world.configuration(least)
+
+
+@given(priced_problems())
+@agreement(0.5)
+def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
+    pytest.importorskip("pysat")
+    expected = best.search(problem)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(best, "WALK_STEPS", 0)
+        answer = best.search(problem)
+    assert not isinstance(expected, Optimum) or answer == expected
+
+
+@given(priced_problems(), st.integers(20, 60))
+@agreement(0.2)
+def test_what_is_found_in_few_steps_has_an_honest_bound(problem: Problem, steps: int) -> None:
+    world = World(problem.task, problem.partition, problem.hierarchy)
+    answer = best.search(problem, steps)
+    if isinstance(answer, Optimum) and answer.unknown == 0:
+        least = min(_total(world, players) for players in world.solutions())
+        assert answer.bound <= least[1:] or least[0] < 0
+        assert answer.cost >= least[1:]
+
+
+def test_first_takes_the_preferred_and_best_the_cheapest() -> None:
+    quick = priced(component("quick", outputs="p:Pose"), latency=0.1)
+    liked = priced(component("liked", outputs="p:Pose", preference=5), latency=0.5)
+    given_ = stating(
+        problem({"position": [liked, quick], "control": [component("cap", "p:Pose")]}, "position>control"),
+        (CostTerm(LATENCY, role=iri("position")),),
+    )
+    answer = best.search(given_)
+    assert isinstance(answer, Optimum)
+    assert answer.cost == (Fraction(1, 10),)
+    assert answer.configuration.components[0].short == "quick"
+    first = solve.search(given_)
+    assert isinstance(first, Configuration)
+    assert first.components[0].short == "liked"
+
+
+def test_a_cost_over_a_property_that_nobody_has_changes_nothing_and_is_told() -> None:
+    given_ = stating(problem({"eye": [component("a"), component("b")]}), (CostTerm(LATENCY),))
+    answer = best.search(given_)
+    assert isinstance(answer, Optimum)
+    assert answer.configuration.components[0].short == "a"
+    assert answer.unknown == 1
+
+
+def test_what_is_known_is_better_than_what_is_not() -> None:
+    known = priced(component("known"), latency=100)
+    answer = best.search(stating(problem({"eye": [component("unknown"), known]}), (CostTerm(LATENCY),)))
+    assert isinstance(answer, Optimum)
+    assert answer.configuration.components[0].short == "known"
+
+
+def test_a_literal_that_is_no_measurement_is_no_number() -> None:
+    for lexical in ("INF", "NaN", "1e999999999", "fast", "9" * 1000):
+        assert number(Literal(lexical)) is None
+    assert number(Literal("2.50")) == Fraction(5, 2)

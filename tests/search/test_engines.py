@@ -1,0 +1,100 @@
+"""Each engine by itself, where a quicker one would otherwise answer first."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+from hypothesis import given
+
+from selfconf.model.refusal import Undecided
+from selfconf.search import sat
+from selfconf.search.compact import Compact, Option, compact
+from selfconf.search.filling import Filling
+from selfconf.search.matching import Partners, Shortage, impossible, shortage
+from selfconf.search.problem import Problem
+from selfconf.search.requirement import pruned
+from selfconf.search.walk import Budget, walk
+from tests.search.oracle import World
+from tests.search.worlds import agreement, problems
+
+
+def _numbers(problem: Problem) -> list[int] | None:
+    """The candidates of the least solution by number, slot by slot, as enumeration finds them."""
+    players = next(World(problem.task, problem.partition, problem.hierarchy).solutions(), None)
+    if players is None:
+        return None
+    return [problem.candidates[role].index(c) for role, chosen in enumerate(players) for c in chosen]
+
+
+def _chosen(found: list[Option] | Undecided | None) -> list[int] | None:
+    assert not isinstance(found, Undecided)
+    return None if found is None else [option.number for option in found]
+
+
+@given(problems())
+@agreement(0.6)
+def test_depth_first_on_the_kernel_finds_the_least_solution(problem: Problem) -> None:
+    expected = _numbers(problem)
+    assert _chosen(walk(pruned(compact(problem)), Budget())) == expected
+    assert _chosen(walk(compact(problem), Budget())) == expected
+
+
+@given(problems())
+@agreement(0.6)
+def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
+    pytest.importorskip("pysat")
+    expected = _numbers(problem)
+    assert _chosen(sat.least(pruned(compact(problem)), Budget())) == expected
+    assert _chosen(sat.least(compact(problem), Budget(10_000))) == expected
+
+
+@given(problems())
+@agreement(0.3)
+def test_a_few_steps_find_the_least_solution_or_nothing(problem: Problem) -> None:
+    found = Filling(problem, Budget(6)).first()
+    if found is not None:
+        assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == _numbers(problem)
+
+
+@given(problems())
+@agreement(0.3)
+def test_a_shortage_of_components_is_real(problem: Problem) -> None:
+    given_: Compact = compact(problem)
+    found = shortage(given_.slots, [[o.component for o in options] for options in given_.options])
+    if found is not None:
+        everybody = {o.component for role in found.roles for o in given_.options[role]}
+        assert found.found == len(everybody) < found.wanted == sum(r in found.roles for r in given_.slots)
+        assert _numbers(problem) is None
+
+
+@given(problems())
+@agreement(0.3)
+def test_a_budget_that_ends_is_no_answer(problem: Problem) -> None:
+    expected = _numbers(problem)
+    for steps in range(12):
+        found = walk(pruned(compact(problem)), Budget(steps))
+        assert isinstance(found, Undecided) or _chosen(found) == expected
+
+
+@given(problems())
+@agreement(0.4)
+def test_what_is_in_no_matching_is_in_none(problem: Problem) -> None:
+    given_ = compact(problem)
+    options = [[o.component for o in some] for some in given_.options]
+    found = impossible(given_.slots, options)
+    if isinstance(found, Shortage):
+        return
+    choices = product(*(options[role] for role in given_.slots))
+    used = {
+        pair for choice in choices if len(set(choice)) == len(choice) for pair in zip(given_.slots, choice, strict=True)
+    }
+    assert found == {(role, one) for role in set(given_.slots) for one in options[role]} - used
+
+
+@given(problems())
+@agreement(0.4)
+def test_a_matching_beside_depth_first_leaves_no_solution_out(problem: Problem) -> None:
+    given_ = compact(problem)
+    partners = Partners(given_.slots, [[o.component for o in some] for some in given_.options])
+    assert _chosen(walk(given_, Budget(), partners=partners)) == _numbers(problem)

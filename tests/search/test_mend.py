@@ -1,0 +1,85 @@
+"""Every repair of a refusal works, and no fewer components would do."""
+
+from __future__ import annotations
+
+from itertools import combinations_with_replacement
+
+from hypothesis import given
+
+from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.refusal import Refusal
+from selfconf.model.repair import AcceptNearMiss, AddComponents, Addition
+from selfconf.search import solve
+from selfconf.search.mend import mended, wanted_of, with_repairs
+from selfconf.search.problem import Problem
+from tests.search.oracle import World
+from tests.search.worlds import agreement, component, iri, problem, problems
+
+
+def _possible(problem: Problem) -> bool:
+    return next(World(problem.task, problem.partition, problem.hierarchy).solutions(), None) is not None
+
+
+@given(problems(roles=3, components=4))
+@agreement(0.4)
+def test_every_repair_works_and_adds_as_few_as_possible(problem: Problem) -> None:
+    refused = solve.search(problem)
+    if not isinstance(refused, Refusal):
+        return
+    mending = with_repairs(problem, refused).repairs
+    for repair in mending:
+        assert str(repair)
+        assert repair.code
+        assert repair.role in {role.iri for role in problem.roles}
+        assert _possible(mended(problem, repair)), repair
+    added = [repair for repair in mending if isinstance(repair, AddComponents)]
+    fewest = sum(addition.count for addition in added[0].additions) if added else 3
+    for size in range(1, min(fewest, 3)):
+        for roles in combinations_with_replacement(range(len(problem.roles)), size):
+            more = tuple(
+                Addition(problem.roles[r].iri, roles.count(r), wanted_of(problem, r)) for r in sorted(set(roles))
+            )
+            assert not _possible(mended(problem, AddComponents(more)))
+
+
+def test_what_is_lacking_is_asked_for_by_signal() -> None:
+    given_ = problem(
+        {"position": [component("bumper", outputs="b:Bump")], "control": [component("cap", "p:Pose b:Bump")]},
+        "position>control",
+        counts={"position": (1, None)},
+    )
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    assert words[0] == "add one more component for the role position that issues Bump and Pose"
+
+
+def test_a_near_miss_that_would_do_is_offered_first() -> None:
+    given_ = problem({"position": [], "control": [component("cap", "p:Pose")]}, "position>control")
+    near = NearMiss(iri("position"), iri("tracker"), "its support is Pippi, not Astrid")
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    candidate = Candidate(component("tracker", outputs="p:Pose"))
+    first = with_repairs(given_, refused, [(near, candidate)]).repairs[0]
+    assert isinstance(first, AcceptNearMiss)
+    assert str(first) == "let tracker play position, although its support is Pippi, not Astrid"
+
+
+def test_a_role_that_asks_for_too_many_may_ask_for_fewer() -> None:
+    given_ = problem({"speaker": [component("left"), component("right")]}, counts={"speaker": (4, None)})
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    assert words == [
+        "add 2 more components for the role speaker",
+        "let the role speaker ask for 2 (sc:minCount 2)",
+    ]
+
+
+def test_a_link_that_is_missing_is_found() -> None:
+    given_ = problem({"eye": [component("camera", outputs="i:Image")], "mind": [component("cap", "i:Image")]})
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    assert "let the role eye feed the role mind (sc:feeds)" in [
+        str(repair) for repair in with_repairs(given_, refused).repairs
+    ]

@@ -1,0 +1,107 @@
+"""After a failure as much as possible stays as it was."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.partition import Candidate
+from selfconf.model.refusal import Refusal
+from selfconf.search import repair, solve
+from selfconf.search.problem import Problem
+from tests.search.oracle import Players, World
+from tests.search.worlds import agreement, component, problem, problems
+
+
+def _running_first(world: World, players: Players, running: Configuration) -> list[list[Candidate]]:
+    """A solution, extended by what runs in the same role, first of all."""
+    grown = [list(role) for role in players]
+    played = {a.role: a.components for a in running.assignments}
+    found = True
+    while found:
+        found = False
+        for number, role in enumerate(world.roles):
+            for candidate in world.candidates[number]:
+                full = role.maximum is not None and len(grown[number]) >= role.maximum
+                more = [[*r, candidate] if k == number else r for k, r in enumerate(grown)]
+                if not found and not full and candidate.profile.component in played[role.iri] and world.valid(more):
+                    grown, found = more, True
+    return grown
+
+
+def _score(after: Configuration, before: Configuration) -> tuple[int, int]:
+    stays = sum(
+        component in was.components
+        for now, was in zip(after.assignments, before.assignments, strict=True)
+        for component in now.components
+    )
+    return stays, len(set(after.connections) & set(before.connections))
+
+
+def _nearest(world: World, running: Configuration) -> Configuration | None:
+    best: Configuration | None = None
+    for players in world.solutions():
+        found = world.configuration(_running_first(world, players, running))
+        if best is None or _score(found, running) > _score(best, running):
+            best = found
+    return best
+
+
+@given(problems(), st.data())
+@agreement(0.5)
+def test_a_repair_keeps_the_most_and_is_the_first_that_does(problem: Problem, data: st.DataObject) -> None:
+    running = solve.search(problem)
+    if not isinstance(running, Configuration) or not running.components:
+        return
+    lost = data.draw(st.sets(st.sampled_from(running.components), min_size=1, max_size=2))
+    left = Problem(problem.task, problem.partition.without(frozenset(lost)), problem.hierarchy)
+    answer = repair.search(left, running)
+    expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
+    assert (answer if isinstance(answer, Configuration) else None) == expected
+
+
+@given(problems(), st.data())
+@agreement(0.4)
+def test_clause_learning_gives_the_same_repair(problem: Problem, data: st.DataObject) -> None:
+    pytest.importorskip("pysat")
+    roles = tuple(replace(role, maximum=role.minimum) for role in problem.roles)
+    template = replace(problem.task.template, roles=roles)
+    task = replace(problem.task, template=template)
+    running = solve.search(Problem(task, problem.partition, problem.hierarchy))
+    if not isinstance(running, Configuration) or not running.components:
+        return
+    lost = data.draw(st.sets(st.sampled_from(running.components), min_size=1, max_size=2))
+    left = Problem(task, problem.partition.without(frozenset(lost)), problem.hierarchy)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(repair, "WALK_STEPS", 0)
+        answer = repair.nearest(left, running)
+    expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
+    assert (answer.configuration if isinstance(answer, repair.Repaired) else None) == expected
+    assert isinstance(answer, Refusal) or answer.proved
+
+
+def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:
+    sonar, tracker, odometry = (
+        component("sonar"),
+        component("tracker", outputs="p:Pose"),
+        component("odometry", outputs="p:Pose"),
+    )
+    cap = component("cap", "p:Pose")
+    given_ = problem(
+        {"sonar": [component("newer"), sonar], "position": [odometry], "control": [cap]}, "position>control"
+    )
+    running = solve.search(problem({"sonar": [sonar], "position": [tracker], "control": [cap]}, "position>control"))
+    assert isinstance(running, Configuration)
+    answer = repair.search(given_, running)
+    assert isinstance(answer, Configuration)
+    assert [c.short for c in answer.components] == ["sonar", "odometry", "cap"]
+
+
+def test_where_nothing_is_left_the_repair_is_a_refusal() -> None:
+    running = solve.search(problem({"eye": [component("camera")]}))
+    assert isinstance(running, Configuration)
+    assert isinstance(repair.search(problem({"eye": []}), running), Refusal)

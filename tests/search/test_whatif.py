@@ -1,0 +1,41 @@
+"""What would replace each component, or that nothing would."""
+
+from __future__ import annotations
+
+from hypothesis import given
+
+from selfconf.model.configuration import Configuration
+from selfconf.search import solve
+from selfconf.search.problem import Problem
+from selfconf.search.whatif import losses
+from tests.search.oracle import World
+from tests.search.worlds import agreement, component, problem, problems
+
+
+@given(problems(roles=3))
+@agreement(0.3)
+def test_a_single_point_of_failure_is_one_without_which_nothing_is_possible(problem: Problem) -> None:
+    running = solve.search(problem)
+    if isinstance(running, Configuration):
+        found = list(losses(problem, running))
+        assert [loss.component for loss in found] == list(running.components)
+        for loss in found:
+            without = problem.partition.without(frozenset((loss.component,)))
+            assert loss.fatal == (World(problem.task, without, problem.hierarchy).first() is None)
+            assert loss.component not in loss.started
+
+
+def test_each_component_is_told_what_would_come_instead() -> None:
+    given_ = problem(
+        {
+            "position": [component("tracker", outputs="p:Pose"), component("odometry", outputs="p:Pose")],
+            "control": [component("cap", "p:Pose")],
+        },
+        "position>control",
+    )
+    running = solve.search(given_)
+    assert isinstance(running, Configuration)
+    assert [str(loss) for loss in losses(given_, running)] == [
+        "tracker (position): odometry",
+        "cap (control): none, a single point of failure",
+    ]
