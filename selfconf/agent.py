@@ -10,6 +10,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from selfconf.bus.port import Bus, Replies, Request, Sample, Undo, Urgency
@@ -38,7 +39,7 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
-from selfconf.configurator.machine import Policy, State
+from selfconf.configurator.machine import Phase, Policy, State
 from selfconf.ecology import Discovery, Ecology, Found
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.model.configuration import Configuration, Connection
@@ -67,8 +68,12 @@ CALL = 2.0
 """How long a component may take to answer a call."""
 ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: a message may have been lost."""
+TRY_AGAIN = 5.0
+"""Seconds after which a patient configurator gives a crashed component that can be started another chance."""
 WAKING = 15.0
 """How long a component that a site starts may take to live."""
+SECOND_LOOK = 0.03
+"""When to look again whether a life that has ended has: the network tells of it before it tells of a broken link."""
 CUT_OFF = 0.25
 """How often a configurator that is cut off looks whether it still is."""
 ASK_AGAIN = 5.0
@@ -101,8 +106,8 @@ class Order:
     compose: Composer
     policy: Policy = Policy.REPAIR
     patient: bool = False
-    standby: Callable[[Configuration], Standby] = lambda configuration: {}
-    """For each component and input of a configuration, the outputs that might be connected to it next."""
+    standby: Callable[[Configuration, frozenset[IRI]], Standby] = lambda configuration, lost: {}
+    """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
     tell: Callable[[Account], None] = lambda account: None
     settle: Callable[[Refusal | None], None] = lambda refusal: None
     """Hears once when the task has ended; with the refusal if that is why."""
@@ -124,7 +129,8 @@ class Agent:
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._sites: set[str] = set()
-        self._cut_off = False
+        self._unheard: dict[str, str] = {}
+        self._link, self._cut_off = bus.link, False
         self._watched: set[IRI] = set()
         self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
         self._connections: dict[IRI, frozenset[Connection]] = {}
@@ -136,7 +142,7 @@ class Agent:
         self._failures: list[tuple[IRI, str, str, float]] = []
         bus.serve(self.keys.configuration(self.name), self._serve_configuration)
         bus.serve(self.keys.configurator_call(self.name), self._serve_call)
-        bus.announce(self.supervisor)
+        self._leave = bus.announce(self.supervisor)
         # One subscription for the FAIL of all: connecting to each as it joins would delay its activation.
         bus.subscribe(self.keys.any_fail(), self._heard_fail, Urgency.EVENT)
         bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})), Urgency.EVENT)
@@ -168,10 +174,30 @@ class Agent:
                 self.state, effects = machine.step(self.state, next_event)
                 for effect in effects:
                     self._do(effect)
+                returned = isinstance(next_event, Appeared) and bool(next_event.lives)
+                if returned and self.state.phase is Phase.RUNNING and self.state.target is not None:
+                    self._stand_by(self.state.target)
                 if self.state.phase is not before:
-                    log.debug("%s -> %s", before.value, self.state.phase.value)
+                    self._changed_phase(before)
         finally:
             self._stepping = False
+
+    def _changed_phase(self, before: Phase) -> None:
+        log.debug("%s -> %s", before.value, self.state.phase.value)
+        self.since = self.clock()
+        if self.state.phase is Phase.REFUSED and self.state.patient:
+            self._tell("waiting", refusal=self.state.refusal)
+            self.bus.later(TRY_AGAIN, self._forgive)
+
+    def _forgive(self) -> None:
+        """Somebody who crashed, and whose site can start it, may be tried again when there is no other way."""
+        crashed = {
+            component: ""
+            for component, loss in self.state.lost.items()
+            if loss.cause is Cause.CRASH and (found := self.ecology.discovery.found.get(component)) and found.startable
+        }
+        if crashed and self.state.phase is Phase.REFUSED:
+            self._step(Appeared(crashed))
 
     def _notice(self, event: Failed) -> None:
         held = self.state.held.get(event.component)
@@ -209,7 +235,7 @@ class Agent:
                 message = SetParameters(effect.epoch, self.supervisor, effect.values)
                 self._call(effect.component, Call.SET, message)
             case ReleaseFrom():
-                self._release(effect)
+                self.bus.wake_up(partial(self._release, effect))  # not before what others wait for
             case Running():
                 name = write.configuration_iri(effect.configuration, self.state.epoch)
                 self._deployed.append((name, effect.configuration, self.state.epoch, self.clock()))
@@ -218,12 +244,18 @@ class Agent:
             case Finish():
                 lost = {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
                 self._tell("refused" if effect.refusal else "stopped", refusal=effect.refusal, lost=lost)
-                self._tell_all()
-                self.order.settle(effect.refusal)
+                try:
+                    self._tell_all()
+                finally:  # the end of a task depends on nobody who listens
+                    self._leave()  # whoever could not be told to turn off will notice
+                    self.order.settle(effect.refusal)
 
     def _discovered(self, discovery: Discovery) -> None:
         self.ecology.discovery = discovery
-        self._sites.update(discovery.sites)
+        self._sites.update(set(discovery.sites) - set(discovery.missing))
+        if not self.ecology.followed:
+            self._unheard = dict(self.ecology.lives)
+            self.bus.later(SETTLING, self._end_unheard)
         self.ecology.follow(self._life_changed, self._site_changed)
         for complaint in discovery.complaints:
             self._tell("complaint", detail=complaint)
@@ -286,7 +318,7 @@ class Agent:
     def _stand_by(self, configuration: Configuration) -> None:
         """Tell the inputs what may come next, now that there is time for it; nobody waits for the answers."""
         wires = machine.wiring(configuration)
-        for component, standby in self.order.standby(configuration).items():
+        for component, standby in self.order.standby(configuration, frozenset(self.state.lost)).items():
             inputs, spare = self._with_promises(wires[component]), self._with_promises(standby)
             message = Apply(self.state.epoch, self.supervisor, inputs, spare)
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
@@ -358,7 +390,7 @@ class Agent:
             obeyed = answer is not None and answer.epoch == message.epoch
             if obeyed and answer is not None and call is not Call.SET and answer.active == (call is Call.APPLY):
                 self._heard_answer(component, call, message.epoch, answer)
-            elif attempts and answer is not None:
+            elif attempts and answer is not None and message.epoch == self.state.epoch:
                 self._call(component, call, message, attempts)
             else:
                 if replies == Replies():  # nobody is there to answer, whatever we heard of its life
@@ -380,6 +412,7 @@ class Agent:
         chunk, life = owner_of(key), life_of(key)
         component = self._component(chunk)
         known = self.ecology.lives.get(chunk) == life
+        self._unheard.pop(chunk, None)
         if alive and not known:
             self.ecology.lives[chunk] = life
             waiting = self._waking.pop(component, None) if component is not None else None
@@ -389,12 +422,32 @@ class Agent:
                     self._apply(waiting[0])
             self._step(Appeared({component: life} if component is not None else {}))
         elif not alive:
-            if known:
-                del self.ecology.lives[chunk]
-            if not self.bus.linked:
+            self._ended(chunk, life)
+
+    def _ended(self, chunk: str, life: str) -> None:
+        """A life has ended, or the way to it: who is connected to another router lives again in a moment."""
+        component = self._component(chunk)
+        known = self.ecology.lives.get(chunk) == life
+        if known:
+            del self.ecology.lives[chunk]
+
+        def look_again() -> None:
+            now = self.ecology.lives.get(chunk)
+            if self.bus.link != self._link:
                 self._await_link()
-            elif component is not None and (known or self._held_life(component) == life):
+            elif component is not None and now != life:
                 self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
+                if now is not None:
+                    self._step(Appeared({component: now}))
+
+        if known or (component is not None and self._held_life(component) == life):
+            self.bus.later(SECOND_LOOK, look_again)
+
+    def _end_unheard(self) -> None:
+        """Who died between the roll-call and the beginning of the watch was called, but has never been heard."""
+        for chunk, life in self._unheard.items():
+            self._ended(chunk, life)
+        self._unheard.clear()
 
     def _held_life(self, component: IRI) -> str | None:
         held = self.state.held.get(component)
@@ -412,13 +465,16 @@ class Agent:
         """Who is cut off sees everybody die, and cannot tell; what has become of them is asked afterwards."""
 
         def look() -> None:
-            if self.bus.linked:
+            if self.bus.link:
                 self.bus.later(SETTLING, connected)
             else:
                 self.bus.later(CUT_OFF, look)
 
         def connected() -> None:
-            self._cut_off = False
+            if not self.bus.link:
+                look()
+                return
+            self._link, self._cut_off = self.bus.link, False
             self._tell("connected")
             self._step(Reconnected())
 
@@ -428,7 +484,7 @@ class Agent:
             look()
 
     def _component(self, chunk: str) -> IRI | None:
-        for component in (*self.state.held, *self.ecology.discovery.found):
+        for component in (*self.state.held, *self.state.owed, *self.state.lost, *self.ecology.discovery.found):
             if component_chunk(component) == chunk:
                 return component
         return None
@@ -474,7 +530,7 @@ class Agent:
         """What is deployed, by whom, since when."""
         return Status(
             configurator=self.name,
-            phase=self.state.phase.value,
+            phase="waiting" if self.state.phase is Phase.REFUSED else self.state.phase.value,
             template=self.order.template,
             epoch=self.state.epoch,
             since=self.since,

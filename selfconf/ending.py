@@ -23,10 +23,25 @@ def environment() -> Mapping[str, str]:
     return {_PARENT: str(os.getpid())}
 
 
-def orphaned() -> bool:
-    """Whether this program was started by another one that is gone."""
-    parent = os.environ.get(_PARENT)
-    return parent is not None and parent.isdigit() and os.getppid() != int(parent)
+def orphaned(parent: int) -> bool:
+    """Whether this program, whose parent process at first was `parent`, was started by another one that is gone.
+
+    The parent is the one that started it, or a shell in between; a shell goes on when that one is gone.
+    """
+    starter = os.environ.get(_PARENT)
+    if starter is None or not starter.isdigit():
+        return False
+    return os.getppid() != parent or (parent != int(starter) and not _alive(int(starter)))
+
+
+def _alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
 
 
 class Ending:
@@ -34,6 +49,7 @@ class Ending:
 
     def __init__(self, bus: Bus, then: Callable[[], None] = lambda: None) -> None:
         self._bus, self._then, self._told = bus, then, False
+        self._parent = os.getppid()
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._signalled)
         if _PARENT in os.environ:
@@ -51,7 +67,7 @@ class Ending:
             self._then()
 
     def _look(self) -> None:
-        if orphaned():
+        if orphaned(self._parent):
             self._tell()
         else:
             self._bus.later(LOOK, self._look)

@@ -12,7 +12,12 @@ import tempfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from selfconf.bus.zenoh_bus import client
 from selfconf.errors import NetworkError
+from selfconf.protocol.keys import any_ecology, ecology_of
+
+ANSWER = 3.0
+"""Seconds that an endpoint may take to say which ecologies are there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,16 +42,32 @@ def folder() -> Path:
 
 
 def announce(meeting: Meeting) -> Path:
-    """Write the file of a site; whoever wrote it removes it."""
+    """Write the file of a site; whoever wrote it removes it by `leave`. Raises NetworkError where that cannot be."""
     root = folder()
-    root.mkdir(mode=0o700, parents=True, exist_ok=True)
-    if root.stat().st_uid != os.getuid():
-        raise NetworkError(f"{root} belongs to somebody else; set SELFCONF_RUNTIME_DIR to a folder of your own")
     path = root / f"{meeting.ecology}@{meeting.site}.json"
-    temporary = path.with_suffix(f".{os.getpid()}")
-    temporary.write_text(json.dumps(asdict(meeting)))
-    temporary.replace(path)
+    if any(other.site == meeting.site and other.process != os.getpid() for other in meetings(meeting.ecology)):
+        raise NetworkError(f"a site {meeting.site!r} of ecology {meeting.ecology!r} runs on this machine already")
+    try:
+        root.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if root.stat().st_uid != os.getuid():
+            raise NetworkError(f"{root} belongs to somebody else; set SELFCONF_RUNTIME_DIR to a folder of your own")
+        temporary = path.with_suffix(f".{os.getpid()}")
+        temporary.write_text(json.dumps(asdict(meeting)))
+        temporary.replace(path)
+    except OSError as error:
+        raise NetworkError(
+            f"cannot write in {root} ({error.strerror}); set SELFCONF_RUNTIME_DIR to a folder of your own"
+        ) from None
     return path
+
+
+def leave(path: Path) -> None:
+    """Remove the file of a site, unless another program has taken its place."""
+    try:
+        if json.loads(path.read_text())["process"] == os.getpid():
+            path.unlink()
+    except (OSError, ValueError, KeyError, TypeError):
+        return
 
 
 def meetings(ecology: str | None = None) -> list[Meeting]:
@@ -71,7 +92,7 @@ def meetings(ecology: str | None = None) -> list[Meeting]:
 def find(ecology: str | None, connect: list[str]) -> tuple[str, list[str]]:
     """The ecology and the endpoints to connect to; raises NetworkError, saying what to try, if there are none."""
     if connect:
-        return ecology or "home", connect
+        return ecology or _ecology_at(connect), connect
     found = meetings(ecology)
     names = sorted({meeting.ecology for meeting in found})
     if not names:
@@ -82,6 +103,24 @@ def find(ecology: str | None, connect: list[str]) -> tuple[str, list[str]]:
     if len(names) > 1:
         raise NetworkError(f"several ecologies run on this machine; say which with --ecology: {', '.join(names)}")
     return names[0], [meeting.endpoint for meeting in found]
+
+
+def _ecology_at(endpoints: list[str]) -> str:
+    """The one ecology that has a site behind some endpoints. Raises NetworkError if there is none, or several."""
+    bus = client(endpoints)
+    try:
+        heard: list[tuple[str, ...]] = []
+        bus.roll_call(any_ecology(), ANSWER, heard.append)
+        deadline = bus.now() + ANSWER
+        bus.run(lambda: bool(heard) or bus.now() > deadline)
+    finally:
+        bus.close()
+    names = sorted({ecology_of(key) for keys in heard for key in keys})
+    if len(names) == 1:
+        return names[0]
+    if names:
+        raise NetworkError(f"several ecologies are there; say which with --ecology: {', '.join(names)}")
+    raise NetworkError(f"a router answers at {', '.join(endpoints)}, but no site of any ecology")
 
 
 def _alive(process: int) -> bool:

@@ -31,6 +31,8 @@ log = logging.getLogger(__name__)
 
 LOOK = 1.0
 """How often, in seconds, the files are looked at for changes."""
+ENDING = 3.0
+"""How long, in seconds, a process that this site has started may take to end before it is killed."""
 FOLLOW = 0.2
 """How often, in seconds, it is looked whether a started process still runs."""
 Complaint = Callable[[str], None]
@@ -117,7 +119,7 @@ class Site:
             process.terminate()
         for process in self._processes.values():
             try:
-                process.wait(3)
+                process.wait(ENDING)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
@@ -179,9 +181,8 @@ class Site:
         folder = Path(place.source).parent if place else Path()
         environment = {**os.environ, **self._environment, **ending.environment(), "PATH": _path()}
         try:
-            self._processes[component] = subprocess.Popen(
-                shlex.split(command), cwd=folder, env=environment, stdin=subprocess.DEVNULL
-            )
+            words = shlex.split(command) or [""]
+            self._processes[component] = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL)
         except (OSError, ValueError) as error:
             raise PeerError(f"the command of {component} does not start: {error}") from None
         log.info("started %s: %s", component, command)

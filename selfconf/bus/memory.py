@@ -83,7 +83,10 @@ class Network:
 
     def reaches(self, left: MemoryBus, right: MemoryBus) -> bool:
         """Whether a message gets through between two nodes."""
-        return left.open and right.open and (left is right or frozenset((left.number, right.number)) not in self._cut)
+        return left.open and right.open and not self._severed(left, right)
+
+    def _severed(self, left: MemoryBus, right: MemoryBus) -> bool:
+        return frozenset((left.number, right.number)) in self._cut
 
     def loses(self) -> bool:
         """Whether the next message is lost."""
@@ -93,12 +96,17 @@ class Network:
         """Have the receiver hear something after the network's delay; False if it is lost."""
         if not self.reaches(sender, receiver) or (not sure and self.loses()):
             return False
+
+        def arrive() -> None:
+            if not self._severed(sender, receiver):  # what was on the way is lost with the link
+                action()
+
         times = 2 if not sure and self._chance.random() < self.faults.doubling else 1
         for _ in range(times):
             delay = self._chance.uniform(self.faults.least_delay, self.faults.most_delay)
             if sure:  # what is never lost keeps its order
                 delay = self.faults.least_delay
-            self.at(self.time + delay, receiver, action)
+            self.at(self.time + delay, receiver, arrive)
         return True
 
     def at(self, time: float, node: MemoryBus, action: Callable[[], None]) -> tuple[float, int, Callable[[], None]]:
@@ -145,10 +153,11 @@ class MemoryBus:
         self._count = itertools.count()
 
     @property
-    def linked(self) -> bool:
-        """Whether this node reaches any other."""
+    def link(self) -> str:
+        """The network, if this node reaches any other; one that is alone is not cut off."""
         others = [node for node in self.network.nodes if node is not self and node.open]
-        return self.open and (not others or any(self.network.reaches(self, node) for node in others))
+        reached = not others or any(self.network.reaches(self, node) for node in others)
+        return "network" if self.open and reached else ""
 
     def now(self) -> float:
         """Seconds of simulated time."""

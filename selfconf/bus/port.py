@@ -94,8 +94,11 @@ class Bus(Protocol):
     """A node of the network."""
 
     @property
-    def linked(self) -> bool:
-        """Whether this node reaches the network; if not, that others seem dead says nothing about them."""
+    def link(self) -> str:
+        """By what this node reaches the network; empty if it does not. Another one than before: it was cut off.
+
+        That others seem dead says nothing about them if the link is not what it was.
+        """
         ...
 
     def now(self) -> float:

@@ -195,14 +195,18 @@ class ZenohBus(Loop):
         except zenoh.ZError as error:
             where = endpoints if self._client else ", ".join(json.loads(config.get_json("listen/endpoints")))
             what = "nobody answers at" if self._client else "cannot listen on"
+            if "Address already in use" in str(error):
+                raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
             raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_clause(error)})") from None
         self._declared: set[Any] = set()
         self._open = True
 
     @property
-    def linked(self) -> bool:
-        """Whether a client has its router; a router stands for itself."""
-        return self._open and (not self._client or bool(self._session.info.routers_zid()))
+    def link(self) -> str:
+        """The router that a client has; a router stands for itself."""
+        if not self._open:
+            return ""
+        return ",".join(sorted(map(str, self._session.info.routers_zid()))) if self._client else "itself"
 
     def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
         """Declare a key to put on."""

@@ -10,18 +10,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from enum import Enum
 
+from selfconf import certificate
+from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.partition import Partition
-from selfconf.model.refusal import Refusal, TooFewEligible
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition
+from selfconf.model.refusal import Refusal, TooFewEligible, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.templates import TaskDocument
-from selfconf.search import paper, solve
+from selfconf.search import best, mend, paper, repair, solve, whatif
 from selfconf.search.problem import Problem
-
 
 STANDBY = 2
 """How many candidates per role an input is told of in advance."""
@@ -45,7 +46,6 @@ class Composer:
         self.partitioner = Partitioner(task, hierarchy)
         self._ecology: Mapping[IRI, Advertisement] | None = None
         self._partition = Partition(())
-        self._problem: Problem | None = None
 
     def partition(self, ecology: Mapping[IRI, Advertisement]) -> Partition:
         """F1 ... Fn of an ecology."""
@@ -56,34 +56,55 @@ class Composer:
     def compose(
         self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
     ) -> Configuration | Refusal:
-        """The configuration without the lost components, keeping what runs where that can be; or why there is none."""
+        """The configuration without the lost components, keeping what runs where that can be; or why there is none.
+
+        A configuration is certified before it is handed out, by rules that share nothing with the search.
+        """
         partition = self.partition(ecology)
         problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
-        self._problem = problem
-        outcome: Configuration | Refusal | None
-        if self.strategy is Strategy.PAPER:
-            outcome = paper.search(problem)
-            if outcome is None:
-                outcome = solve.search(problem)
-        else:
-            outcome = solve.search(problem)
-        if isinstance(outcome, Refusal) and not outcome.near_misses:
-            present = [a for component, a in ecology.items() if component not in lost]
-            short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
-            misses = tuple(miss for miss in self.partitioner.near_misses(present) if not short or miss.role in short)
-            outcome = replace(outcome, near_misses=misses)
-        return outcome
+        outcome = self._search(problem, running)
+        if isinstance(outcome, Configuration):
+            wrong = certificate.check(self.task.task, problem.partition, outcome, self.hierarchy)
+            if wrong:
+                raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
+            return outcome
+        short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
+        present = [a for component, a in ecology.items() if component not in lost]
+        misses = tuple(miss for miss in self.partitioner.near_misses(present) if not short or miss.role in short)
+        return replace(outcome, near_misses=misses)
 
-    def standby(self, configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
+    def _search(self, problem: Problem, running: Configuration | None) -> Configuration | Refusal:
+        if self.strategy is Strategy.PAPER:
+            return paper.search(problem) or solve.search(problem)
+        if self.strategy is Strategy.BEST:
+            found = best.search(problem)
+            if isinstance(found, Undecided):
+                return solve.search(problem)
+            return found.configuration if isinstance(found, best.Optimum) else found
+        return solve.search(problem) if running is None else repair.search(problem, running)
+
+    def mended(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
+        """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
+        problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
+        near = [
+            (miss, Candidate(ecology[miss.component].profile, tuple(ANY_VALUE for _ in problem.variables)))
+            for miss in refusal.near_misses
+        ]
+        return mend.with_repairs(problem, refusal, near)
+
+    def what_if(self, ecology: Mapping[IRI, Advertisement], configuration: Configuration) -> list[whatif.Loss]:
+        """For each component of a configuration, what would come instead of it if it failed."""
+        problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
+        return list(whatif.losses(problem, configuration))
+
+    def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
         """For each component and input of a configuration, the outputs of the next candidates that could feed it.
 
-        At most `STANDBY` candidates for each role that feeds; what was lost before the configuration was composed is
-        not among them.
+        At most `STANDBY` candidates for each role that feeds, none of them lost.
         """
-        problem, playing = self._problem, set(configuration.components)
+        problem = Problem(self.task.task, self._partition.without(lost), self.hierarchy)
+        playing = set(configuration.components)
         found: dict[IRI, dict[str, tuple[Wire, ...]]] = {}
-        if problem is None:
-            return found
         spare = [
             [candidate for candidate in candidates if candidate.profile.component not in playing][:STANDBY]
             for candidates in problem.candidates

@@ -59,7 +59,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause, Verdict, Wire
 
 OBEYED = (Verdict.DONE, Verdict.STALE)
-"""The answers after which a component obeys no older call: a busy one may yet, when it is free and the call was late."""
+"""The answers after which a component obeys no older call; a busy one may yet, once it is free."""
 Inputs = Mapping[str, tuple[Wire, ...]]
 Step = tuple["State", tuple[Effect, ...]]
 

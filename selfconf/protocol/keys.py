@@ -128,6 +128,19 @@ class Keys:
         return self._configurator(name, f"@ctl/{call}")
 
 
+def any_ecology() -> str:
+    """The liveliness key of every site of every ecology."""
+    return "selfconf/*/site/*/live/*"
+
+
+def ecology_of(key: str) -> str:
+    """The ecology that a key belongs to."""
+    chunks = key.split("/")
+    if len(chunks) < 3 or chunks[0] != "selfconf":
+        raise PeerError(f"{key!r} is no key of an ecology")
+    return chunks[1]
+
+
 def life_of(key: str) -> str:
     """The incarnation that a liveliness key ends in."""
     return key.rsplit("/", 1)[-1]

@@ -7,6 +7,7 @@ import logging
 import os
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import client
@@ -16,15 +17,16 @@ from selfconf.sdk.component import Component
 from selfconf.sdk.host import Host
 
 
-def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> int:
-    """Run components as one program until it is told to end (SIGINT, SIGTERM); the exit code.
+def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run components as one program until it is told to end (SIGINT, SIGTERM); then exit, with 2 if it cannot run.
 
-    The ecology is taken from `--ecology` and `--connect`, else from `SELFCONF_ECOLOGY` and `SELFCONF_CONNECT` (as set
-    by a site that starts a dormant component), else from the sites that run on this machine.
+    Arguments that are not options of selfconf are the program's own. The ecology is taken from `--ecology` and
+    `--connect`, else from `SELFCONF_ECOLOGY` and `SELFCONF_CONNECT` (as set by a site that starts a dormant
+    component), else from the sites that run on this machine.
     """
     parser = argparse.ArgumentParser(description=(kinds[0].__doc__ or "a component").splitlines()[0])
     add_connection_arguments(parser)
-    given = parser.parse_args(arguments)
+    given, _ = parser.parse_known_args(arguments)
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
         host = join(given.ecology, given.connect)
@@ -33,8 +35,8 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> int
         run_until_told(host)
     except SelfconfError as error:
         print(error, file=sys.stderr)
-        return 2
-    return 0
+        raise SystemExit(2) from None
+    raise SystemExit(0)
 
 
 def add_connection_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,115 @@
+"""The loop of a bus in real time."""
+
+from __future__ import annotations
+
+import logging
+
+import pytest
+
+from selfconf.bus.loop import Loop
+
+
+def test_polling_with_nothing_to_say_returns_at_once() -> None:
+    loop = Loop()
+    began = loop.now()
+    loop.poll()
+    assert loop.now() - began < 0.5
+
+
+def test_polling_waits_no_longer_than_it_is_told() -> None:
+    loop = Loop()
+    began = loop.now()
+    loop.poll(0.03)
+    assert 0.03 <= loop.now() - began < 1.0
+
+
+def test_polling_returns_as_soon_as_something_was_said() -> None:
+    loop = Loop()
+    said: list[int] = []
+    loop.wake_up(lambda: said.append(1))
+    loop.poll(60.0)
+    assert said == [1]
+
+
+def test_polling_says_what_the_said_brings_about() -> None:
+    loop = Loop()
+    said: list[str] = []
+    loop.wake_up(lambda: loop.wake_up(lambda: said.append("and so")))
+    loop.poll()
+    assert said == ["and so"]
+
+
+def test_polling_waits_for_a_timer_that_is_due_before_the_deadline() -> None:
+    loop = Loop()
+    said: list[str] = []
+    loop.later(0.02, lambda: said.append("timer"))
+    loop.poll(60.0)
+    assert said == ["timer"]
+
+
+def test_a_timer_that_was_undone_is_not_waited_for_longer_than_told() -> None:
+    loop = Loop()
+    loop.later(0.01, lambda: None)()
+    began = loop.now()
+    loop.poll(0.03)
+    assert 0.03 <= loop.now() - began < 1.0
+
+
+def test_a_callback_that_breaks_is_logged_and_the_loop_goes_on(caplog: pytest.LogCaptureFixture) -> None:
+    loop = Loop()
+    said: list[int] = []
+
+    def breaks() -> None:
+        raise RuntimeError("no such port")
+
+    loop.wake_up(breaks)
+    loop.wake_up(lambda: said.append(1))
+    with caplog.at_level(logging.ERROR):
+        loop.poll()
+    assert said == [1]
+    assert "no such port" in caplog.text
+
+
+def test_a_flood_holds_up_neither_timers_nor_the_end() -> None:
+    loop = Loop()
+    said = 0
+    went_off: list[float] = []
+
+    def flood() -> None:
+        nonlocal said
+        said += 1
+        loop.wake_up(flood)
+
+    loop.wake_up(flood)
+    began = loop.now()
+    loop.later(0.02, lambda: went_off.append(loop.now() - began))
+    loop.run(lambda: bool(went_off))
+    assert said > 1
+    assert went_off[0] < 2.0
+
+
+def test_running_asks_until_after_each_round() -> None:
+    loop = Loop()
+    told: list[bool] = []
+    loop.later(0.01, lambda: told.append(True))
+    loop.run(lambda: bool(told))
+    assert told
+
+
+def test_nothing_is_said_after_the_end() -> None:
+    loop = Loop()
+    said: list[int] = []
+    loop.wake_up(lambda: said.append(1))
+    loop.later(0.0, lambda: said.append(2))
+    loop.end()
+    loop.poll()
+    assert not said
+
+
+def test_the_end_in_the_middle_of_a_round_is_the_end() -> None:
+    loop = Loop()
+    said: list[int] = []
+    loop.wake_up(loop.end)
+    loop.wake_up(lambda: said.append(1))
+    loop.poll()
+    assert not said

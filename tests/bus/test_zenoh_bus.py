@@ -1,0 +1,94 @@
+"""What only a real network does: endpoints that are taken or empty, and routers that come and go."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable
+
+import pytest
+
+from selfconf.bus.port import Sample, Urgency
+from selfconf.bus.zenoh_bus import ZenohBus, client, router
+from selfconf.errors import NetworkError
+
+
+def free_endpoint() -> str:
+    """An endpoint on which nobody listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def until(condition: Callable[[], bool], *buses: ZenohBus, seconds: float = 10.0) -> bool:
+    """Let the buses say what they have to say until a condition holds."""
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        for bus in buses:
+            bus.poll(0.005)
+    return condition()
+
+
+def test_a_client_whom_nobody_answers_says_where_it_has_asked() -> None:
+    endpoint = free_endpoint()
+    with pytest.raises(NetworkError, match=f"nobody answers at {endpoint}"):
+        client([endpoint], seconds=0.2)
+
+
+def test_a_router_on_an_endpoint_that_is_taken_says_which(zenoh_router: ZenohBus) -> None:
+    with pytest.raises(NetworkError, match=f"cannot listen on {zenoh_router.endpoint}"):
+        router(zenoh_router.endpoint)
+
+
+def test_an_endpoint_that_is_none_is_a_sentence() -> None:
+    for endpoint in ("127.0.0.1:7447", "tcp/127.0.0.1", "carrier-pigeon/home"):
+        with pytest.raises(NetworkError):
+            client([endpoint], seconds=0.2)
+        with pytest.raises(NetworkError):
+            router(endpoint)
+
+
+def test_a_router_listens_on_loopback_alone_and_tells_where(zenoh_router: ZenohBus) -> None:
+    assert zenoh_router.endpoint.startswith("tcp/127.0.0.1:")
+    assert not zenoh_router.endpoint.endswith(":0")
+    assert zenoh_router.link
+
+
+def test_a_client_takes_the_endpoint_that_answers(zenoh_router: ZenohBus) -> None:
+    bus = client([free_endpoint(), zenoh_router.endpoint])
+    assert bus.link
+    bus.close()
+
+
+def test_clients_of_two_routers_that_are_connected_hear_each_other(zenoh_router: ZenohBus, top: str) -> None:
+    second = router(connect=[zenoh_router.endpoint])
+    one, two = client([zenoh_router.endpoint]), client([second.endpoint])
+    heard: list[Sample] = []
+    two.subscribe(f"{top}/pose", heard.append)
+    matches: list[bool] = []
+    publisher = one.publisher(f"{top}/pose", Urgency.SIGNAL, matches.append)
+    assert until(lambda: matches == [True], one, two)
+    publisher.put(b"across")
+    assert until(lambda: bool(heard), one, two)
+    for bus in (one, two, second):
+        bus.close()
+
+
+def test_a_client_whose_router_is_gone_is_not_linked_and_is_again_when_it_is_back(top: str) -> None:
+    first = router()
+    bus = client([first.endpoint])
+    lives: list[tuple[str, bool]] = []
+    bus.announce(f"{top}/live/1")
+    bus.watch(f"{top}/live/*", lambda key, alive: lives.append((key, alive)))
+    assert until(lambda: bool(lives), bus)
+    first.close()
+    assert until(lambda: not bus.link, bus)
+    second = router(first.endpoint)
+    assert until(lambda: bus.link, bus)
+    other = client([first.endpoint])
+    called: list[tuple[str, ...]] = []
+    other.roll_call(f"{top}/live/*", 1.0, called.append)
+    assert until(lambda: bool(called), bus, other)
+    assert called == [(f"{top}/live/1",)]
+    for node in (bus, other, second):
+        node.close()

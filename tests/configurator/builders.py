@@ -1,0 +1,125 @@
+"""Configurations, states and histories for tests of the machine."""
+
+from __future__ import annotations
+
+from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom
+from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Stopped
+from selfconf.configurator.machine import Phase, Policy, State, step
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.refusal import Refusal, TooFewEligible
+from selfconf.model.term import IRI, Literal
+from selfconf.protocol.messages import Verdict
+
+TEMPLATE = IRI("urn:t:navigate")
+TRACKER, ODOMETRY, CONTROL, DRIVE = (IRI(f"urn:c:{name}") for name in ("tracker", "odometry", "control", "drive"))
+EVERYBODY = (TRACKER, ODOMETRY, CONTROL, DRIVE)
+REFUSAL = Refusal(TEMPLATE, (TooFewEligible(IRI("urn:r:position"), 1, 0),))
+GOAL = Literal("(AT BEDROOM)")
+
+
+def navigation(position: IRI = TRACKER) -> Configuration:
+    """A position sensor feeds a controller, which feeds a drive; the controller is given a goal."""
+    return Configuration(
+        TEMPLATE,
+        (
+            Assignment(IRI("urn:r:position"), (position,)),
+            Assignment(IRI("urn:r:control"), (CONTROL,)),
+            Assignment(IRI("urn:r:drive"), (DRIVE,)),
+        ),
+        (Connection(position, "pose", CONTROL, "position"), Connection(CONTROL, "set", DRIVE, "velocity")),
+        (ParameterSetting(CONTROL, "goal", GOAL),),
+    )
+
+
+class History:
+    """A machine with all that it has wanted done so far."""
+
+    def __init__(self, state: State | None = None) -> None:
+        self.state = state or State()
+        self.effects: list[Effect] = []
+
+    def hear(self, *events: Event) -> list[Effect]:
+        """Let the machine hear events; what it wants done because of the last one."""
+        new: list[Effect] = []
+        for event in events:
+            self.state, effects = step(self.state, event)
+            new = list(effects)
+            self.effects += new
+        return new
+
+    def accepted(self) -> History:
+        """The task is accepted, the ecology has answered, and a search is going on."""
+        self.hear(Accepted(100), Discovered())
+        return self
+
+    def composed(self, outcome: Configuration | Refusal) -> list[Effect]:
+        """The search that is going on has this outcome."""
+        return self.hear(Composed(self.state.attempt, outcome))
+
+    def answer(
+        self, component: IRI, call: Call, verdict: Verdict | None = Verdict.DONE, life: str = "1"
+    ) -> list[Effect]:
+        """A component answers the call that it is waited for."""
+        return self.hear(
+            Answered(component, call, self.state.epoch, verdict, life if verdict else "", self.state.epoch)
+        )
+
+    def all_answer(self) -> list[Effect]:
+        """Everybody who is waited for does as it was told, until nobody is."""
+        new: list[Effect] = []
+        while self.state.pending:
+            component, call = min(self.state.pending)
+            new = self.answer(component, call)
+        return new
+
+    def running(self, configuration: Configuration | None = None) -> History:
+        """A configuration is deployed and complete."""
+        self.accepted().composed(configuration or navigation())
+        self.all_answer()
+        assert self.state.phase is Phase.RUNNING
+        return self
+
+
+def state_in(phase: Phase, policy: Policy = Policy.REPAIR, patient: bool = False) -> State:
+    """A state in a phase, reached by a plausible history."""
+    history = History(State(policy=policy, patient=patient))
+    if phase is Phase.IDLE:
+        return history.state
+    history.hear(Accepted(100))
+    if phase is Phase.DISCOVERING:
+        return history.state
+    history.hear(Discovered())
+    if phase is Phase.COMPOSING:
+        return history.state
+    if phase is Phase.REFUSED:
+        history.composed(REFUSAL)
+        return history.state
+    history.composed(navigation())
+    if phase is Phase.DEPLOYING:
+        return history.state
+    for component in (TRACKER, CONTROL, DRIVE):
+        history.answer(component, Call.APPLY)
+    if phase is Phase.SETTING:
+        return history.state
+    history.answer(CONTROL, Call.SET)
+    if phase is Phase.RUNNING:
+        return history.state
+    history.hear(Stopped())
+    if phase is Phase.STOPPED:
+        history.all_answer()
+    return history.state
+
+
+def applied(effects: list[Effect]) -> list[IRI]:
+    """Who is to be activated or wired anew."""
+    return [effect.component for effect in effects if isinstance(effect, ApplyTo)]
+
+
+def released(effects: list[Effect]) -> list[IRI]:
+    """Who is to be turned off."""
+    return [effect.component for effect in effects if isinstance(effect, ReleaseFrom)]
+
+
+def kinds(effects: list[Effect]) -> list[type]:
+    """What is to be done, in order."""
+    return [type(effect) for effect in effects]

@@ -1,0 +1,213 @@
+"""Histories in which everything goes wrong, each replayed by its seed.
+
+A history runs the paper's ecology on a network that loses, delays and doubles messages, while components fail, crash
+and come back, nodes are cut off, and configurators die. Then the faults cease, everybody reaches everybody, and after
+a while the ecology must be in order: `disorder` names everything that is not.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+from selfconf.agent import Agent
+from selfconf.bus.memory import Faults
+from selfconf.configurator.machine import Phase, Policy, wiring
+from selfconf.model.refusal import Refusal
+from selfconf.protocol.messages import Cause
+from selfconf.sdk.component import Refused
+from selfconf.site import Site
+from tests.lab import ADVERTISEMENTS, Lab
+
+SETTLED = 60.0
+"""Seconds after which the ecology must be in order again."""
+COMPONENTS = sorted(ADVERTISEMENTS)
+
+
+class History:
+    """A seeded history; `told` says what happened, for people who replay it."""
+
+    def __init__(self, seed: int, folder: Path) -> None:
+        self.chance = random.Random(seed)
+        faults = Faults(
+            loss=self.chance.choice((0.0, 0.02, 0.1, 0.3)),
+            doubling=self.chance.choice((0.0, 0.1, 0.5)),
+            least_delay=0.0005,
+            most_delay=self.chance.choice((0.0005, 0.02, 0.2, 1.0)),
+        )
+        self.told: list[str] = [f"seed {seed}: {faults}"]
+        self.lab = Lab(folder, seed, faults)
+        self.sites: list[Site] = [
+            self.lab.site("living-room", "tracker"),
+            self.lab.site("astrid", "sonar", "encoder", "odometry", "control", "drive", "pippi"),
+        ]
+        for name in COMPONENTS:
+            self.lab.component(name)
+        self.agents: list[Agent] = []
+        self.alone: list[Agent | Site | str] = []
+        self.policy = self.chance.choice(list(Policy))
+        self.patient = self.chance.random() < 0.7
+
+    def run(self) -> None:
+        """Let everything go wrong for a while, and then nothing any more."""
+        self._new_configurator()
+        for _ in range(self.chance.randint(2, 12)):
+            self.lab.let_pass(self.chance.choice((0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)))
+            self.chance.choice(
+                (
+                    self._fail,
+                    self._fail,
+                    self._crash,
+                    self._come_back,
+                    self._come_back,
+                    self._refuse,
+                    self._isolate,
+                    self._isolate,
+                    self._rejoin,
+                    self._emit,
+                    self._replace_configurator,
+                    self._stop_configurator,
+                    self._second_configurator,
+                )
+            )()
+        self.lab.network.faults = Faults()
+        while self.alone:
+            self._rejoin()
+        self._say("the faults cease")
+        self.lab.let_pass(SETTLED)
+
+    def disorder(self) -> Iterator[str]:
+        """Everything that is not in order."""
+        wanted: dict[str, Agent] = {}
+        names = {body.profile.component: name for name, body in self.lab.bodies.items()}
+        for agent in self.living():
+            phase = agent.state.phase
+            if phase is Phase.RUNNING and agent.configuration is not None:
+                for component in agent.configuration.components:
+                    if names[component] in wanted:
+                        yield f"two configurators hold {names[component]}"
+                    wanted[names[component]] = agent
+            elif phase not in (Phase.REFUSED, Phase.STOPPED):
+                yield f"{agent.name} is still {phase.value}"
+            elif phase is Phase.REFUSED and agent.state.patient:
+                yield from self._hasty_refusal(agent)
+        active = self.lab.active()
+        yield from (f"{name} acts for nobody" for name in sorted(active - set(wanted)))
+        yield from (f"{name} does not act" for name in sorted(set(wanted) - active))
+        for name in sorted(set(wanted) & active):
+            yield from self._wrong(name, wanted[name])
+
+    def living(self) -> list[Agent]:
+        """The configurators that have not died."""
+        return [agent for agent in self.agents if self.lab.network.nodes[agent.bus.number].open]  # type: ignore[attr-defined]
+
+    def _wrong(self, name: str, agent: Agent) -> Iterator[str]:
+        """What is wrong with a component that acts for a configurator."""
+        body, configuration = self.lab.bodies[name], agent.configuration
+        assert configuration is not None
+        if body.life.supervisor != agent.supervisor:
+            yield f"{name} obeys {body.life.supervisor}"
+        wires = wiring(configuration)[body.profile.component]
+        wanted = {(port, wire.component, wire.output) for port, followed in wires.items() for wire in followed}
+        heeded = [key for key, following in body._following.items() if not following._muted]
+        followed = {(port, wire.component, wire.output) for port, wire in heeded}
+        if wanted != followed:
+            yield f"{name} follows {sorted(followed)}, not {sorted(wanted)}"
+        said = self.lab.components[name].said
+        for setting in configuration.settings:
+            if setting.component == body.profile.component:
+                since = len(said) - said[::-1].index(("started",))
+                if (setting.name, str(setting.value)) not in said[since:]:
+                    yield f"{name} was not told its {setting.name}"
+
+    def _hasty_refusal(self, agent: Agent) -> Iterator[str]:
+        """A refusal that is waited out must still be right."""
+        alive = {body.profile.component for name, body in self.lab.bodies.items() if self.lab.node_of(name).open}
+        found = {c: a for site in self.sites for c, a in site.shelf.advertisements.items() if c in alive}
+        if not isinstance(agent.order.compose(found, frozenset(agent.state.lost), None), Refusal):
+            yield f"{agent.name} has given up, although there is a configuration"
+        for component, loss in agent.state.lost.items():
+            if component in alive and loss.cause is Cause.CRASH:
+                yield f"{agent.name} thinks that {component.short} is dead"
+
+    # What goes wrong.
+
+    def _say(self, what: str) -> None:
+        self.told.append(f"{self.lab.network.time:8.3f}  {what}")
+
+    def _some(self, alive: bool = True) -> str | None:
+        names = [name for name in COMPONENTS if self.lab.node_of(name).open == alive]
+        return self.chance.choice(names) if names else None
+
+    def _fail(self) -> None:
+        name = self._some()
+        if name is not None:
+            self._say(f"{name} fails")
+            self.lab.components[name].fail("seeded")
+
+    def _crash(self) -> None:
+        name = self._some()
+        if name is not None:
+            self._say(f"{name} crashes")
+            self.lab.crash(name)
+
+    def _come_back(self) -> None:
+        name = self._some(alive=False)
+        if name is not None:
+            self._say(f"{name} comes back")
+            self.alone = [alone for alone in self.alone if alone != name]
+            self.lab.component(name)
+
+    def _refuse(self) -> None:
+        name = self._some()
+        if name is not None:
+            self._say(f"{name} will refuse to start, or will not any more")
+            recorder = self.lab.components[name]
+            recorder.refusal = None if recorder.refusal else Refused("seeded")
+
+    def _emit(self) -> None:
+        name = self._some()
+        if name is not None:
+            for output in self.lab.bodies[name].profile.outputs:
+                self.lab.components[name].emit(output.name, self.lab.network.time)
+
+    def _isolate(self) -> None:
+        candidates: list[Agent | Site | str] = [*self.living(), *self.sites]
+        candidates += [name for name in COMPONENTS if self.lab.node_of(name).open]
+        who = self.chance.choice(candidates)
+        self._say(f"{_name(who)} is cut off")
+        self.lab.isolate(who)
+        self.alone.append(who)
+
+    def _rejoin(self) -> None:
+        if self.alone:
+            who = self.alone.pop(self.chance.randrange(len(self.alone)))
+            self._say(f"{_name(who)} is reached again")
+            self.lab.rejoin(who)
+
+    def _new_configurator(self) -> None:
+        agent = self.lab.agent(policy=self.policy, patient=self.patient)
+        self._say(f"{agent.name} begins")
+        self.agents.append(agent)
+
+    def _replace_configurator(self) -> None:
+        for agent in self.living():
+            self._say(f"{agent.name} crashes")
+            self.alone = [alone for alone in self.alone if alone is not agent]
+            self.lab.crash(agent)
+        self._new_configurator()
+
+    def _second_configurator(self) -> None:
+        if len(self.living()) < 2:
+            self._new_configurator()
+
+    def _stop_configurator(self) -> None:
+        agents = self.living()
+        if len(agents) > 1:
+            self._say(f"{agents[0].name} is stopped")
+            agents[0].stop()
+
+
+def _name(who: Agent | Site | str) -> str:
+    return who if isinstance(who, str) else who.name

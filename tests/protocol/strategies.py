@@ -1,0 +1,74 @@
+"""Hypothesis strategies for everything that travels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import strategies as st
+
+from selfconf.model.term import IRI, BlankNode, Literal
+from selfconf.protocol.messages import (
+    Answer,
+    Apply,
+    Cause,
+    Fail,
+    Page,
+    Release,
+    SetParameters,
+    Stamp,
+    Status,
+    Verdict,
+    Wake,
+    Wire,
+)
+
+texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
+names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20)
+iris = st.builds(lambda tail: IRI(f"https://example.org/{tail}"), texts)
+numbers = st.integers(min_value=0, max_value=1 << 62)
+seconds = st.floats(allow_nan=False, allow_infinity=False)
+supervisors = st.builds(
+    lambda name, life: f"selfconf/home/conf/{name}/live/{life}",
+    st.from_regex(r"[a-z][a-z0-9]{0,8}", fullmatch=True),
+    st.from_regex(r"[0-9a-f]{8}", fullmatch=True),
+)
+literals = st.one_of(
+    st.builds(Literal, texts),
+    st.builds(Literal, texts, iris),
+    st.builds(
+        Literal,
+        texts,
+        st.just(IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString")),
+        st.sampled_from(["en", "sv", "it"]),
+    ),
+)
+terms = st.one_of(iris, st.builds(lambda label: BlankNode(f"_:{label}"), texts), literals)
+wires = st.builds(Wire, iris, names, st.none() | st.floats(min_value=1e-3, max_value=1e6))
+inputs = st.dictionaries(names, st.lists(wires, max_size=3).map(tuple), max_size=3)
+plain: st.SearchStrategy[Any] = st.recursive(
+    st.none() | st.booleans() | numbers | texts,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(texts, inner, max_size=3),
+    max_leaves=4,
+)
+messages = st.one_of(
+    st.builds(Apply, numbers, supervisors, inputs, inputs),
+    st.builds(SetParameters, numbers, supervisors, st.dictionaries(names, terms, max_size=3)),
+    st.builds(Release, numbers, supervisors),
+    st.builds(Answer, st.sampled_from(Verdict), iris, texts, numbers, st.booleans(), texts),
+    st.builds(Fail, iris, texts, numbers, st.sampled_from(Cause), texts),
+    st.builds(Wake, iris),
+    st.builds(Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans()),
+    st.builds(Stamp, iris, texts, numbers, seconds),
+    st.builds(
+        Status,
+        texts,
+        texts,
+        iris,
+        numbers,
+        seconds,
+        texts,
+        numbers,
+        st.lists(iris, max_size=3).map(tuple),
+        st.dictionaries(texts, plain, max_size=2),
+    ),
+)

@@ -1,0 +1,137 @@
+"""Messages as bytes: what is written is read again, and what strangers write never raises anything but PeerError."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI, Term
+from selfconf.protocol.codec import LARGEST, decode, decode_term, encode, encode_term
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Apply, Message, Release, Stamp, Wire
+from tests.protocol import strategies
+
+KINDS: tuple[type[Any], ...] = get_args(Message)
+json_values: st.SearchStrategy[Any] = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.sampled_from([10**400, -1, 1 << 70])
+    | st.floats()
+    | st.text(max_size=5)
+    | st.sampled_from(["", "\ud800", "done", "fail", "**", "a//b", "selfconf/**"]),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=5,
+)
+
+
+def read(payload: bytes) -> None:
+    """Read bytes as a message of every kind; only PeerError may come of it."""
+    for kind in KINDS:
+        try:
+            message = decode(payload, kind)
+        except PeerError:
+            continue
+        encode(message)
+
+
+@given(strategies.messages)
+def test_every_message_is_read_as_it_was_written(message: Message) -> None:
+    assert decode(encode(message), type(message)) == message
+
+
+@given(strategies.terms)
+def test_every_term_is_read_as_it_was_written(term: Term) -> None:
+    again = decode_term(json.loads(json.dumps(encode_term(term))))
+    assert again == term
+    assert type(again) is type(term)
+
+
+@given(strategies.messages, st.sampled_from(KINDS))
+def test_a_message_is_not_taken_for_one_of_another_kind(message: Message, kind: type[Any]) -> None:
+    if kind is not type(message):
+        with pytest.raises(PeerError):
+            decode(encode(message), kind)
+
+
+@given(st.binary(max_size=60))
+def test_any_bytes_raise_nothing_but_a_peer_error(payload: bytes) -> None:
+    read(payload)
+
+
+@given(strategies.messages, st.data())
+def test_a_message_with_a_member_replaced_raises_nothing_but_a_peer_error(
+    message: Message, data: st.DataObject
+) -> None:
+    body = json.loads(encode(message))
+    member = data.draw(st.sampled_from(sorted(body)))
+    value = body[member]
+    if isinstance(value, dict | list) and value and data.draw(st.booleans()):
+        place = data.draw(st.sampled_from(list(value) if isinstance(value, dict) else range(len(value))))
+        value[place] = data.draw(json_values)
+    else:
+        body[member] = data.draw(json_values)
+    read(json.dumps(body).encode())
+
+
+@given(strategies.messages, st.integers(0, 400), st.binary(max_size=3))
+def test_a_message_with_some_bytes_overwritten_raises_nothing_but_a_peer_error(
+    message: Message, place: int, noise: bytes
+) -> None:
+    payload = encode(message)
+    read(payload[:place] + noise + payload[place + len(noise) :])
+
+
+@given(strategies.messages)
+def test_a_member_that_is_missing_is_a_peer_error_or_has_a_default(message: Message) -> None:
+    body = json.loads(encode(message))
+    for member in body:
+        read(json.dumps({key: value for key, value in body.items() if key != member}).encode())
+
+
+@given(strategies.messages, st.text(max_size=5), json_values)
+def test_a_newer_peer_may_say_more(message: Message, member: str, value: object) -> None:
+    body = json.loads(encode(message))
+    if member not in body:
+        assert decode(json.dumps({**body, member: value}).encode(), type(message)) == message
+
+
+def test_a_message_that_is_too_large_is_refused_unread() -> None:
+    with pytest.raises(PeerError, match="too large"):
+        decode(b" " * (LARGEST + 1), Release)
+
+
+def test_a_message_that_is_nested_too_deep_is_refused() -> None:
+    with pytest.raises(PeerError):
+        decode(b"[" * 100_000, Release)
+
+
+def test_a_number_that_no_float_holds_is_refused() -> None:
+    body = json.loads(encode(Stamp(IRI("urn:a"), "l", 1, 0.0)))
+    with pytest.raises(PeerError, match="number"):
+        decode(json.dumps({**body, "time": 10**400}).encode(), Stamp)
+
+
+@pytest.mark.parametrize("lonely", ["\ud800", "a\udfff"])
+def test_half_a_surrogate_pair_is_no_text(lonely: str) -> None:
+    body = json.loads(encode(Release(1, "s")))
+    with pytest.raises(PeerError, match="text"):
+        decode(json.dumps({**body, "supervisor": lonely}).encode(), Release)
+
+
+def test_a_port_without_a_name_is_refused_for_there_is_no_key_for_it() -> None:
+    supervisor = Keys("home").configurator_life("c", "1")
+    for inputs in ({"": (Wire(IRI("urn:a"), "pose"),)}, {"position": (Wire(IRI("urn:a"), ""),)}):
+        with pytest.raises(PeerError, match="name"):
+            decode(encode(Apply(1, supervisor, inputs)), Apply)
+
+
+@pytest.mark.parametrize("period", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_promise_is_a_pause_that_one_can_wait_for(period: float) -> None:
+    with pytest.raises(PeerError, match="period"):
+        decode(encode(Apply(1, "s", {"position": (Wire(IRI("urn:a"), "pose", period),)})), Apply)

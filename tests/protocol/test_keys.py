@@ -1,0 +1,164 @@
+"""Keys are built and taken apart in one place, and none that activates is met by a broad question."""
+
+from __future__ import annotations
+
+import pytest
+import zenoh
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf.bus.memory import intersects
+from selfconf.errors import AuthorError, PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol import keys
+from selfconf.protocol.keys import Keys
+from tests.protocol.strategies import iris
+
+HOME = Keys("home")
+names = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9._-]{0,20}", fullmatch=True)
+ports = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20)
+chunks = st.sampled_from(["a", "b", "@ctl", "*", "**"])
+
+
+def every_key(component: IRI, port: str) -> list[str]:
+    """One key of each kind."""
+    return [
+        HOME.site_life("s", "1"),
+        HOME.advertisement("s", component),
+        HOME.changed("s"),
+        HOME.wake("s"),
+        HOME.life(component, "1"),
+        HOME.output(component, port),
+        HOME.fail(component),
+        HOME.call(component, "apply"),
+        HOME.configurator_life("c", "1"),
+        HOME.configuration("c"),
+        HOME.configurator_call("c", "stop"),
+    ]
+
+
+@given(iris, names)
+def test_a_life_is_taken_apart_as_it_was_put_together(component: IRI, life: str) -> None:
+    key = HOME.life(component, life)
+    assert keys.life_of(key) == life
+    assert keys.owner_of(key) == keys.component_chunk(component)
+
+
+@given(names, names)
+def test_the_lives_of_sites_and_configurators_name_their_owner(name: str, life: str) -> None:
+    for key in (HOME.site_life(name, life), HOME.configurator_life(name, life)):
+        assert (keys.owner_of(key), keys.life_of(key)) == (name, life)
+    assert keys.site_of(HOME.site_life(name, life)) == name
+
+
+@given(iris, ports)
+def test_a_port_of_any_name_is_one_chunk_and_comes_back(component: IRI, port: str) -> None:
+    key = HOME.output(component, port)
+    assert keys.port_of(key) == port
+    assert key.count("/") == HOME.output(component, "p").count("/")
+
+
+@given(iris, ports)
+def test_zenoh_takes_every_key(component: IRI, port: str) -> None:
+    for key in every_key(component, port):
+        assert str(zenoh.KeyExpr(key)) == key
+
+
+@given(iris, ports)
+def test_no_two_kinds_of_keys_are_equal(component: IRI, port: str) -> None:
+    assert len(set(every_key(component, port))) == 11
+
+
+@given(iris, iris)
+def test_two_components_share_no_key(one: IRI, other: IRI) -> None:
+    if one != other:
+        assert not set(every_key(one, "p")[4:8]) & set(every_key(other, "p")[4:8])
+
+
+@given(iris)
+def test_a_call_is_taken_apart_as_it_was_put_together(component: IRI) -> None:
+    assert keys.call_of(HOME.call(component, "apply")) == "apply"
+
+
+@pytest.mark.parametrize("broad", ["**", "selfconf/**", "selfconf/*/c/**", "selfconf/home/**", "*/**"])
+def test_no_broad_question_meets_a_control_call(broad: str) -> None:
+    component = IRI("https://example.org/drive")
+    calls = (HOME.call(component, "apply"), HOME.wake("s"), HOME.configurator_call("c", "stop"))
+    for call in calls:
+        assert not zenoh.KeyExpr(broad).intersects(zenoh.KeyExpr(call))
+        assert not intersects(broad, call)
+
+
+def test_the_questions_of_an_ecology_meet_what_they_are_meant_for() -> None:
+    component = IRI("https://example.org/drive")
+    met = [
+        (HOME.any_site_life(), HOME.site_life("s", "1")),
+        (HOME.advertisements(), HOME.advertisement("s", component)),
+        (HOME.advertisements("s"), HOME.advertisement("s", component)),
+        (HOME.changed(), HOME.changed("s")),
+        (HOME.any_life(), HOME.life(component, "1")),
+        (HOME.lives(component), HOME.life(component, "1")),
+        (HOME.call(component), HOME.call(component, "apply")),
+        (HOME.any_configurator_life(), HOME.configurator_life("c", "1")),
+        (HOME.configuration(), HOME.configuration("c")),
+        (HOME.configurator_call("*"), HOME.configurator_call("c", "stop")),
+    ]
+    for question, key in met:
+        assert zenoh.KeyExpr(question).intersects(zenoh.KeyExpr(key))
+        assert intersects(question, key)
+
+
+def test_ecologies_do_not_meet() -> None:
+    component = IRI("https://example.org/drive")
+    other = Keys("other")
+    for question in (other.any_life(), other.advertisements(), other.any_site_life(), other.call(component)):
+        for key in every_key(component, "p"):
+            assert not intersects(question, key)
+
+
+@given(st.lists(chunks, min_size=1, max_size=5), st.lists(chunks, min_size=1, max_size=5))
+def test_the_memory_bus_matches_keys_as_zenoh_does(left: list[str], right: list[str]) -> None:
+    one, other = zenoh.KeyExpr.autocanonize("/".join(left)), zenoh.KeyExpr.autocanonize("/".join(right))
+    assert intersects(str(one), str(other)) == one.intersects(other)
+
+
+@pytest.mark.parametrize("name", ["", "a/b", "*", "@ctl", "a b", "x" * 65, "#", "ä"])
+def test_a_name_that_cannot_be_a_chunk_is_refused_with_a_sentence(name: str) -> None:
+    with pytest.raises(AuthorError, match="cannot name an ecology"):
+        Keys(name)
+
+
+@pytest.mark.parametrize("key", ["", "a/b", "selfconf/home/site/s/ads/x"])
+def test_what_is_no_liveliness_key_has_no_owner(key: str) -> None:
+    with pytest.raises(PeerError):
+        keys.owner_of(key)
+
+
+@pytest.mark.parametrize("key", ["", "selfconf/home/c/aa/bb", "selfconf/home/site"])
+def test_what_is_no_key_of_a_site_names_no_site(key: str) -> None:
+    with pytest.raises(PeerError):
+        keys.site_of(key)
+
+
+@given(names, names)
+def test_the_life_of_a_configurator_is_known_as_such(name: str, life: str) -> None:
+    assert HOME.is_configurator_life(HOME.configurator_life(name, life))
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        "",
+        "**",
+        "selfconf/home/conf/*/live/*",
+        "selfconf/*/conf/c/live/1",
+        "selfconf/other/conf/c/live/1",
+        "selfconf/home/conf//live/1",
+        "selfconf/home/conf/c/live",
+        "selfconf/home/site/c/live/1",
+        "selfconf/home/conf/c/live/1/2",
+        "selfconf/home/conf/c/live/a?b",
+    ],
+)
+def test_nothing_else_passes_for_the_life_of_a_configurator(key: str) -> None:
+    assert not HOME.is_configurator_life(key)

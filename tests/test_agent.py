@@ -1,0 +1,569 @@
+"""A configurator in a small ecology, in simulated time: the paper's experiment, and everything that can go wrong."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from selfconf.agent import CALL, SETTLING
+from selfconf.bus.port import Replies, Request, Urgency
+from selfconf.configurator.machine import Phase, Policy
+from selfconf.errors import TemplateError
+from selfconf.model.refusal import TooFewEligible
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import Answer, Cause, Fail, Release, Status, Verdict
+from selfconf.rdf import turtle
+from selfconf.rdf.vocabulary import PROV, SC
+from selfconf.sdk.body import GRACE
+from selfconf.sdk.component import Refused
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
+
+TASK = {"sonar", "encoder", "control", "drive"}
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> Lab:
+    """The paper's ecology, at two sites, before any task."""
+    lab = Lab(tmp_path)
+    lab.navigation()
+    return lab
+
+
+def released(recorder: Recorder) -> bool:
+    """Whether a component was turned off as often as it was turned on."""
+    return recorder.said.count(("started",)) == recorder.said.count(("stopped",))
+
+
+# The paper's experiment.
+
+
+def test_the_task_is_configured_with_the_tracker_and_never_with_the_drive_of_pippi(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["pippi"].said == []
+    assert agent.configuration is not None
+    assert agent.configuration.components == tuple(
+        map(iri, ("sonar-array", "wheels", "person-tracker", "thinking-cap", "astrid-drive"))
+    )
+
+
+def test_signals_flow_along_the_connections_and_the_goal_is_set_last(lab: Lab) -> None:
+    lab.running(lab.agent())
+    lab.components["tracker"].emit("pose", {"x": 1})
+    lab.components["odometry"].emit("pose", {"x": 9})
+    lab.components["control"].emit("set.velocity", {"v": 0.3})
+    lab.let_pass(0.1)
+    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)"), ("position", {"x": 1})]
+    assert lab.components["drive"].said == [("started",), ("velocity", {"v": 0.3})]
+
+
+def test_a_lost_tracker_is_replaced_by_odometry(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.components["tracker"].fail("Astrid has left the picture")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.components["tracker"].said == [("started",), ("stopped",)]
+    lab.components["odometry"].emit("pose", {"x": 2})
+    lab.let_pass(0.1)
+    assert lab.components["control"].said[-1] == ("position", {"x": 2})
+    (lost,) = lab.acts("lost")
+    assert lost.facts["component"] == iri("person-tracker")
+    assert lost.facts["detail"] == "Astrid has left the picture"
+
+
+def test_repair_neither_stops_nor_starts_nor_sets_anew_what_runs(lab: Lab) -> None:
+    lab.running(lab.agent())
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)")]
+    for name in ("sonar", "encoder", "drive"):
+        assert lab.components[name].said == [("started",)]
+
+
+def test_dismantling_stops_everybody_first_as_the_paper_does(lab: Lab) -> None:
+    agent = lab.agent(policy=Policy.DISMANTLE)
+    lab.running(agent)
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.components["drive"].said == [("started",), ("stopped",), ("started",)]
+    assert lab.components["control"].said == [
+        ("started",),
+        ("goal", "(AT BEDROOM)"),
+        ("stopped",),
+        ("started",),
+        ("goal", "(AT BEDROOM)"),
+    ]
+
+
+def test_when_odometry_fails_too_the_task_is_refused_and_everything_is_off(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    for name in ("tracker", "odometry"):
+        lab.components[name].fail("broken")
+        lab.let_pass(1.0)
+    assert agent.state.phase is Phase.REFUSED
+    assert lab.active() == set()
+    (refusal,) = lab.ended
+    assert refusal is not None
+    assert [reason.role for reason in refusal.reasons if isinstance(reason, TooFewEligible)] == [iri("position")]
+
+
+def test_a_stop_takes_everything_down_once(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    agent.stop()
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    assert lab.ended == [None]
+    assert lab.active() == set()
+    assert all(map(released, lab.components.values()))
+
+
+@pytest.mark.parametrize("moment", [0.0, 0.0004, 0.0012, 0.0018, 0.0024, 0.003, 0.0035, 0.004, 0.0045, 0.01])
+@pytest.mark.parametrize("policy", Policy)
+def test_a_stop_at_any_moment_leaves_nothing_active(lab: Lab, moment: float, policy: Policy) -> None:
+    agent = lab.agent(policy=policy)
+    lab.let_pass(moment)
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    lab.let_pass(1.0)
+    assert lab.ended == [None]
+    assert lab.active() == set()
+
+
+# Losses of all kinds.
+
+
+def test_a_component_that_crashes_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash("tracker")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.acts("lost")[0].facts["cause"] == "crash"
+
+
+def test_a_component_that_dies_during_deployment_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.DEPLOYING)
+    lab.crash("tracker")
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_component_that_refuses_to_start_is_replaced(lab: Lab) -> None:
+    lab.components["tracker"].refusal = Refused("the camera is covered")
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.acts("declined")[0].facts["detail"] == "the camera is covered"
+
+
+def test_an_output_that_promised_a_rate_and_stops_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    promising = ADVERTISEMENTS["tracker"].replace(
+        "sc:signalType rob:PlanarPose2D", "sc:signalType rob:PlanarPose2D ; sc:rate [ sc:value 10 ; sc:unit unit:HZ ]"
+    )
+    monkeypatch.setitem(ADVERTISEMENTS, "tracker", promising)
+
+    class Tracker(Recorder):
+        def started(self) -> None:
+            self.every(0.1, lambda: self.emit("pose", {"x": 0}))
+
+    lab = Lab(tmp_path)
+    lab.navigation()
+    lab.crash("tracker")
+    tracker = Tracker()
+    lab.component("tracker", tracker)
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.let_pass(5.0)
+    assert lab.active() == TASK | {"tracker"}
+    tracker.every = lambda *_: None  # type: ignore[method-assign,assignment]
+    for undo in lab.bodies["tracker"]._timers:
+        undo()
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.acts("lost")[0].facts["cause"] == "silence"
+
+
+def test_a_component_that_hangs_is_replaced(lab: Lab) -> None:
+    """It lives, but answers no call."""
+    body = lab.bodies["tracker"]
+    body._served()
+    body.bus.serve(lab.keys.call(iri("person-tracker")), lambda _: None)
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 4 * CALL)
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_component_that_is_advertised_but_does_not_run_is_passed_over(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("home")
+    for name in TASK | {"odometry"}:
+        lab.component(name)
+    assert lab.running(lab.agent())
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_new_life_of_a_lost_component_may_be_chosen_again(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash("tracker")
+    lab.let_pass(1.0)
+    lab.component("tracker")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}  # what runs is not changed for it
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_component_that_is_restarted_while_it_plays_is_activated_and_set_anew(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash("control")
+    lab.let_pass(0.5)
+    assert agent.state.phase is Phase.REFUSED
+    lab.ended.clear()
+    lab.component("control")
+    again = lab.agent()
+    assert lab.running(again)
+    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)")]
+
+
+def test_a_site_that_came_after_the_start_counts_before_the_task_is_given_up(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "odometry", "control", "drive")
+    for name in TASK | {"odometry"}:
+        lab.component(name)
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.site("living-room", "tracker")
+    lab.component("tracker")
+    lab.let_pass(1.0)
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_the_fail_of_a_component_that_was_activated_anew_counts(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.components["odometry"].fail("idle, so nobody hears")
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}
+    lab.components["odometry"].fail("now it does")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.REFUSED
+
+
+def test_nobody_else_can_make_a_component_fail(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    mallory = lab.network.node()
+    forged = encode(Fail(iri("person-tracker"), "", 1, Cause.FAIL, "says who"))
+    for key in (lab.keys.fail(iri("pippi-drive")), lab.keys.fail(iri("thinking-cap"))):
+        mallory.publisher(key, Urgency.EVENT).put(forged)
+    mallory.publisher(lab.keys.fail(iri("person-tracker")), Urgency.EVENT).put(b"not a message")
+    silent = encode(Fail(iri("person-tracker"), "", 1, Cause.SILENCE, "says a stranger"))
+    mallory.publisher(lab.keys.fail(iri("pippi-drive")), Urgency.EVENT).put(silent)
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+
+
+# Configurators that die, and several of them.
+
+
+def test_when_the_configurator_dies_everything_turns_itself_off_and_a_new_one_recovers(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash(agent)
+    lab.let_pass(GRACE - 0.1)
+    assert lab.active() == TASK | {"tracker"}
+    lab.let_pass(0.2)
+    assert lab.active() == set()
+    again = lab.agent()
+    assert lab.running(again)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_new_configurator_takes_over_at_once_from_one_that_died(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    lab.crash(first)
+    again = lab.agent()
+    assert lab.running(again)
+    assert lab.active() == TASK | {"tracker"}
+    lab.let_pass(10.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["drive"].said == [("started",)]
+
+
+def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent()
+    assert lab.until(lambda: second.state.phase is Phase.REFUSED)
+    assert first.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["drive"].said == [("started",)]
+    assert any(account.facts["detail"] == "busy" for account in lab.acts("declined"))
+
+
+def test_two_tasks_share_the_ecology_as_long_as_they_need_different_components(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    template = PREFIXES + ":watch a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class rob:PositionSensor ."
+    second = lab.agent(template, bound=())
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker", "odometry"}
+    first.stop()
+    lab.let_pass(1.0)
+    assert lab.active() == {"odometry"}
+
+
+# Patience.
+
+
+def test_patience_waits_until_the_ecology_has_what_it_needs(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in TASK:
+        lab.component(name)
+    agent = lab.agent(patient=True)
+    lab.let_pass(5.0)
+    assert agent.state.phase is Phase.REFUSED
+    assert lab.ended == []
+    lab.component("tracker")
+    lab.site("living-room", "tracker")
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_patience_notices_an_advertisement_that_is_added_to_a_site(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    site = lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in TASK | {"odometry"}:
+        lab.component(name)
+    agent = lab.agent(patient=True)
+    lab.let_pass(5.0)
+    assert agent.state.phase is Phase.REFUSED
+    (tmp_path / "astrid" / "odometry.ttl").write_text(PREFIXES + ADVERTISEMENTS["odometry"])
+    assert lab.running(agent)
+    assert site.name == "astrid"
+
+
+def test_patience_recovers_when_a_lost_component_lives_again(lab: Lab) -> None:
+    agent = lab.agent(patient=True)
+    lab.running(agent)
+    lab.crash("drive")
+    lab.let_pass(1.0)
+    assert (agent.state.phase, lab.active()) == (Phase.REFUSED, set())
+    lab.component("drive")
+    assert lab.running(agent)
+    agent.stop()
+    assert lab.until(lambda: lab.ended == [None])
+    assert lab.active() == set()
+
+
+# Being cut off.
+
+
+def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_configuration(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate("tracker")
+    lab.let_pass(GRACE / 2)
+    assert lab.active() == TASK | {"odometry", "tracker"}
+    lab.rejoin("tracker")
+    lab.let_pass(0.1)
+    assert lab.active() == TASK | {"odometry"}
+    lab.let_pass(10.0)
+    assert lab.active() == TASK | {"odometry"}
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert agent.state.phase is Phase.RUNNING
+
+
+@pytest.mark.parametrize("seconds", [0.3, GRACE + 0.5, 30.0])
+def test_a_configurator_that_was_cut_off_brings_its_configuration_up_again(lab: Lab, seconds: float) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate(agent)
+    lab.let_pass(seconds)
+    assert lab.active() == (TASK | {"tracker"} if seconds < GRACE else set())
+    lab.rejoin(agent)
+    lab.let_pass(SETTLING + 1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["control"].said[-1] in (("goal", "(AT BEDROOM)"), ("started",))
+    assert not lab.acts("lost")
+
+
+def test_who_died_while_the_configurator_was_cut_off_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate(agent)
+    lab.let_pass(0.3)
+    lab.crash("tracker")
+    lab.let_pass(0.3)
+    lab.rejoin(agent)
+    lab.let_pass(SETTLING + 1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_configurator_that_is_cut_off_can_be_stopped(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate(agent)
+    lab.let_pass(0.1)
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended), 10.0)
+    lab.let_pass(GRACE + 0.1)
+    assert lab.active() == set()
+
+
+# What others ask of it.
+
+
+def ask(lab: Lab, key: str) -> Replies:
+    """Ask the ecology."""
+    replies: list[Replies] = []
+    lab.network.node().ask(key, b"", 1.0, replies.append)
+    assert lab.until(lambda: bool(replies))
+    return replies[0]
+
+
+def test_it_says_what_it_has_deployed(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    (sample,) = ask(lab, lab.keys.configurator_call("*", "status")).samples
+    status = decode(sample.payload, Status)
+    assert (status.configurator, status.phase) == (agent.name, "running")
+    assert status.template == iri("navigate")
+    assert set(status.components) == set(agent.configuration.components) if agent.configuration else False
+    assert status.lost == {iri("person-tracker"): "fail"}
+
+
+def test_it_is_stopped_by_whoever_asks(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    assert ask(lab, lab.keys.configurator_call(agent.name, "stop")).samples
+    assert lab.until(lambda: lab.ended == [None])
+    assert lab.active() == set()
+
+
+def test_a_call_that_it_does_not_know_is_refused(lab: Lab) -> None:
+    agent = lab.agent()
+    replies = ask(lab, lab.keys.configurator_call(agent.name, "dance"))
+    assert replies.errors == ("there is no call 'dance'",)
+
+
+def test_what_is_deployed_is_rdf_with_what_it_revises_and_why(lab: Lab) -> None:
+    agent = lab.agent()
+    assert ask(lab, lab.keys.configuration()).samples == ()
+    lab.running(agent)
+    (sample,) = ask(lab, lab.keys.configuration()).samples
+    first = turtle.parse(sample.payload, "first")
+    (name,) = first.instances(SC.Configuration)
+    assert first.values(name, SC.template) == [iri("navigate")]
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    (sample,) = ask(lab, lab.keys.configuration()).samples
+    second = turtle.parse(sample.payload, "second")
+    (revision,) = second.instances(SC.Configuration)
+    assert second.values(revision, PROV.wasRevisionOf) == [name]
+    (failure,) = second.instances(SC.Failure)
+    assert second.values(failure, SC.component) == [iri("person-tracker")]
+
+
+def test_no_broad_question_changes_anything(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    said = {name: list(recorder.said) for name, recorder in lab.components.items()}
+    for key in ("**", "selfconf/**", "selfconf/lab/**"):
+        ask(lab, key)
+    lab.let_pass(1.0)
+    assert {name: recorder.said for name, recorder in lab.components.items()} == said
+    assert agent.state.phase is Phase.RUNNING
+
+
+# Strangers.
+
+
+def test_an_answer_that_is_none_is_passed_over(lab: Lab) -> None:
+    """A component whose program speaks another protocol is replaced, not trusted."""
+    body = lab.bodies["tracker"]
+    body._served()
+
+    def babble(request: Request) -> None:
+        request.reply(lab.keys.call(iri("person-tracker"), "apply"), b"yes sir")
+        request.finish()
+
+    body.bus.serve(lab.keys.call(iri("person-tracker")), babble)
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
+    lab.running(lab.agent())
+    replies: list[Replies] = []
+    them = lab.keys.configurator_life("them", "1")
+    payload = encode(Release(1 << 60, them))
+    lab.network.node().ask(lab.keys.call(iri("astrid-drive"), "release"), payload, 1.0, replies.append)
+    assert lab.until(lambda: bool(replies))
+    assert decode(replies[0].samples[0].payload, Answer).verdict is Verdict.BUSY
+    assert "drive" in lab.active()
+
+
+def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab) -> None:
+    broken = NAVIGATE + ':drive sh:pattern "(" .\n'
+    agent = lab.agent(broken)
+    assert lab.until(lambda: bool(lab.ended))
+    assert isinstance(agent.trouble, TemplateError)
+    assert lab.active() == set()
+
+
+def test_what_it_does_is_told_in_the_order_of_the_four_acts(lab: Lab) -> None:
+    lab.running(lab.agent())
+    lab.let_pass(0.1)
+    acts = [account.act for account in lab.accounts]
+    firsts = [
+        acts.index(act) for act in ("query", "discovered", "composed", "watching", "activating", "set", "running")
+    ]
+    assert firsts == sorted(firsts)
+    assert max(i for i, act in enumerate(acts) if act == "watching") < acts.index("activating")
+    connected = {(str(a.facts["source"]), str(a.facts["output"])) for a in lab.acts("connecting")}
+    assert (str(iri("person-tracker")), "pose") in connected
+    json.dumps([{**account.facts, "outcome": None, "configuration": None} for account in lab.accounts], default=list)
+
+
+def test_an_input_follows_every_output_that_feeds_it(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.navigation()
+    both = NAVIGATE.replace(
+        "sh:class rob:PositionSensor ;", "sh:class rob:PositionSensor ; sc:minCount 2 ; sc:maxCount 2 ;"
+    )
+    assert lab.running(lab.agent(both))
+    lab.components["tracker"].emit("pose", 1)
+    lab.components["odometry"].emit("pose", 2)
+    lab.let_pass(0.1)
+    values: list[Any] = [said[1] for said in lab.components["control"].said if said[0] == "position"]
+    assert sorted(values) == [1, 2]
