@@ -162,7 +162,7 @@ def measure(trials: int) -> dict[str, list[float]]:
             threading.Event().wait(PAUSE)
             parts["round trip"].append(echo.measure())
             threading.Event().wait(PAUSE)
-            _trial(lines, actors[('position-a', 'position-b')[trial % 2]], parts)
+            _trial(lines, actors[("position-a", "position-b")[trial % 2]], parts)
     return parts
 
 

@@ -16,9 +16,7 @@ def main() -> None:
     config.insert_json5("scouting/multicast/enabled", "false")
     config.insert_json5("connect/endpoints", json.dumps([sys.argv[1]]))
     with zenoh.open(config) as session:
-        back = session.declare_publisher(
-            "echo/back", congestion_control=zenoh.CongestionControl.BLOCK, express=True
-        )
+        back = session.declare_publisher("echo/back", congestion_control=zenoh.CongestionControl.BLOCK, express=True)
 
         def answer(sample: zenoh.Sample) -> None:
             back.put(sample.payload)

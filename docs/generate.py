@@ -1,4 +1,4 @@
-"""Writes the pages that are made from the code: `python -m docs.generate`, or `--check` to see whether they are up to date."""
+"""Writes the pages that are made from the code: `python -m docs.generate`; with `--check` it only looks."""
 
 from __future__ import annotations
 

@@ -1,6 +1,20 @@
-"""`python -m selfconf` is `selfconf`."""
+"""`selfconf` and `python -m selfconf`: the command line, quiet when it is interrupted while it is still loading."""
 
-from selfconf.cli.main import main
+from __future__ import annotations
+
+import sys
+
+
+def main() -> int:
+    """Run the command line; the exit code."""
+    try:
+        from selfconf.cli.main import main as run
+
+        return run()
+    except KeyboardInterrupt:
+        print("selfconf: interrupted", file=sys.stderr)
+        return 130
+
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -17,6 +17,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
 
 from sim.account import Account
 from sim.crew import Crew, Line
@@ -84,13 +85,19 @@ class Stage:
 
 def run(given: argparse.Namespace) -> int:
     """Run the scene that the arguments name; 0 if it ends as it should."""
-    given.out.mkdir(parents=True, exist_ok=True)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _interrupt)
     scenes = {"navigate": _navigate, "radio": _radio}
     try:
         return scenes[given.scene](given)
     except DemoError as error:
         print(f"selfconf demo: {error}", file=sys.stderr)
         return 1
+
+
+def _interrupt(number: int, _: FrameType | None) -> None:
+    """End as Ctrl-C does, taking everything down."""
+    raise KeyboardInterrupt
 
 
 def _tell(sentence: str) -> None:
@@ -100,7 +107,8 @@ def _tell(sentence: str) -> None:
 def _navigate(given: argparse.Namespace) -> int:
     from sim.gallery import draw_run, result, summary
 
-    _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act, what.")
+    _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act of self-configuration, what.")
+    _tell("Act 1 asks the ecology, act 2 collects its answers, act 3 composes a configuration, act 4 deploys it.")
     record = given.out / "run.npz"
     with Crew() as crew:
         stage = Stage(crew, _tell)
@@ -116,7 +124,10 @@ def _navigate(given: argparse.Namespace) -> int:
         stage.configurator(EXAMPLES / "navigate.ttl", given.policy, "robot=:Astrid", goal)
         limit = max(120.0, 130.0 / given.speed) + 60.0
         account = stage.account
-        ended: Callable[[], bool] = lambda: account.end is not None or account.refused
+
+        def ended() -> bool:
+            return account.end is not None or account.refused
+
         stage.until(ended, limit, ("world", "configurator"), "the end of the run")
         crew.end("configurator", signal.SIGINT)
         for line in crew.lines(0.2):

@@ -88,5 +88,5 @@ def speaker(file: str) -> type[RadioSpeaker]:
 
 
 if __name__ == "__main__":
-    which = sys.argv.pop(1) if len(sys.argv) > 1 else "tuner"
-    raise SystemExit(main(RadioTuner if which == "tuner" else speaker(which)))
+    which = sys.argv[1] if len(sys.argv) > 1 else "tuner"
+    main(RadioTuner if which == "tuner" else speaker(which))

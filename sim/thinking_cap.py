@@ -58,4 +58,4 @@ class ThinkingCap(Component):
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(ThinkingCap))
+    main(ThinkingCap)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,6 +20,7 @@ from selfconf.model.term import IRI
 from selfconf.rdf import write
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.templates import TaskDocument
+from selfconf.search.whatif import Loss
 
 NAME = "configure"
 HELP = "compute a configuration for a template, or say why there is none; changes nothing"
@@ -32,6 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_task_arguments(parser)
     parser.add_argument(
         "--format", choices=["text", "json", "turtle", "mermaid"], default="text", help="default: %(default)s"
+    )
+    parser.add_argument(
+        "--what-if", action="store_true", help="tell for each component what would replace it if it failed"
     )
     add_connection_arguments(parser)
 
@@ -51,13 +55,16 @@ def run(given: argparse.Namespace) -> int:
     began = time.perf_counter()
     outcome = composer.compose(ecology, frozenset(), None)
     seconds["search"] = time.perf_counter() - began
+    losses: list[Loss] | None = None
     if isinstance(outcome, Refusal):
-        outcome = _with_hint(outcome, task, ecology, given)
+        outcome = _with_hint(composer.mended(ecology, outcome), task, ecology, given)
+    elif given.what_if:
+        losses = composer.what_if(ecology, outcome)
     eligible = {
         str(role.iri): len(candidates)
         for role, candidates in zip(task.task.template.roles, partition.candidates, strict=True)
     }
-    print(_shown(outcome, task, given.format, eligible, seconds))
+    print(_shown(outcome, task, given.format, eligible, seconds, losses))
     return 1 if isinstance(outcome, Refusal) else 0
 
 
@@ -86,6 +93,7 @@ def _shown(
     form: str,
     eligible: Mapping[str, int],
     seconds: Mapping[str, float],
+    losses: Sequence[Loss] | None,
 ) -> str:
     names = words.Names(task.document.prefixes)
     refused = isinstance(outcome, Refusal)
@@ -93,6 +101,8 @@ def _shown(
         bound = {name: words.plain(value) for name, value in task.task.by_name().items()}
         body: dict[str, Any] = {"status": "refused" if refused else "configured", "bindings": bound}
         body |= words.refusal_body(outcome) if isinstance(outcome, Refusal) else words.configuration_body(outcome)
+        if losses is not None:
+            body["what_if"] = words.losses_body(losses)
         body |= {
             "eligible": dict(eligible),
             "seconds": {part: round(value, 6) for part, value in seconds.items()},
@@ -107,4 +117,5 @@ def _shown(
         return write.turtle(write.configuration_triples(outcome, name), task.document.prefixes).rstrip()
     if form == "mermaid":
         return words.mermaid(outcome, names)
-    return words.configuration_text(outcome, names)
+    text = words.configuration_text(outcome, names)
+    return text if losses is None else f"{text}\n{words.losses_text(losses, names)}"

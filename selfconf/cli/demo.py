@@ -9,7 +9,7 @@ import os
 import sys
 from pathlib import Path
 
-from selfconf.errors import InstallationError
+from selfconf.errors import AuthorError, InstallationError
 
 NAME = "demo"
 HELP = "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over"
@@ -54,6 +54,10 @@ def run(given: argparse.Namespace) -> int:
         )
     if given.gui and not os.environ.get("DISPLAY"):
         raise InstallationError("--gui opens a window, and there is no display; leave it out, the pictures need none")
+    try:
+        given.out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise AuthorError(f"cannot write in {given.out}: {error.strerror}; choose another folder by --out") from None
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))
     code: int = importlib.import_module("sim.demo").run(given)
@@ -61,7 +65,10 @@ def run(given: argparse.Namespace) -> int:
 
 
 def _speed(text: str) -> float:
-    speed = float("inf") if text == "max" else float(text)
+    try:
+        speed = float("inf") if text == "max" else float(text)
+    except ValueError:
+        speed = 0.0
     if not speed > 0:
-        raise argparse.ArgumentTypeError("a speed is above zero")
+        raise argparse.ArgumentTypeError(f"{text!r} is no speed: give a number above zero, or max")
     return speed

@@ -47,13 +47,18 @@ def run(given: argparse.Namespace) -> int:
             for component, found in sorted(discovery.found.items())
         ]
     if given.format == "json":
-        body = {"ecology": ecology.keys.ecology, "components": [row._asdict() for row in rows], "sites": discovery.sites}
+        body = {
+            "ecology": ecology.keys.ecology,
+            "components": [row._asdict() for row in rows],
+            "sites": discovery.sites,
+        }
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
     names = words.Names(PREFIXES)
     cells = [[str(row.component), ", ".join(names(kind) for kind in row.types), row.site, row.state] for row in rows]
     print(words.table(["component", "types", "site", "state"], cells))
-    print(f"{len(rows)} components at {len(discovery.sites)} sites of ecology {ecology.keys.ecology}")
+    where = f"{words.count(len(discovery.sites), 'site')} of ecology {ecology.keys.ecology}"
+    print(f"{words.count(len(rows), 'component')} at {where}")
     return 0
 
 

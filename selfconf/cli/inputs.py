@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from selfconf import entailment, library
 from selfconf.configurator.compose import Strategy
-from selfconf.errors import AuthorError, BindingError
+from selfconf.errors import AuthorError, BindingError, TemplateError, TurtleError
+from selfconf.model.diagnostic import Severity
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
-from selfconf.rdf import advertisements, bindings, templates, turtle
+from selfconf.rdf import bindings, stream, templates, turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.closure import hierarchy
 from selfconf.rdf.templates import TaskDocument
 from selfconf.rdf.turtle import Document
+
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
 def complain(sentence: str) -> None:
@@ -96,16 +101,29 @@ def add_ontology_argument(parser: argparse.ArgumentParser) -> None:
 
 def read_task(given: argparse.Namespace) -> TaskDocument:
     """The task that the arguments describe, complete and checked. Raises AuthorError."""
-    if given.strategy == Strategy.BEST.value:
-        raise AuthorError("--strategy best is not finished yet; use first or paper")
-    document = parse_file(leading(given, "template"))
+    path = leading(given, "template")
+    document = parse_file(path)
     wanted = None
     if given.wanted is not None:
         term = bindings.read_term(given.wanted, document.prefixes)
         if not isinstance(term, IRI):
             raise BindingError(f"--template takes a CURIE or an <IRI>, not {given.wanted!r}")
         wanted = term
-    return bindings.complete(bindings.bind(templates.read(document, wanted), pairs(given.bind)))
+    try:
+        task = templates.read(document, wanted)
+    except TemplateError as error:
+        raise located(path, error) from None
+    return bindings.complete(bindings.bind(task, pairs(given.bind)))
+
+
+def located(path: Path, error: TemplateError) -> TemplateError:
+    """The error with the line and column of what is wrong, as `validate` would tell it."""
+    from selfconf.cli.validate import check
+
+    for problem in check([str(path)]).diagnostics:
+        if problem.severity is Severity.ERROR:
+            return TemplateError(error.message, file=problem.file, line=problem.line, column=problem.column)
+    return error
 
 
 def pairs(bound: Iterable[str]) -> list[tuple[str, str]]:
@@ -132,18 +150,35 @@ def read_hierarchy(given: argparse.Namespace, reasoning: Reasoning | None = None
 def read_advertisements(paths: Sequence[Path]) -> dict[IRI, Advertisement]:
     """The advertisements in files and folders. One that does not conform is named on stderr and left out."""
     found: dict[IRI, Advertisement] = {}
-    for path in turtle_files(paths):
-        good, bad = advertisements.read(parse_file(path))
-        for malformed in bad:
-            complain(f"{path}: left out {malformed.component}: {malformed.problems[0]}")
-        for advertisement in good:
-            component = advertisement.profile.component
-            if component in found:
-                other = found[component].profile.place
-                complain(f"{path}: left out {component}: it is advertised in {other} already")
-            else:
-                found[component] = advertisement
+    clauses = stream.Clauses()
+    with collector_at_rest():
+        for path in turtle_files(paths):
+            good, bad = stream.read(_bytes(path), str(path), path.resolve().as_uri(), clauses)
+            for malformed in bad:
+                complain(f"{path}: left out {malformed.component}: {malformed.problems[0]}")
+            for advertisement in good:
+                if found.setdefault(advertisement.component, advertisement) is not advertisement:
+                    other = found[advertisement.component].profile.place
+                    complain(f"{path}: left out {advertisement.component}: it is advertised in {other} already")
+    if not found:
+        complain(f"there is no advertisement in {', '.join(map(str, paths))}")
     return found
+
+
+@contextmanager
+def collector_at_rest() -> Iterator[None]:
+    """No garbage collection while much is read that will stay; afterwards the collector leaves it alone.
+
+    Values are not garbage, but looking at a million of them again and again takes as long as making them.
+    """
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        if collecting:
+            gc.enable()
 
 
 def turtle_files(paths: Sequence[Path]) -> list[Path]:
@@ -165,10 +200,16 @@ def existing(path: Path) -> Path:
 
 def parse_file(path: Path) -> Document:
     """A Turtle file. Raises AuthorError for what is not there, cannot be read, or is not Turtle."""
+    return turtle.parse(_bytes(path), str(path), path.resolve().as_uri())
+
+
+def _bytes(path: Path) -> bytes:
     if path.is_dir():
         raise AuthorError(f"{path} is a folder; a file is needed here")
     try:
-        text = existing(path).read_bytes()
+        octets = existing(path).read_bytes()
     except OSError as error:
         raise AuthorError(f"cannot read {path}: {error.strerror}") from None
-    return turtle.parse(text, str(path), path.resolve().as_uri())
+    if b"\0" in octets:
+        raise TurtleError("not Turtle: this is a binary file", file=str(path))
+    return octets.removeprefix(BYTE_ORDER_MARK)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from typing import TypeVar
 
 from selfconf import rendezvous
@@ -16,6 +17,8 @@ from selfconf.errors import NetworkError
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 
+ANSWER = 3.0
+"""How long, in seconds, a roll-call may take."""
 PATIENCE = 20.0
 """How long, in seconds, a command waits for an answer that the bus itself should end earlier."""
 T = TypeVar("T")
@@ -38,8 +41,12 @@ def connected(given: argparse.Namespace) -> Iterator[Ecology]:
     """The ecology that the arguments name. Raises NetworkError if there is none."""
     name, endpoints = rendezvous.find(given.ecology, given.connect)
     bus = client(endpoints)
+    ecology = Ecology(bus, name)
     try:
-        yield Ecology(bus, name)
+        sites: tuple[str, ...] = wait(bus, partial(bus.roll_call, ecology.keys.any_site_life(), ANSWER))
+        if not sites:
+            raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
+        yield ecology
     finally:
         bus.close()
 
@@ -62,8 +69,6 @@ def discover(ecology: Ecology) -> Discovery:
         complain(complaint)
     for site in discovery.missing:
         complain(f"site {site} lives, but did not answer in full; what it advertises may be missing")
-    if not discovery.sites:
-        raise NetworkError(f"no site of the ecology {ecology.keys.ecology!r} answers; is it the right name?")
     return discovery
 
 

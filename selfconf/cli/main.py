@@ -10,12 +10,13 @@ import importlib
 import logging
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 from types import ModuleType
 
 from selfconf.errors import SelfconfError
 
-COMMANDS = ("validate", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
+COMMANDS = ("new", "validate", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
 INTERRUPTED = 130
 
 
@@ -39,8 +40,8 @@ def parser_of(name: str, module: ModuleType, subparsers: argparse._SubParsersAct
     parser.set_defaults(run=module.run)
 
 
-def parser() -> argparse.ArgumentParser:
-    """The parser of the whole command line."""
+def parser(names: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
+    """The parser of the command line, or of some commands of it: those that are not asked for are not loaded."""
     top = argparse.ArgumentParser(
         prog="selfconf",
         description="Robots, sensors and home devices that wire themselves.",
@@ -51,14 +52,15 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"selfconf {_version()}")
     subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for name in COMMANDS:
+    for name in names:
         parser_of(name, command(name), subparsers)
     return top
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
-    given = parser().parse_args(arguments)
+    typed = sys.argv[1:] if arguments is None else arguments
+    given = parser([name for name in typed[:1] if name in COMMANDS] or COMMANDS).parse_args(typed)
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)
     try:
         code: int = given.run(given)
@@ -66,12 +68,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return code
     except SelfconfError as error:
         if given.debug:
-            raise
+            traceback.print_exc()
         print(f"selfconf {given.command}: {error}", file=sys.stderr)
         return 2
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except OSError as error:
+        if given.debug:
+            traceback.print_exc()
+        print(f"selfconf {given.command}: {error}", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 2
     except KeyboardInterrupt:
         print(f"selfconf {given.command}: interrupted", file=sys.stderr)
         return INTERRUPTED

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 
-import pyoxigraph as ox
-
-from selfconf.cli import words
+from selfconf.cli.answers import FORMATS
+from selfconf.cli.asking import ROWS, SECONDS, Question, answer
 from selfconf.cli.inputs import (
     add_ads_argument,
     add_ontology_argument,
@@ -23,7 +21,7 @@ from selfconf.cli.live import add_connection_arguments, ask, connected, discover
 from selfconf.errors import AuthorError, TurtleError
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
-from selfconf.rdf.dataset import PREFIXES, Answer, Dataset
+from selfconf.rdf.dataset import PREFIXES, Dataset
 
 NAME = "query"
 HELP = "ask the ecology something in SPARQL, over files or over everything that is alive"
@@ -39,9 +37,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_ontology_argument(parser)
     parser.add_argument(
         "--format",
-        choices=["table", "json", "csv", "tsv", "turtle"],
+        choices=FORMATS,
         default="table",
         help="default: %(default)s",
+    )
+    parser.add_argument(
+        "--seconds",
+        metavar="S",
+        type=float,
+        default=SECONDS,
+        help="how long the answer may take (default: %(default)g)",
+    )
+    parser.add_argument(
+        "--rows", metavar="N", type=int, default=ROWS, help="how many rows are shown at most (default: %(default)s)"
     )
     add_connection_arguments(parser)
 
@@ -49,6 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 with an answer, be it empty."""
     text = _text(str(leading(given, "sparql")))
+    if given.rows < 1 or given.seconds <= 0:
+        raise AuthorError("--rows and --seconds take numbers greater than 0")
     dataset = Dataset()
     prefixes: dict[str, str] = {}
     if given.ads is not None:
@@ -60,13 +70,19 @@ def run(given: argparse.Namespace) -> int:
         prefixes |= document.prefixes
         dataset.add(IRI(path.resolve().as_uri()), document.triples())
     prefixes = {name: base for name, base in prefixes.items() if name and name not in PREFIXES}
-    print(shown(dataset.query(text, prefixes), given.format, words.Names({**prefixes, **PREFIXES})))
+    shown, cut = answer(dataset, Question(text, given.format, given.rows, prefixes), given.seconds)
+    print(shown)
+    if cut:
+        complain(f"there are more than {given.rows} rows; ask for less, or for more by --rows")
     return 0
 
 
 def _text(given: str) -> str:
     if given == "-":
-        return sys.stdin.read()
+        try:
+            return sys.stdin.read()
+        except UnicodeDecodeError as error:
+            raise AuthorError(f"cannot read stdin: {error}") from None
     if given.endswith(".rq") or (len(given) < 255 and "\n" not in given and Path(given).is_file()):
         try:
             return existing(Path(given)).read_text(encoding="utf-8")
@@ -85,36 +101,3 @@ def _add_living(dataset: Dataset, given: argparse.Namespace) -> None:
                 complain(f"left out a configuration: {error}")
                 continue
             dataset.add(IRI(f"urn:selfconf:{sample.key}"), document.triples())
-
-
-def shown(answer: Answer, form: str, names: words.Names) -> str:
-    """The answer in a format; raises AuthorError where the format does not fit the kind of query."""
-    if isinstance(answer, ox.QueryTriples):
-        return _triples(answer, form)
-    if form == "turtle":
-        raise AuthorError("--format turtle is for CONSTRUCT and DESCRIBE; for this query use table, json, csv or tsv")
-    if isinstance(answer, ox.QueryBoolean):
-        if form == "json":
-            return json.dumps({"head": {}, "boolean": bool(answer)})
-        return "true" if answer else "false"
-    formats = {
-        "json": ox.QueryResultsFormat.JSON,
-        "csv": ox.QueryResultsFormat.CSV,
-        "tsv": ox.QueryResultsFormat.TSV,
-    }
-    if form in formats:
-        return (answer.serialize(format=formats[form]) or b"").decode().rstrip("\r\n")
-    variables = [variable.value for variable in answer.variables]
-    rows = [
-        [names(turtle.term(value)) if (value := solution[name]) is not None else "" for name in variables]
-        for solution in answer
-    ]
-    return words.table(variables, rows) if variables else f"{len(rows)} solutions"
-
-
-def _triples(answer: ox.QueryTriples, form: str) -> str:
-    if form == "json":
-        return (answer.serialize(format=ox.RdfFormat.JSON_LD) or b"").decode().rstrip()
-    if form in ("csv", "tsv"):
-        raise AuthorError(f"--format {form} is for SELECT; for this query use turtle or json")
-    return (ox.serialize(answer, format=ox.RdfFormat.TURTLE, prefixes=PREFIXES) or b"").decode().rstrip()

@@ -59,13 +59,22 @@ def run(given: argparse.Namespace) -> int:
     with _ecology(given) as (ecology, endpoints):
         bus = client(endpoints)
         ended: list[Refusal | None] = []
+
+        def told(account: Account) -> None:
+            try:
+                tell(account)
+            except OSError:  # whoever read the accounts is gone, or the disk is full: end rather than run unseen
+                for stream in (sys.stdout, sys.stderr):
+                    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+                bus.wake_up(agent.stop)
+
         order = Order(
             template=task.task.template.iri,
             compose=composer.compose,
             standby=composer.standby,
             policy=Policy(given.policy),
             patient=given.wait,
-            tell=tell,
+            tell=told,
             settle=ended.append,
         )
         agent = Agent(bus, ecology, order)
@@ -82,6 +91,8 @@ def run(given: argparse.Namespace) -> int:
         complain(words.refusal_text(refusal, names))
         for component, loss in agent.state.lost.items():
             complain(f"  {names(component)} was lost: {loss.cause.value}, {loss.detail}")
+        if agent.state.lost:
+            complain("start it again and run again, or run with --wait, which goes on when it is back")
     return 1 if refusal is not None else 0
 
 
@@ -161,6 +172,9 @@ class Teller:
     def __call__(self, account: Account) -> None:
         self._began = self._began or account.time
         sentence = self.SENTENCES.get(account.act)
+        if account.act == "waiting":
+            complain(words.refusal_text(account.facts["refusal"], self._names))
+            sentence = "       waiting for the ecology to change"
         if account.act == "composed":
             sentence = "act 3  {roles} in {milliseconds:.1f} ms"
         if sentence is None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, router
+from selfconf.cli import words
 from selfconf.cli.inputs import complain, existing
 from selfconf.ending import Ending
 from selfconf.protocol.keys import checked_name
@@ -59,10 +60,10 @@ def run(given: argparse.Namespace) -> int:
     site = Site(bus, given.ecology, name, Shelf(given.paths, complain), environment)
     meeting = rendezvous.announce(Meeting(given.ecology, name, bus.endpoint, os.getpid()))
     count = len(site.shelf.advertisements)
-    complain(f"site {name} of ecology {given.ecology} serves {count} advertisements on {bus.endpoint}")
+    complain(f"site {name} of ecology {given.ecology} serves {words.count(count, 'advertisement')} on {bus.endpoint}")
     try:
         bus.run(ending)
     finally:
-        meeting.unlink(missing_ok=True)
+        rendezvous.leave(meeting)
         site.close()
     return 0

@@ -52,9 +52,14 @@ def statuses(ecology: Ecology) -> list[Status]:
     found: list[Status] = []
     for sample in ask(ecology, ecology.keys.configurator_call("*", "status")).samples:
         try:
-            found.append(decode(sample.payload, Status))
+            status = decode(sample.payload, Status)
         except PeerError as error:
             complain(f"left out an answer: {error}")
+            continue
+        if sample.key == ecology.keys.configurator_call(status.configurator, "status"):
+            found.append(status)
+        else:
+            complain(f"left out an answer on {sample.key}: it speaks of another configurator")
     return sorted(found, key=lambda status: status.configurator)
 
 

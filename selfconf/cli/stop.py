@@ -32,7 +32,8 @@ def run(given: argparse.Namespace) -> int:
         for name in found:
             ask(ecology, ecology.keys.configurator_call(name, "stop"))
         _gone(ecology, set(found))
-    print(f"took down {', '.join(found)}" if found else f"nothing is deployed in ecology {ecology.keys.ecology}")
+    where = f"in ecology {ecology.keys.ecology}"
+    print(f"took down {', '.join(found)} {where}" if found else f"nothing is deployed {where}")
     return 0
 
 
@@ -41,9 +42,7 @@ def _gone(ecology: Ecology, names: set[str]) -> None:
     bus = ecology.bus
     deadline = bus.now() + TAKING_DOWN
     while names:
-        alive: tuple[str, ...] = wait(
-            bus, lambda done: bus.roll_call(ecology.keys.any_configurator_life(), 3.0, done)
-        )
+        alive: tuple[str, ...] = wait(bus, lambda done: bus.roll_call(ecology.keys.any_configurator_life(), 3.0, done))
         names &= {owner_of(key) for key in alive}
         if bus.now() > deadline:
             raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")

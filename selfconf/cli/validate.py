@@ -16,6 +16,9 @@ from selfconf.model.codes import BY_CODE, CODES, Code
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
 from selfconf.rdf.validation import Source, validate
 
+LARGEST = 64 << 20
+"""A file of more bytes is not read."""
+
 NAME = "validate"
 HELP = "check advertisements, templates, tasks and ontologies"
 EXAMPLE = "selfconf validate advertisements/ navigate.ttl --ontology my-robots.ttl"

@@ -9,6 +9,7 @@ from typing import Any
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.search.whatif import Loss
 
 _LOCAL = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
@@ -41,6 +42,9 @@ def configuration_text(configuration: Configuration, names: Names) -> str:
         ends = [(f"{names(c.source)} {c.output}", f"{names(c.sink)} {c.input}") for c in configuration.connections]
         width = max(len(left) for left, _ in ends)
         lines += [f"  {left:<{width}}  ->  {right}" for left, right in ends]
+    if configuration.bindings:
+        lines.append("bindings")
+        lines += [f"  {name} = {names(value)}" for name, value in configuration.bindings.items()]
     if configuration.settings:
         lines.append("parameters")
         lines += [f"  {names(s.component)} {s.name} = {names(s.value)}" for s in configuration.settings]
@@ -83,6 +87,32 @@ def _quoted(text: str) -> str:
     return text.replace("&", "&amp;").replace('"', "#quot;").replace("<", "&lt;").replace(">", "&gt;")
 
 
+def losses_text(losses: Sequence[Loss], names: Names) -> str:
+    """What would replace each component, for people; single points of failure stand out."""
+    width = max((len(names(loss.component)) for loss in losses), default=0)
+    lines = ["if it failed"]
+    for loss in losses:
+        instead = ", ".join(map(names, loss.started)) or "nobody needed"
+        also = f", and {', '.join(map(names, loss.stopped))} would stop" if loss.stopped else ""
+        fate = "NONE, a single point of failure" if loss.fatal else f"{instead}{also}"
+        lines.append(f"  {names(loss.component):<{width}}  ->  {fate}")
+    return "\n".join(lines)
+
+
+def losses_body(losses: Sequence[Loss]) -> list[dict[str, Any]]:
+    """What would replace each component, as JSON."""
+    return [
+        {
+            "component": loss.component,
+            "role": loss.role,
+            "single_point_of_failure": loss.fatal,
+            "started": list(loss.started),
+            "stopped": list(loss.stopped),
+        }
+        for loss in losses
+    ]
+
+
 def refusal_text(refusal: Refusal, names: Names, most: int = 8) -> str:
     """A refusal on one screen, the most likely cause first."""
     lines = [f"no configuration for {names(refusal.template)}"]
@@ -119,7 +149,7 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
 def repairs_of(refusal: Refusal) -> list[dict[str, Any]]:
     """What would make the task feasible, as JSON objects with a code and a message."""
     repairs: list[dict[str, Any]] = [
-        {"code": repair.code, "role": repair.role, "message": str(repair)} for repair in getattr(refusal, "repairs", ())
+        {"code": repair.code, "role": repair.role, "message": str(repair)} for repair in refusal.repairs
     ]
     if refusal.hint:
         repairs.append({"code": "reasoning", "message": refusal.hint})
@@ -141,6 +171,11 @@ def plain(value: Term) -> Any:
             return value.lexical in ("true", "1")
         return value.lexical
     return str(value)
+
+
+def count(number: int, thing: str) -> str:
+    """A number of things: `1 site`, `2 sites`."""
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -12,6 +12,7 @@ on its way everything that the shape forbids; a test holds the two verdicts toge
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -34,12 +35,58 @@ STRUCTURE = frozenset(
 AXIOMS = frozenset((RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range))
 
 
-@dataclass(frozen=True, slots=True)
-class Advertisement:
-    """The profile of one component with the triples it was read from."""
+class Advertisement(ABC):
+    """What is said about one component, as a profile and as triples.
 
-    profile: Profile
-    triples: tuple[Triple, ...]
+    Advertisements are equal if they say the same; blank nodes of different documents never are the same.
+    """
+
+    __slots__ = ("component", "types")
+    component: IRI
+    """Whom it advertises."""
+    types: frozenset[IRI]
+    """The types of the component."""
+
+    @property
+    @abstractmethod
+    def profile(self) -> Profile:
+        """What it says, as a value."""
+
+    @property
+    @abstractmethod
+    def triples(self) -> tuple[Triple, ...]:
+        """What it says, in RDF."""
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Advertisement):
+            return NotImplemented
+        return self is other or (self.profile == other.profile and self.triples == other.triples)
+
+    def __hash__(self) -> int:
+        return hash(self.component)
+
+    def __repr__(self) -> str:
+        return f"<advertisement of {self.component}>"
+
+
+class Told(Advertisement):
+    """An advertisement that has been read in full."""
+
+    __slots__ = ("_profile", "_triples")
+
+    def __init__(self, profile: Profile, triples: tuple[Triple, ...]) -> None:
+        self.component, self.types = profile.component, profile.types
+        self._profile, self._triples = profile, triples
+
+    @property
+    def profile(self) -> Profile:
+        """What it says, as a value."""
+        return self._profile
+
+    @property
+    def triples(self) -> tuple[Triple, ...]:
+        """What it says, in RDF."""
+        return self._triples
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,16 +102,21 @@ def read(document: Document) -> tuple[list[Advertisement], list[Malformed]]:
     """Every advertisement of a document, in the order of the text, and those that do not conform."""
     good: list[Advertisement] = []
     bad: list[Malformed] = []
-    components = document.instances(SC.Component)
-    others = frozenset(components)
-    for component in components:
+    others = frozenset(document.instances(SC.Component))
+    for component, profile, problems in profiles(document):
+        if problems or profile is None:
+            bad.append(Malformed(component, Place(document.source), problems))
+        else:
+            good.append(Told(profile, tuple(about(document, component, others))))
+    return good, bad
+
+
+def profiles(document: Document) -> Iterator[tuple[Node, Profile | None, tuple[str, ...]]]:
+    """Every component of a document with as much of a profile as can be read, and what is wrong with it."""
+    for component in document.instances(SC.Component):
         reader = _Reader(document, component)
         profile = reader.profile()
-        if reader.problems or profile is None:
-            bad.append(Malformed(component, Place(document.source), tuple(reader.problems)))
-        else:
-            good.append(Advertisement(profile, tuple(about(document, component, others))))
-    return good, bad
+        yield component, profile, tuple(reader.problems)
 
 
 def about(document: Document, component: Node, components: frozenset[Node]) -> Iterator[Triple]:
@@ -90,6 +142,11 @@ def allowed(predicate: IRI, value: Term) -> bool:
     return predicate != TYPE or not (value in OWL or value in SH or value in RDFS or value == RDF.Property)
 
 
+def property_order(pair: tuple[IRI, Term]) -> tuple[str, tuple[int, str, str, str]]:
+    """The order of the properties of a profile: by predicate, then by value."""
+    return pair[0], sort_key(pair[1])
+
+
 class _Reader:
     """Reads one component and notes every problem instead of stopping at the first."""
 
@@ -102,7 +159,7 @@ class _Reader:
             self.problems.append("a component needs an IRI, so that others can speak of it")
             return None
         statements = self.document.statements[self.component]
-        types = frozenset(o for p, o in statements if p == TYPE and isinstance(o, IRI))
+        types = frozenset(o for p, o in statements if p == TYPE and isinstance(o, IRI) and allowed(p, o))
         if len({o for p, o in statements if p == TYPE}) < 2:
             self.problems.append("a component needs a type of its own besides sc:Component")
         inputs = [Input(name, signal) for name, signal, _ in self._ports(SC.hasInput, SC.signalType)]
@@ -117,10 +174,7 @@ class _Reader:
             component=self.component,
             types=types,
             properties=tuple(
-                sorted(
-                    {(p, o) for p, o in statements if p not in STRUCTURE and allowed(p, o)},
-                    key=lambda pair: (pair[0], sort_key(pair[1])),
-                )
+                sorted({(p, o) for p, o in statements if p not in STRUCTURE and allowed(p, o)}, key=property_order)
             ),
             inputs=tuple(sorted(inputs, key=lambda port: port.name)),
             outputs=tuple(sorted(outputs, key=lambda port: port.name)),

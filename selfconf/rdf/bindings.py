@@ -101,9 +101,11 @@ def _check(parameter: Parameter, value: Term, document: Document) -> None:
     subjects.add((rdflib.URIRef(probe), rdflib.URIRef(probe), turtle.rdflib_term(value)))
     problems = violations(subjects, shapes, probe_shape, [probe], document.source)
     if problems:
-        raise BindingError(
-            f"{show(value)} cannot stand for the parameter {parameter.name!r}: {_plain(problems[probe])}"
-        )
+        hint = ""
+        if isinstance(value, Literal) and "IRI" in problems[probe]:
+            hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
+        problem = _plain(problems[probe])
+        raise BindingError(f"{show(value)} cannot stand for the parameter {parameter.name!r}: {problem}{hint}")
 
 
 def show(value: Term) -> str:

@@ -16,7 +16,6 @@ from selfconf.model.term import IRI
 from selfconf.rdf.turtle import Document, Triple, to_rdflib
 from selfconf.rdf.vocabulary import OWL, RDFS
 
-
 HIERARCHY = (RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty)
 Entailment = Callable[[Iterable[Triple]], Iterable[Triple]]
 

@@ -60,6 +60,14 @@ class Dataset:
             for s, p, o in triples
         )
 
+    def dump(self) -> bytes:
+        """Everything in it, as N-Quads."""
+        return self._store.dump(format=ox.RdfFormat.N_QUADS) or b""
+
+    def load(self, quads: bytes) -> None:
+        """Add what another dataset has dumped."""
+        self._store.bulk_load(quads, format=ox.RdfFormat.N_QUADS)
+
     def query(self, text: str, prefixes: Mapping[str, str] | None = None) -> Answer:
         """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it."""
         if _SERVICE.search(_STRINGS_IRIS_COMMENTS.sub(" ", text)):

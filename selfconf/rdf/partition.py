@@ -1,25 +1,27 @@
 """The partition F1 ... Fn of an ecology by the roles of a task (section 3.2 of the paper).
 
-Every role is compiled once; its tests run over every profile; where the shape says more than the tests, pySHACL
-judges the survivors. Components that share a *signature* (types, properties, parameter types) pass the same tests
-and are tested once.
+Every role is compiled once. The classes that it asks for are tested once for each set of types in the ecology, its
+other tests once for each *signature*: what a component says of the properties that the role looks at. Where the shape
+says more than the tests, pySHACL judges those who pass them, all in one call.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+
+import rdflib
 
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable, ordered
 from selfconf.model.profile import Profile
-from selfconf.model.template import Role
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.bindings import free_parameters
-from selfconf.rdf.roles import ClassTest, CompiledRole, bound_shape, compile_role
+from selfconf.rdf.eligibility import ClassTest, CompiledRole, Count, ParameterTest, PropertyTest, SelfTest, Test
+from selfconf.rdf.roles import bound_shape, compile_role
 from selfconf.rdf.shacl import violations
 from selfconf.rdf.templates import TaskDocument, mentions
 from selfconf.rdf.turtle import Triple
@@ -27,6 +29,7 @@ from selfconf.rdf.vocabulary import TYPE
 
 ANOTHER = IRI("urn:selfconf:another-value")
 """A value that no component has: what it lets pass, any value lets pass."""
+NO_VALUE = "leaves no value for a free parameter that its statements agree on"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +37,37 @@ class Eligible:
     """A component that is eligible for a role, and for each free parameter it constrains, the values it allows."""
 
     profile: Profile
-    allows: dict[IRI, frozenset[Term]]
+    allows: Mapping[IRI, frozenset[Term]]
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """A component that is not eligible for a role, and everything that keeps it out."""
+
+    component: IRI
+    obstacles: tuple[str, ...]
+    akin: bool
+    """Whether it is of the classes that the role asks for."""
+
+
+class Ecology:
+    """Advertisements by the types of their components."""
+
+    def __init__(self, advertisements: Sequence[Advertisement]) -> None:
+        self.advertisements = advertisements
+        self._by_types: dict[frozenset[IRI], list[Advertisement]] = {}
+        for advertisement in advertisements:
+            types = advertisement.types
+            if types in self._by_types:
+                self._by_types[types].append(advertisement)
+            else:
+                self._by_types[types] = [advertisement]
+
+    def of_classes(self, classes: Sequence[ClassTest], hierarchy: Hierarchy) -> Iterator[Advertisement]:
+        """Those whose types pass some tests."""
+        for types, members in self._by_types.items():
+            if all(test.admits(types, hierarchy) for test in classes):
+                yield from members
 
 
 class Partitioner:
@@ -50,42 +83,77 @@ class Partitioner:
 
     def partition(self, advertisements: Sequence[Advertisement]) -> Partition:
         """F1 ... Fn and the variables that the free parameters are. Raises TemplateError for a shape that is none."""
-        eligible = [list(self.eligible(role, advertisements)) for role in self.roles]
+        ecology = Ecology(advertisements)
+        eligible = [list(self.eligible(role, ecology)) for role in self.roles]
         variables = tuple(self._variables(eligible))
+        bits = [{value: 1 << number for number, value in enumerate(variable.domain)} for variable in variables]
+
+        def admits(found: Eligible) -> tuple[int, ...]:
+            return tuple(_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True))
+
         return Partition(
-            tuple(
-                ordered([Candidate(e.profile, tuple(_mask(e, variable) for variable in variables)) for e in role])
-                for role in eligible
-            ),
-            variables,
+            tuple(ordered([Candidate(found.profile, admits(found)) for found in role]) for role in eligible), variables
         )
 
     def near_misses(self, advertisements: Iterable[Advertisement]) -> Iterator[NearMiss]:
         """For each role the components of its class that exactly one other test keeps out, with that obstacle."""
-        everything = list(advertisements)
+        ecology = Ecology(list(advertisements))
         for role in self.roles:
-            classes = [test for test in role.tests if isinstance(test, ClassTest)]
-            for advertisement in everything:
-                profile = advertisement.profile
-                if any(test.obstacle(profile, self.hierarchy) for test in classes):
-                    continue
-                obstacles = list(role.obstacles(profile, self.hierarchy))
+            for advertisement in ecology.of_classes(role.classes, self.hierarchy):
+                obstacles = list(role.obstacles(advertisement.profile, self.hierarchy))
                 if len(obstacles) == 1:
-                    yield NearMiss(role.iri, profile.component, obstacles[0])
+                    yield NearMiss(role.iri, advertisement.component, obstacles[0])
 
-    def eligible(self, role: CompiledRole, advertisements: Sequence[Advertisement]) -> Iterator[Eligible]:
+    def exclusions(self, role: CompiledRole, advertisements: Sequence[Advertisement]) -> list[Exclusion]:
+        """All that keeps each other component out of a role; first those of its class, and those with few obstacles."""
+        ecology = Ecology(advertisements)
+        inside = {found.profile.component for found in self.eligible(role, ecology)}
+        akin = {a.component for a in ecology.of_classes(role.classes, self.hierarchy)}
+        obstacles: dict[IRI, tuple[str, ...]] = {}
+        passed: list[Advertisement] = []
+        for advertisement in advertisements:
+            if advertisement.component not in inside:
+                found = obstacles[advertisement.component] = tuple(
+                    role.obstacles(advertisement.profile, self.hierarchy)
+                )
+                if not found:
+                    passed.append(advertisement)
+        if passed and not role.complete:
+            judged = self._violations(role, passed, advertisements, {})
+            obstacles |= {component: (_clause(message),) for component, message in judged.items()}
+        return sorted(
+            (Exclusion(c, reasons or (NO_VALUE,), c in akin) for c, reasons in obstacles.items()),
+            key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
+        )
+
+    def eligible(self, role: CompiledRole, ecology: Ecology) -> Iterator[Eligible]:
         """The components that conform to a role, unordered."""
-        passed = [a for a in advertisements if role.obstacle(a.profile, self.hierarchy) is None]
+        passed = list(self._passed(role, ecology))
         if role.complete:
-            for advertisement in passed:
-                allows = role.allows(advertisement.profile, self.hierarchy)
-                if all(allows.values()):
-                    yield Eligible(advertisement.profile, allows)
-        elif not mentions(self.document, role.iri, self.free):
-            outside = self._violations(role, passed, advertisements, {})
-            yield from (Eligible(a.profile, {}) for a in passed if a.profile.component not in outside)
+            yield from (Eligible(a.profile, allows) for a, allows in passed if all(allows.values()))
+            return
+        survivors = [advertisement for advertisement, _ in passed]
+        if mentions(self.document, role.iri, self.free):
+            yield from self._by_value(role, survivors, ecology.advertisements)
         else:
-            yield from self._by_value(role, passed, advertisements)
+            outside = self._violations(role, survivors, ecology.advertisements, {})
+            yield from (Eligible(a.profile, {}) for a in survivors if a.component not in outside)
+
+    def _passed(
+        self, role: CompiledRole, ecology: Ecology
+    ) -> Iterator[tuple[Advertisement, Mapping[IRI, frozenset[Term]]]]:
+        """Who passes every test of a role, with the values it allows for free parameters."""
+        signature = _signature(role.tests, self.hierarchy)
+        known: dict[Hashable, Mapping[IRI, frozenset[Term]] | None] = {}
+        for advertisement in ecology.of_classes(role.classes, self.hierarchy):
+            profile = advertisement.profile
+            key = signature(profile)
+            if key not in known:
+                keeps_out = role.obstacle(profile, self.hierarchy) is not None
+                known[key] = None if keeps_out else role.allows(profile, self.hierarchy)
+            allows = known[key]
+            if allows is not None:
+                yield advertisement, allows
 
     def _by_value(
         self, role: CompiledRole, passed: Sequence[Advertisement], everything: Sequence[Advertisement]
@@ -103,14 +171,15 @@ class Partitioner:
         values = {value for a in passed for _, value in a.profile.properties} | {
             kind for a in passed for kind in a.profile.types
         }
-        allowed: dict[IRI, set[Term]] = {a.profile.component: set() for a in passed}
+        allowed: dict[IRI, set[Term]] = {a.component: set() for a in passed}
+        subjects = self._subjects(role, passed, everything)
         for value in (*sorted(values, key=sort_key), ANOTHER):
-            outside = self._violations(role, passed, everything, {parameter: value})
+            outside = self._violations(role, passed, everything, {parameter: value}, subjects)
             for advertisement in passed:
-                if advertisement.profile.component not in outside:
-                    allowed[advertisement.profile.component].add(value)
+                if advertisement.component not in outside:
+                    allowed[advertisement.component].add(value)
         for advertisement in passed:
-            found = allowed[advertisement.profile.component]
+            found = allowed[advertisement.component]
             if ANOTHER in found:
                 yield Eligible(advertisement.profile, {})
             elif found:
@@ -121,17 +190,31 @@ class Partitioner:
         role: CompiledRole,
         focus: Sequence[Advertisement],
         everything: Sequence[Advertisement],
-        values: dict[IRI, Term],
+        values: Mapping[IRI, Term],
+        subjects: rdflib.Graph | None = None,
     ) -> dict[IRI, str]:
+        if not focus:
+            return {}
         shapes = turtle.to_rdflib(bound_shape(self.document, {**self.task.bindings, **values}))
-        subjects = turtle.to_rdflib(self._visible(everything))
-        nodes = [a.profile.component for a in focus]
-        return violations(subjects, shapes, role.iri, nodes, self.document.source)
+        seen = self._subjects(role, focus, everything) if subjects is None else subjects
+        return violations(seen, shapes, role.iri, [a.component for a in focus], self.document.source)
 
-    def _visible(self, advertisements: Iterable[Advertisement]) -> Iterator[Triple]:
-        """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties."""
+    def _subjects(
+        self, role: CompiledRole, focus: Sequence[Advertisement], everything: Sequence[Advertisement]
+    ) -> rdflib.Graph:
+        """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
+        return turtle.to_rdflib(self._visible(focus if role.local else everything))
+
+    def _visible(self, advertisements: Sequence[Advertisement]) -> Iterator[Triple]:
+        """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.
+
+        Each speaks for its own component: what it says about another is not seen.
+        """
+        components = {advertisement.component for advertisement in advertisements}
         for advertisement in advertisements:
             for subject, predicate, value in advertisement.triples:
+                if subject != advertisement.component and subject in components:
+                    continue
                 yield subject, predicate, value
                 for above in self.hierarchy.superproperties(predicate):
                     yield subject, above, value
@@ -146,13 +229,43 @@ class Partitioner:
                 yield Variable(parameter, tuple(sorted(domain, key=sort_key)))
 
 
-def _mask(eligible: Eligible, variable: Variable) -> int:
-    allowed = eligible.allows.get(variable.parameter)
-    if allowed is None:
-        return ANY_VALUE
-    return sum(1 << index for index, value in enumerate(variable.domain) if value in allowed)
+def _signature(tests: Iterable[Test], hierarchy: Hierarchy) -> Callable[[Profile], Hashable]:
+    """What some tests look at in a profile: equal signatures pass the same tests."""
+    inner = list(_flat(tests))
+    paths = {test.path for test in inner if isinstance(test, PropertyTest)}
+    parameters = any(isinstance(test, ParameterTest) for test in inner)
+    itself = any(isinstance(test, SelfTest) for test in inner)
+    seen: dict[IRI, bool] = {}
+
+    def looks_at(predicate: IRI) -> bool:
+        if predicate not in seen:
+            seen[predicate] = not paths.isdisjoint(hierarchy.superproperties(predicate))
+        return seen[predicate]
+
+    def signature(profile: Profile) -> Hashable:
+        return (
+            profile.types,
+            tuple([pair for pair in profile.properties if looks_at(pair[0])]),
+            profile.parameters if parameters else None,
+            profile.component if itself else None,
+        )
+
+    return signature
 
 
-def role_types(role: Role) -> str:
-    """What a role asks for, for people: the classes of its shape, or the role's own name."""
-    return " and ".join(kind.short for kind in role.types) or role.iri.short
+def _flat(tests: Iterable[Test]) -> Iterator[Test]:
+    for test in tests:
+        yield test
+        if isinstance(test, Count):
+            for group in test.groups:
+                yield from _flat(group)
+
+
+def _mask(eligible: Eligible, parameter: IRI, bits: Mapping[Term, int]) -> int:
+    allowed = eligible.allows.get(parameter)
+    return ANY_VALUE if allowed is None else sum(bits[value] for value in allowed)
+
+
+def _clause(message: str) -> str:
+    """What pySHACL says of a component, as one of its obstacles."""
+    return f"violates: {message}"

@@ -2,25 +2,27 @@
 
 `compile_role` turns the shape of a role into tests that look at a profile and need no graph. What it compiles:
 
-* `sh:class` on the node (SHACL 4.1.1);
-* property shapes over one predicate with `sh:in`, `sh:hasValue`, `sh:minCount`, `sh:maxCount` (4.9.2, 4.9.1, 4.2);
+* `sh:class`, `sh:in` and `sh:hasValue` on the node (SHACL 4.1.1, 4.8.2, 4.8.3);
+* property shapes over one predicate with `sh:in`, `sh:hasValue`, `sh:minCount`, `sh:maxCount` (4.8, 4.2), and what
+  `selfconf.rdf.values` knows of single values (4.1.2, 4.1.3, 4.3, 4.4);
+* `sh:and`, `sh:or`, `sh:xone`, `sh:not` and `sh:node` over shapes of that kind (4.6, 4.7.1);
 * a parameter left unbound inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
 
 A shape that says more is *incomplete* here: its tests are still necessary, so they are the prefilter, and pySHACL
-judges the survivors by the whole shape. That both ways give one partition is a property test.
+judges the survivors by the whole shape. That both ways give one partition is a property test. Left out on purpose:
+`sh:class` on the values of a property, which depends on what other advertisements say.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 
-from selfconf.model.hierarchy import Hierarchy
-from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.advertisements import STRUCTURE
+from selfconf.rdf.eligibility import ClassTest, CompiledRole, Count, ParameterTest, PropertyTest, SelfTest, Test
 from selfconf.rdf.templates import ROLE_STRUCTURE
 from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.values import compiled
 from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE
 
 ANNOTATIONS = frozenset(
@@ -37,115 +39,21 @@ ANNOTATIONS = frozenset(
     )
 )
 TARGETS = frozenset((SH.targetClass, SH.targetNode, SH.targetSubjectsOf, SH.targetObjectsOf, SH.target))
-
-
-@dataclass(frozen=True, slots=True)
-class ClassTest:
-    """The component's type is at or below a class."""
-
-    kind: IRI
-
-    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> str | None:
-        if any(hierarchy.matches(offered, self.kind) for offered in profile.types):
-            return None
-        return f"is no {self.kind.short}"
-
-
-@dataclass(frozen=True, slots=True)
-class PropertyTest:
-    """The values of one property: how many, which ones are allowed, which ones must be there."""
-
-    path: IRI
-    minimum: int = 0
-    maximum: int | None = None
-    allowed: tuple[frozenset[Term], ...] = ()
-    required: tuple[Term, ...] = ()
-    free_in: tuple[tuple[IRI, frozenset[Term]], ...] = ()
-    """For each `sh:in` that mentions a free parameter: the parameter, and the other members of the list."""
-    free_required: tuple[IRI, ...] = ()
-    """The free parameters that stand in `sh:hasValue`."""
-
-    def values(self, profile: Profile, hierarchy: Hierarchy) -> set[Term]:
-        """The values of the path: those of the property itself and of every property below it."""
-        return {value for key, value in profile.properties if self.path in hierarchy.superproperties(key)}
-
-    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> str | None:
-        values = self.values(profile, hierarchy)
-        name = self.path.short
-        if len(values) < self.minimum:
-            return f"has no {name}" if not values else f"has {len(values)} of {name}, too few"
-        if self.maximum is not None and len(values) > self.maximum:
-            return f"has {len(values)} of {name}, too many"
-        for members in self.allowed:
-            if not values <= members:
-                return f"{name} is {_words(values - members)}, not {_words(members)}"
-        for value in self.required:
-            if value not in values:
-                return f"{name} is {_words(values)}, not {_words({value})}" if values else f"has no {name}"
-        for parameter, members in self.free_in:
-            if len(values - members) > 1:
-                return f"{name} has several values, so that no one {parameter.short} fits"
-        if self.free_required and not values:
-            return f"has no {name}"
-        return None
-
-    def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
-        """For each free parameter that this component constrains, the values it allows."""
-        found: dict[IRI, frozenset[Term]] = {}
-        values = frozenset(self.values(profile, hierarchy))
-        for parameter, members in self.free_in:
-            rest = values - members
-            if rest:
-                found[parameter] = found.get(parameter, rest) & rest
-        for parameter in self.free_required:
-            found[parameter] = found.get(parameter, values) & values
-        return found
-
-
-@dataclass(frozen=True, slots=True)
-class ParameterTest:
-    """The component declares an operational parameter of the type that the role sets."""
-
-    type: IRI
-
-    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> str | None:
-        if any(hierarchy.matches(self.type, declared.type) for declared in profile.parameters):
-            return None
-        return f"declares no parameter of type {self.type.short}"
-
-
-Test = ClassTest | PropertyTest | ParameterTest
-
-
-@dataclass(frozen=True, slots=True)
-class CompiledRole:
-    """The tests of a role, and whether they say all that its shape says."""
-
-    iri: IRI
-    tests: tuple[Test, ...]
-    complete: bool
-    free: frozenset[IRI] = field(default_factory=frozenset)
-    """The free parameters that only the whole shape can tell about."""
-
-    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> str | None:
-        """The first thing that keeps a component out, or None if every test lets it pass."""
-        return next(self.obstacles(profile, hierarchy), None)
-
-    def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[str]:
-        """Everything that keeps a component out, in the order of the shape."""
-        for test in self.tests:
-            reason = test.obstacle(profile, hierarchy)
-            if reason is not None:
-                yield reason
-
-    def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
-        """For each free parameter that the component constrains, the values it allows (perhaps none)."""
-        found: dict[IRI, frozenset[Term]] = {}
-        for test in self.tests:
-            if isinstance(test, PropertyTest) and (test.free_in or test.free_required):
-                for parameter, values in test.allows(profile, hierarchy).items():
-                    found[parameter] = found.get(parameter, values) & values
-        return found
+_SILENT = ANNOTATIONS | TARGETS | {SH.severity, SH.deactivated, TYPE, SH.path}
+_SHAPES_OF_A_LIST = frozenset((SH["and"], SH["or"], SH.xone))
+_SHAPES = frozenset((SH["not"], SH.node, SH.property))
+_LOGIC = _SHAPES_OF_A_LIST | {SH["not"], SH.node}
+_OWN_STATEMENTS = frozenset((SH["class"], SH.closed, SH.ignoredProperties))
+"""What looks at the statements about the node it is asked about."""
+_OWN_VALUES = frozenset(
+    SH[name]
+    for name in (
+        "in", "hasValue", "nodeKind", "datatype", "pattern", "flags", "minLength", "maxLength", "languageIn",
+        "uniqueLang", "minCount", "maxCount", "minInclusive", "maxInclusive", "minExclusive", "maxExclusive", "equals",
+        "disjoint", "lessThan", "lessThanOrEquals",
+    )
+)  # fmt: skip
+"""What looks at values alone, or compares the values of two properties of the node that has them."""
 
 
 def compile_role(
@@ -156,7 +64,9 @@ def compile_role(
     free: frozenset[IRI],
 ) -> CompiledRole:
     """Compile the shape of a role, with bound parameters replaced by their values; `settings` are the types it sets."""
-    return _Compiler(document, role, bindings, free).compile(settings)
+    compiler = _Compiler(document, bindings, free)
+    tests = (*compiler.shape(role), *map(ParameterTest, settings))
+    return CompiledRole(role, tests, not compiler.rest, local(document, role))
 
 
 def bound_shape(document: Document, bindings: Mapping[IRI, Term]) -> list[Triple]:
@@ -173,47 +83,98 @@ def bound_shape(document: Document, bindings: Mapping[IRI, Term]) -> list[Triple
     return triples
 
 
+def local(document: Document, shape: Term, at_value: bool = False, above: frozenset[Term] = frozenset()) -> bool:
+    """Whether a shape looks at nothing but statements about the node it is asked about."""
+    if shape in above:
+        return True
+    paths = document.values(shape, SH.path)
+    if paths and (at_value or not all(isinstance(path, IRI) for path in paths)):
+        return False
+    at_value = at_value or bool(paths)
+    for predicate, value in document.about(shape):
+        if predicate in _SHAPES_OF_A_LIST | _SHAPES:
+            inner = document.items(value) if predicate in _SHAPES_OF_A_LIST else [value]
+            if not all(local(document, one, at_value, above | {shape}) for one in inner):
+                return False
+        elif predicate in _OWN_STATEMENTS:
+            if at_value:
+                return False
+        elif predicate in SH and predicate not in _SILENT | _OWN_VALUES:
+            return False
+    return True
+
+
 class _Compiler:
     """Compiles one shape; `rest` is raised as soon as something is met that only pySHACL can judge."""
 
-    def __init__(self, document: Document, role: IRI, bindings: Mapping[IRI, Term], free: frozenset[IRI]) -> None:
-        self.document, self.role, self.bindings, self.free = document, role, bindings, free
+    def __init__(self, document: Document, bindings: Mapping[IRI, Term], free: frozenset[IRI]) -> None:
+        self.document, self.bindings, self.free = document, bindings, free
         self.rest = False
-        self.unseen: set[IRI] = set()
+        self._above: list[Term] = []
 
-    def compile(self, settings: tuple[IRI, ...]) -> CompiledRole:
-        tests: list[Test] = []
-        if self._true(self.role, SH.deactivated):
-            return CompiledRole(self.role, tuple(ParameterTest(kind) for kind in settings), True)
-        for predicate, raw in self.document.statements.get(self.role, ()):
+    def shape(self, shape: Term) -> Iterator[Test]:
+        """The tests of a node shape or, inside a logical constraint, of a property shape."""
+        if self._true(shape, SH.deactivated):
+            return
+        if shape in self._above:
+            self.rest = True
+            return
+        if self.document.value(shape, SH.path) is not None:
+            yield from self._property(shape)
+            return
+        self._above.append(shape)
+        self.rest = self.rest or self._repeats(shape)
+        for predicate, raw in self.document.about(shape):
             value = self._bound(raw)
             if predicate == SH["class"] and isinstance(value, IRI) and value not in self.free:
-                tests.append(ClassTest(value))
+                yield ClassTest(value)
+            elif predicate == SH.hasValue and value not in self.free:
+                yield SelfTest(frozenset((value,)))
+            elif predicate == SH["in"] and not self._mentions(raw):
+                yield SelfTest(frozenset(map(self._bound, self.document.items(raw))))
             elif predicate == SH.property:
-                test = self._property(raw)
-                if test is not None:
-                    tests.append(test)
-            elif predicate in SH and predicate not in ANNOTATIONS | TARGETS and predicate != SH.severity:
+                yield from self._property(raw)
+            elif predicate in _LOGIC:
+                yield from self._logic(predicate, raw)
+            elif predicate in SH and predicate not in _SILENT:
                 self.rest = True
-                self._note(raw)
-        tests.extend(ParameterTest(kind) for kind in settings)
-        return CompiledRole(self.role, tuple(tests), not self.rest, frozenset(self.unseen))
+        self._above.pop()
 
-    def _property(self, shape: Term) -> PropertyTest | None:
-        """One property shape; None (and `rest`) where its path or any of its constraints is beyond the subset."""
-        path = self._bound(self.document.value(shape, SH.path) or shape)
-        if self._true(shape, SH.deactivated):
-            return None
-        if not isinstance(path, IRI) or path in self.free or path in STRUCTURE or path in SC:
+    def _logic(self, predicate: IRI, raw: Term) -> Iterator[Test]:
+        """A constraint over other shapes: how many of them the component conforms to."""
+        shapes = self.document.items(raw) if predicate in _SHAPES_OF_A_LIST else [raw]
+        wrong = predicate == SH.node and self.document.value(raw, SH.path) is not None
+        if not shapes or wrong or any(map(self._mentions, shapes)):
             self.rest = True
-            self._note(shape)
-            return None
+            return
+        whole, self.rest = self.rest, False
+        groups = tuple(tuple(self.shape(shape)) for shape in dict.fromkeys(shapes))
+        exact, self.rest = not self.rest, whole or self.rest
+        if predicate in (SH["and"], SH.node):
+            yield Count(groups, len(groups))
+        elif predicate == SH["or"] or (predicate == SH.xone and not exact):
+            yield Count(groups, 1)
+        elif predicate == SH.xone:
+            yield Count(groups, 1, 1)
+        elif exact:
+            yield Count(groups, 0, 0)
+
+    def _property(self, shape: Term) -> Iterator[PropertyTest]:
+        """One property shape; `rest` where its path or any of its constraints is beyond the subset."""
+        paths = [self._bound(path) for path in self.document.values(shape, SH.path)]
+        path = paths[0] if len(paths) == 1 else shape
+        if self._true(shape, SH.deactivated):
+            return
+        if not isinstance(path, IRI) or not paths or path in self.free or path in STRUCTURE or path in SC:
+            self.rest = True
+            return
         minimum, maximum = 0, None
         allowed: list[frozenset[Term]] = []
         required: list[Term] = []
         free_in: list[tuple[IRI, frozenset[Term]]] = []
         free_required: list[IRI] = []
-        for predicate, raw in self.document.about(shape):
+        others: dict[IRI, list[Term]] = {}
+        for predicate, raw in dict.fromkeys(self.document.about(shape)):
             value = self._bound(raw)
             if predicate == SH.minCount and isinstance(value, Literal) and value.lexical.isdecimal():
                 minimum = max(minimum, int(value.lexical))
@@ -234,15 +195,21 @@ class _Compiler:
                     free_in.append((variables[0], constants))
                 else:
                     self.rest = True
-                    self._note(raw)
-            elif predicate in (SH.path, SH.severity, TYPE) or predicate in ANNOTATIONS or predicate not in SH:
-                continue
-            else:
-                self.rest = True
-                self._note(raw)
-        return PropertyTest(
-            path, minimum, maximum, tuple(allowed), tuple(required), tuple(free_in), tuple(free_required)
+            elif predicate in SH and predicate not in _SILENT:
+                if self._mentions(raw):
+                    self.rest = True
+                else:
+                    others.setdefault(predicate, []).append(value)
+        each, covered = compiled(others)
+        self.rest = self.rest or not others.keys() <= covered or self._repeats(shape)
+        yield PropertyTest(
+            path, minimum, maximum, tuple(allowed), tuple(required), tuple(free_in), tuple(free_required), tuple(each)
         )
+
+    def _repeats(self, shape: Term) -> bool:
+        """Whether something is stated twice that a shape may state once; pySHACL then says so."""
+        said = [predicate for predicate, _ in dict.fromkeys(self.document.about(shape))]
+        return any(said.count(predicate) > 1 for predicate in (SH["in"], SH.minCount, SH.maxCount))
 
     def _bound(self, value: Term) -> Term:
         return self.bindings.get(value, value) if isinstance(value, IRI) else value
@@ -251,20 +218,14 @@ class _Compiler:
         value = self.document.value(subject, predicate)
         return isinstance(value, Literal) and value.lexical in ("true", "1")
 
-    def _note(self, start: Term) -> None:
-        """Remember the free parameters that stand where only the whole shape can tell what they may be."""
-        waiting, seen = [start], set()
+    def _mentions(self, start: Term) -> bool:
+        """Whether a free parameter stands in a term or anywhere below it."""
+        waiting, seen = [start], set[Term]()
         while waiting:
             value = waiting.pop()
-            if value in seen or isinstance(value, Literal):
-                continue
-            seen.add(value)
-            if value in self.free and isinstance(value, IRI):
-                self.unseen.add(value)
-                continue
-            waiting.extend(o for _, o in self.document.about(value))
-
-
-def _words(values: set[Term] | frozenset[Term]) -> str:
-    names = sorted(value.short if isinstance(value, IRI) else f'"{value}"' for value in values)
-    return " or ".join(names) if names else "nothing"
+            if value in self.free:
+                return True
+            if value not in seen:
+                seen.add(value)
+                waiting.extend(o for _, o in self.document.about(value))
+        return False

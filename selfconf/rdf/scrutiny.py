@@ -9,12 +9,16 @@ from functools import lru_cache
 from rdflib import Graph
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.deadline import TimeUp, deadline
 from selfconf.rdf.familiar import Familiar
 from selfconf.rdf.findings import at
 from selfconf.rdf.judging import Shapes, judge
 from selfconf.rdf.lints import File, lint
 from selfconf.rdf.positions import NotTurtle, Positions, parse
 from selfconf.rdf.wellformed import endless_lists, malformed_roles
+
+SECONDS = 20.0
+"""How long the close look at one file may take."""
 
 
 @lru_cache(maxsize=2)
@@ -36,15 +40,22 @@ class Scrutiny:
     def of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
         """The problems of one file, in no particular order."""
         try:
-            graph, positions = parse(text, name, base)
-            violations = list(endless_lists(graph, positions))
-            if not violations:  # pySHACL does not come back from a list without an end
-                violations = [*judge(graph, positions, self.shapes), *malformed_roles(graph, positions)]
-            file = File(graph, positions, self.familiar, elsewhere)
-            return violations + lint(file, conforms=not violations)
+            with deadline(SECONDS):
+                return self._of(text, name, base, elsewhere)
         except NotTurtle as error:
             message = f"This is not Turtle 1.1: {error.message.rstrip('.')}."
             return [at(Positions(name, text), error.offset, "SC-S01", message)]
         except RecursionError:
             message = "This file nests too deeply, or holds too long a list, to be judged."
             return [at(Positions(name, text), 0, "SC-S05", message)]
+        except TimeUp:
+            message = f"This file takes more than {SECONDS:g} seconds to judge: it is too large, or asks too much."
+            return [at(Positions(name, text), 0, "SC-S05", message)]
+
+    def _of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
+        graph, positions = parse(text, name, base)
+        violations = list(endless_lists(graph, positions))
+        if not violations:  # pySHACL does not come back from a list without an end
+            violations = [*judge(graph, positions, self.shapes), *malformed_roles(graph, positions)]
+        file = File(graph, positions, self.familiar, elsewhere)
+        return violations + lint(file, conforms=not violations)

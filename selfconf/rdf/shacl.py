@@ -6,16 +6,35 @@ rdflib with literal normalisation off for the whole process, and any other store
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import rdflib
+from pyparsing import ParseException
 from pyshacl import validate
 from pyshacl.errors import ConstraintLoadError, ReportableRuntimeError, ShapeLoadError, ValidationFailure
 
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
+from selfconf.rdf.deadline import TimeUp, deadline
 
+SECONDS = 30.0
+"""How long one shape may be judged: what a pattern or query of it is matched against is untrusted."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
+_ILL_FORMED = (
+    ShapeLoadError,
+    ConstraintLoadError,
+    ReportableRuntimeError,
+    ParseException,
+    re.error,
+    AssertionError,
+    AttributeError,
+    LookupError,
+    RecursionError,
+    TypeError,
+    ValueError,
+)
+"""What pySHACL and the libraries behind it raise on a shape that is ill-formed, also in ways they do not look for."""
 
 
 def violations(
@@ -29,15 +48,22 @@ def violations(
     if not focus:
         return {}
     try:
-        _, report, text = validate(
-            subjects,
-            shacl_graph=shapes,
-            focus_nodes=[str(node) for node in focus],
-            use_shapes=[str(shape)],
-            inference="none",
-            advanced=False,
-        )
-    except (ShapeLoadError, ConstraintLoadError, ReportableRuntimeError) as error:
+        with deadline(SECONDS):
+            _, report, text = validate(
+                subjects,
+                shacl_graph=shapes,
+                focus_nodes=[str(node) for node in focus],
+                use_shapes=[str(shape)],
+                inference="none",
+                advanced=False,
+            )
+    except TimeUp:
+        raise TemplateError(
+            f"judging {len(focus)} components by the shape {shape!r} takes more than {SECONDS:g} s; "
+            "look for a sh:pattern that repeats what is repeated already, such as ^(a+)+$",
+            file=source,
+        ) from None
+    except _ILL_FORMED as error:
         raise TemplateError(
             f"the shape {shape!r} is not well-formed: {_first_line(str(error))}", file=source
         ) from error

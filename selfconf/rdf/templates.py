@@ -7,6 +7,7 @@ the two together.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,10 +15,13 @@ from dataclasses import dataclass
 from selfconf.errors import TemplateError
 from selfconf.model.profile import Place
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
-from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.turtle import Document, Node
-from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE
+from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE, XSD
 
+WHOLE = frozenset(XSD[name] for name in ("integer", "int", "long", "short", "nonNegativeInteger", "positiveInteger"))
+_WORD = re.compile(r"\S+")
+_COUNT = re.compile(r"\+?[0-9]{1,18}")
 ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount))
 
 
@@ -106,6 +110,10 @@ class _Reader:
             if times > 1:
                 raise self._error(f"the role {_show(name)} stands {times} times in sc:roles")
         known = frozenset(name for name in names if isinstance(name, IRI))
+        for feeder, statements in self.document.statements.items():
+            fed = {value for predicate, value in statements if predicate == SC.feeds}
+            if fed & known and (TYPE, SC.Role) not in statements:
+                raise self._error(f"{_show(feeder)} feeds a role, but is not described as a sc:Role")
         roles = tuple(self._role(name) for name in names)
         interactions = (*self._feeds(roles, known), *self._interactions(known))
         return Template(
@@ -141,7 +149,8 @@ class _Reader:
         if not values:
             return None
         value = values[0]
-        if len(values) > 1 or not isinstance(value, Literal) or not value.lexical.lstrip("+").isdecimal():
+        whole = isinstance(value, Literal) and value.datatype in WHOLE and _COUNT.fullmatch(value.lexical)
+        if len(values) > 1 or not isinstance(value, Literal) or not whole:
             raise self._error(f"sc:{predicate.short} of the role {_show(role)} is one whole number, zero or more")
         return int(value.lexical)
 
@@ -160,7 +169,12 @@ class _Reader:
             for template in self.document.instances(SC.Template)
             for role in self.document.items(self.document.value(template, SC.roles) or template)
         }
-        for node in self.document.instances(SC.Interaction):
+        interactions = self.document.instances(SC.Interaction)
+        for node, statements in self.document.statements.items():
+            speaks = {SC["from"], SC.to} <= {predicate for predicate, _ in statements}
+            if speaks and node not in interactions and (TYPE, SC.Connection) not in statements:
+                raise self._error("what has sc:from and sc:to is a sc:Interaction; say so with its type")
+        for node in interactions:
             source = self._only(node, SC["from"], "an interaction has exactly one sc:from")
             sink = self._only(node, SC.to, "an interaction has exactly one sc:to")
             unknown = [end for end in (source, sink) if end not in known]
@@ -174,7 +188,7 @@ class _Reader:
         values = self.document.values(node, predicate)
         if not values:
             return None
-        if len(values) > 1 or not isinstance(values[0], Literal):
+        if len(values) > 1 or not isinstance(values[0], Literal) or not values[0].lexical:
             raise self._error(f"sc:{predicate.short} of an interaction is the name of one port, a string")
         return values[0].lexical
 
@@ -190,9 +204,12 @@ class _Reader:
             if not isinstance(value, IRI):
                 raise self._error("a parameter of a template needs an IRI")
             name = self._only(value, SC.name, f"the parameter {_show(value)} needs exactly one sc:name")
-            if not isinstance(name, Literal) or not name.lexical:
-                raise self._error(f"the sc:name of the parameter {_show(value)} is a string that is not empty")
-            default = self.document.value(value, SH.defaultValue)
+            if not isinstance(name, Literal) or name.datatype != STRING or not _WORD.fullmatch(name.lexical):
+                raise self._error(f"the sc:name of the parameter {_show(value)} is one word, a string")
+            defaults = self.document.values(value, SH.defaultValue)
+            if len(defaults) > 1:
+                raise self._error(f"the parameter {_show(value)} has several defaults")
+            default = defaults[0] if defaults else None
             parameters.append(Parameter(value, name.lexical, default, value in in_shapes, value in is_set))
         for name_, times in Counter(parameter.name for parameter in parameters).items():
             if times > 1:

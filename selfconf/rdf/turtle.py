@@ -94,15 +94,15 @@ def parse(text: str | bytes, source: str, base: str | None = None) -> Document:
                 (read(quad.predicate), read(quad.object))  # type: ignore[arg-type]
             )
     except SyntaxError as error:
-        raise TurtleError(_sentence(error), file=source, line=error.lineno, column=error.offset) from None
+        raise not_turtle(error, source) from None
     return Document(source, dict(statements), dict(reader.prefixes), base)
 
 
-def _sentence(error: SyntaxError) -> str:
-    """Oxigraph's message without the position, which the error carries on its own."""
-    text = str(error.msg)
-    head, found, tail = text.partition(": ")
-    return f"not Turtle: {tail}" if found and head.startswith("Parser error") else f"not Turtle: {text}"
+def not_turtle(error: SyntaxError, source: str) -> TurtleError:
+    """Oxigraph's complaint as selfconf's: its message without the position, which the error carries on its own."""
+    head, found, tail = str(error.msg).partition(": ")
+    message = tail if found and head.startswith("Parser error") else str(error.msg)
+    return TurtleError(f"not Turtle: {message}", file=source, line=error.lineno, column=error.offset)
 
 
 def to_rdflib(triples: Iterable[Triple]) -> rdflib.Graph:

@@ -15,6 +15,7 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
+from itertools import accumulate
 
 import pyoxigraph as ox
 import pyshacl
@@ -37,6 +38,9 @@ _SAMPLES: dict[Node, Literal] = {
     XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
 }
 _SERVICE = re.compile(r"\bSERVICE\b", re.IGNORECASE)
+LONGEST_QUERY = 20_000
+"""Characters of a query in a role; and its brackets may nest `DEEPEST_QUERY` deep. Oxigraph cannot be interrupted."""
+DEEPEST_QUERY = 100
 _NOBODY = URIRef("urn:x-selfconf:nobody")
 
 
@@ -142,10 +146,18 @@ def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
             if _SERVICE.search(str(query)):
                 yield at(positions, offset, "SC-T13", "A role cannot ask another machine: leave out SERVICE.")
                 continue
+            if len(query) > LONGEST_QUERY or _depth(str(query)) > DEEPEST_QUERY:
+                yield at(positions, offset, "SC-T13", "This query is too long, or nests too deeply, to be judged.")
+                continue
             try:
                 ox.Store().query(str(query), prefixes=dict(_declared(graph, constraint)))
             except SyntaxError as error:
                 yield at(positions, offset, "SC-T13", f"This is not SPARQL: {error.msg.partition(': ')[2]}.")
+
+
+def _depth(text: str) -> int:
+    """How deep brackets nest, those in strings included."""
+    return max(accumulate((mark in "([{") - (mark in ")]}") for mark in text), default=0)
 
 
 def _declared(graph: Graph, constraint: Node) -> Iterator[tuple[str, str]]:

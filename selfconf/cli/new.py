@@ -1,0 +1,75 @@
+"""`new`: writes the first files of a component, a template or an ontology, valid and commented."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+from selfconf.cli.scaffolds import SCAFFOLDS
+from selfconf.errors import AuthorError
+
+NAME = "new"
+HELP = "write the first files of a component, a template or an ontology, to be changed to what you want"
+EXAMPLE = """  selfconf new component kitchen-thermometer
+  selfconf new template watch-the-temperature
+  selfconf configure watch-the-temperature.ttl --ads ."""
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:[-_][A-Za-z0-9]+)*")
+_NAMESPACE = re.compile(r"[a-z][a-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*[#/:]", re.IGNORECASE)
+_HOME = "https://example.org/my-home#"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument("kind", metavar="KIND", choices=tuple(SCAFFOLDS), help="component, template or ontology")
+    parser.add_argument("name", metavar="NAME", help="its name, such as kitchen-thermometer: letters, digits, hyphens")
+    parser.add_argument(
+        "--dir", metavar="DIR", type=Path, default=Path(), help="where the files go (default: the current folder)"
+    )
+    parser.add_argument(
+        "--namespace",
+        metavar="IRI",
+        help=f"what the IRIs of your own terms start with, up to # or / (default: {_HOME}; "
+        "of an ontology https://example.org/NAME#)",
+    )
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 when the files are written; their paths go to stdout, what to do next to stderr."""
+    written = scaffold(given.kind, given.name, given.dir, given.namespace)
+    for path in written:
+        print(path)
+    print(f"next: change them, and type `selfconf validate {written[0]}`", file=sys.stderr)
+    return 0
+
+
+def scaffold(kind: str, name: str, folder: Path, namespace: str | None = None) -> list[Path]:
+    """Write the files of one thing; raises AuthorError, and writes nothing, if there is a file of that name."""
+    if not _NAME.fullmatch(name):
+        raise AuthorError(f"{name!r} cannot be a name; start with a letter, go on with letters, digits and hyphens")
+    namespace = namespace or (f"https://example.org/{name}#" if kind == "ontology" else _HOME)
+    if not _NAMESPACE.fullmatch(namespace):
+        raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with # or /")
+    words = " ".join(re.split("[-_]", name))
+    fillings = {
+        "name": name,
+        "class_": "".join(part[:1].upper() + part[1:] for part in re.split("[-_]", name)),
+        "namespace": namespace,
+        "document": namespace.rstrip("#"),
+        "label": words[:1].upper() + words[1:],
+        "lower": words,
+    }
+    files = {folder / f"{name}{ending}": text.substitute(fillings) for ending, text in SCAFFOLDS[kind].items()}
+    for path in files:
+        if path.exists():
+            raise AuthorError(f"{path} is there already, and is not overwritten; choose another name or --dir")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path, text in files.items():
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+    except OSError as error:
+        raise AuthorError(f"cannot write to {folder}: {error.strerror}") from None
+    return list(files)

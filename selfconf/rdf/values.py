@@ -1,0 +1,137 @@
+"""What SHACL asks of one value: its kind, datatype, range, length and pattern (SHACL 4.1.2, 4.1.3, 4.3, 4.4).
+
+Whether a literal is well-formed, and which of two is the greater, is decided by rdflib, as it is in pySHACL: two
+opinions on what `"07"^^xsd:integer` is would be one too many. Verdicts are remembered, as values recur.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import rdflib
+from pyshacl.rdfutil.compare import compare_literal
+
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.turtle import rdflib_term
+from selfconf.rdf.vocabulary import RDFS, SH, XSD
+
+_compare: Callable[[rdflib.Literal, rdflib.Literal], int] = compare_literal
+_KINDS: Mapping[IRI, tuple[type, ...]] = {
+    SH.IRI: (IRI,),
+    SH.BlankNode: (BlankNode,),
+    SH.Literal: (Literal,),
+    SH.BlankNodeOrIRI: (BlankNode, IRI),
+    SH.BlankNodeOrLiteral: (BlankNode, Literal),
+    SH.IRIOrLiteral: (IRI, Literal),
+}
+_LIMITS: Mapping[IRI, tuple[str, Callable[[int], bool]]] = {
+    SH.minInclusive: ("at least", lambda order: order >= 0),
+    SH.minExclusive: ("more than", lambda order: order > 0),
+    SH.maxInclusive: ("at most", lambda order: order <= 0),
+    SH.maxExclusive: ("less than", lambda order: order < 0),
+}
+_LENGTHS: Mapping[IRI, str] = {SH.minLength: "at least", SH.maxLength: "at most"}
+_SOLE = frozenset((SH.nodeKind, SH.datatype, SH.minLength, SH.maxLength))
+"""Constraints of which a shape may state only one."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValueTest:
+    """One constraint on each value: the SHACL parameter, its value, and for patterns the flags."""
+
+    constraint: IRI
+    wanted: Term
+    flags: str = ""
+
+    def passes(self, value: Term) -> bool:
+        """Whether a value is as wanted."""
+        return _passes(self, value)
+
+    def __str__(self) -> str:
+        wanted = self.wanted.short if isinstance(self.wanted, IRI) else str(self.wanted)
+        if self.constraint in _LIMITS:
+            return f"{_LIMITS[self.constraint][0]} {wanted}"
+        if self.constraint in _LENGTHS:
+            return f"{_LENGTHS[self.constraint]} {wanted} characters long"
+        return f"like /{wanted}/" if self.constraint == SH.pattern else f"a {wanted}"
+
+
+def compiled(constraints: Mapping[IRI, list[Term]]) -> tuple[list[ValueTest], set[IRI]]:
+    """The tests for those constraints that are compiled, and the constraints that they cover."""
+    tests: list[ValueTest] = []
+    covered: set[IRI] = set()
+    for constraint, wanted in constraints.items():
+        flags = constraints.get(SH.flags, []) if constraint == SH.pattern else []
+        if len(flags) > 1 or (constraint in _SOLE and len(wanted) > 1):
+            continue
+        found = [ValueTest(constraint, value, str(flags[0]) if flags else "") for value in wanted]
+        if all(map(_compiles, found)):
+            tests += found
+            covered |= {constraint, SH.flags} if constraint == SH.pattern else {constraint}
+    return tests, covered
+
+
+def _compiles(test: ValueTest) -> bool:
+    """Whether the constraint is one of those here and its value is one that it can have."""
+    wanted = test.wanted
+    if test.constraint == SH.nodeKind:
+        return wanted in _KINDS
+    if test.constraint == SH.datatype:
+        return isinstance(wanted, IRI) and wanted not in (RDFS.Literal, RDFS.Datatype)
+    if not isinstance(wanted, Literal):
+        return False
+    if test.constraint in _LENGTHS:
+        return wanted.datatype == XSD.integer and wanted.lexical.isdecimal()
+    if test.constraint in _LIMITS:
+        limit = rdflib_term(wanted)
+        return isinstance(limit, rdflib.Literal) and limit.value is not None
+    if test.constraint != SH.pattern or wanted.datatype != XSD.string:
+        return False
+    try:
+        _expression(wanted.lexical, test.flags)
+    except re.error:
+        return False
+    return True
+
+
+@lru_cache(maxsize=1024)
+def _expression(pattern: str, flags: str) -> re.Pattern[str]:
+    """A pattern as pySHACL reads it: of the flags, `i` and `m`."""
+    options = (re.IGNORECASE if "i" in flags.lower() else 0) | (re.MULTILINE if "m" in flags.lower() else 0)
+    return re.compile(pattern, options)
+
+
+@lru_cache(maxsize=1 << 16)
+def _passes(test: ValueTest, value: Term) -> bool:
+    wanted = test.wanted
+    if test.constraint == SH.nodeKind:
+        assert isinstance(wanted, IRI)
+        return isinstance(value, _KINDS[wanted])
+    if test.constraint == SH.datatype:
+        if not isinstance(value, Literal) or value.datatype != wanted:
+            return False
+        literal = rdflib_term(value)
+        return isinstance(literal, rdflib.Literal) and literal.ill_typed is not True
+    if test.constraint in _LIMITS:
+        return _within(rdflib_term(value), rdflib_term(wanted), _LIMITS[test.constraint][1])
+    if test.constraint in _LENGTHS:
+        least = test.constraint == SH.minLength
+        number = int(str(wanted))
+        if least and number == 0:
+            return True
+        return not isinstance(value, BlankNode) and (len(str(value)) >= number if least else len(str(value)) <= number)
+    return not isinstance(value, BlankNode) and _expression(str(wanted), test.flags).search(str(value)) is not None
+
+
+def _within(value: rdflib.term.Identifier, limit: rdflib.term.Identifier, holds: Callable[[int], bool]) -> bool:
+    if not isinstance(value, rdflib.Literal) or not isinstance(limit, rdflib.Literal):
+        return False
+    if isinstance(value.value, str) != isinstance(limit.value, str):
+        return False
+    try:
+        return holds(_compare(value, limit))
+    except (TypeError, NotImplementedError):
+        return False

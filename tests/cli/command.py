@@ -1,0 +1,46 @@
+"""Running a command in this process, and what came of it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from selfconf.cli.main import main
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a command has answered: its exit code, and what it said on stdout and stderr."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def body(self) -> Any:
+        """Its stdout as JSON."""
+        return json.loads(self.out)
+
+    def is_one_sentence(self, *words: str) -> bool:
+        """Whether it is misuse or unreadable input, said in one line on stderr that holds these words."""
+        assert self.code == 2, self
+        assert self.out == "", self
+        assert self.err.count("\n") == 1, self
+        assert "Traceback" not in self.err
+        for word in words:
+            assert word in self.err, self
+        return True
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> Outcome:
+    """Run a command."""
+    capsys.readouterr()
+    try:
+        code = main(arguments)
+    except SystemExit as error:
+        code = int(error.code or 0)
+    said = capsys.readouterr()
+    return Outcome(code, said.out, said.err)

@@ -1,0 +1,28 @@
+"""The ecologies of real processes that the tests of the commands use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.processes import Home
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Iterator[Home]:
+    """An ecology of a test's own, without any process yet."""
+    home = Home(tmp_path)
+    yield home
+    home.close()
+
+
+@pytest.fixture(scope="session")
+def inhabited(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
+    """The paper's ecology: one site, and all components in one process; whoever uses it leaves nothing deployed."""
+    home = Home(tmp_path_factory.mktemp("inhabited"))
+    home.site("peis-home", "ads")
+    home.components("sonar", "encoder", "tracker", "odometry", "control", "drive", "pippi")
+    yield home
+    home.close()

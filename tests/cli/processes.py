@@ -1,0 +1,281 @@
+"""Real processes on one machine: sites, components, configurators, each started and ended by the test that needs it."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from selfconf.bus.port import Replies
+from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Answer
+from tests.lab import NAVIGATE, iri, write_advertisements
+
+PATIENCE = 20.0
+"""Seconds that a process may take for anything, on a busy machine."""
+PROGRAM = '''
+"""Components for tests: each acts a little, and fails when a file says so."""
+
+import sys
+from pathlib import Path
+
+from selfconf.sdk import Component, main
+
+HERE = Path(__file__).parent
+
+
+class Act(Component):
+    """Counts on every output, and writes down what it is told."""
+
+    def started(self):
+        self.count = 0
+        self.every(0.05, self.act)
+
+    def act(self):
+        self.count += 1
+        for output in self.outputs:
+            self.emit(output, {"count": self.count})
+        order = HERE / f"{self.name}.fail"
+        if order.exists():
+            order.unlink()
+            self.fail("told to")
+
+    def parameter_set(self, name, value):
+        (HERE / f"{self.name}.{name}").write_text(str(value))
+
+
+OUTPUTS = {"sonar": ["ranges"], "encoder": ["odometry"], "tracker": ["pose"], "odometry": ["pose"],
+           "control": ["set.velocity"]}
+kinds = [
+    type(name, (Act,), {"advertisement": HERE / "ads" / f"{name}.ttl", "name": name, "outputs": OUTPUTS.get(name, [])})
+    for name in sys.argv[1].split(",")
+]
+sys.exit(main(*kinds, arguments=sys.argv[2:]))
+'''
+
+
+class Program:
+    """A process whose lines on stdout can be waited for."""
+
+    def __init__(self, command: list[str], environment: dict[str, str], folder: Path) -> None:
+        self._read_end, write_end = os.pipe()
+        self._process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=write_end,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        os.close(write_end)
+        self._unread, self._joined = b"", False
+        self._complaints: list[str] = []
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._listener.start()
+
+    def _listen(self) -> None:
+        for line in self._process.stderr or ():
+            self._complaints.append(line)
+
+    def _line(self, deadline: float) -> bytes | None:
+        """The next line on stdout, or None if there is none before the deadline."""
+        while b"\n" not in self._unread:
+            ready, _, _ = select.select([self._read_end], [], [], max(0.0, deadline - time.monotonic()))
+            more = os.read(self._read_end, 1 << 16) if ready else b""
+            if not more:
+                return None
+            self._unread += more
+        line, _, self._unread = self._unread.partition(b"\n")
+        return line
+
+    @property
+    def number(self) -> int:
+        """The number of the process."""
+        return self._process.pid
+
+    @property
+    def complaints(self) -> str:
+        """What it has said on stderr."""
+        return "".join(self._complaints)
+
+    def act(self, act: str) -> dict[str, Any]:
+        """The next account of an act on stdout; those before it are passed over."""
+        deadline = time.monotonic() + PATIENCE
+        while (line := self._line(deadline)) is not None:
+            account: dict[str, Any] = json.loads(line)
+            if account["act"] == act:
+                return account
+        raise AssertionError(f"no {act!r} before its end, or in {PATIENCE:.0f} s; stderr: {self.complaints}")
+
+    def hang_up(self) -> None:
+        """Read no more from its stdout."""
+        if self._read_end >= 0:
+            os.close(self._read_end)
+            self._read_end = -1
+
+    def end(self, how: int = signal.SIGTERM) -> int:
+        """Signal the process, and wait for its exit code."""
+        if self._process.poll() is None:
+            self._process.send_signal(how)
+        return self.ended()
+
+    def ended(self) -> int:
+        """The exit code of the process, which ends by itself."""
+        code = self._process.wait(PATIENCE)
+        self.hang_up()
+        if not self._joined:
+            self._joined = True
+            self._listener.join(PATIENCE)
+            if self._process.stderr is not None:
+                self._process.stderr.close()
+        return code
+
+    @property
+    def over(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.poll() is not None
+
+
+class Home:
+    """An ecology of real processes."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.ecology = folder, f"test-{secrets.token_hex(4)}"
+        self.keys = Keys(self.ecology)
+        write_advertisements(folder / "ads")
+        (folder / "components.py").write_text(PROGRAM)
+        (folder / "navigate.ttl").write_text(NAVIGATE)
+        self.runtime = folder / "runtime"
+        self.environment = {
+            **{name: value for name, value in os.environ.items() if not name.startswith("SELFCONF_")},
+            "SELFCONF_RUNTIME_DIR": str(self.runtime),
+            "PYTHONPATH": str(Path(__file__).parent.parent.parent),
+        }
+        self._programs: list[Program] = []
+        self._bus: ZenohBus | None = None
+
+    # Programs.
+
+    def program(self, *command: str) -> Program:
+        """Start a program."""
+        program = Program(list(command), self.environment, self.folder)
+        self._programs.append(program)
+        return program
+
+    def selfconf(self, *arguments: str) -> Program:
+        """Start a command."""
+        return self.program(sys.executable, "-m", "selfconf", *arguments)
+
+    def site(self, name: str, *paths: str, connect: tuple[str, ...] = (), listen: str = "tcp/127.0.0.1:0") -> Program:
+        """Start a site, and wait until it listens."""
+        self._meeting(name).unlink(missing_ok=True)
+        options = ["--listen", listen, *(option for endpoint in connect for option in ("--connect", endpoint))]
+        site = self.selfconf("site", *paths, "--ecology", self.ecology, "--name", name, *options)
+        assert self.until(lambda: self._meeting(name).exists() or site.over), site.complaints
+        assert not site.over, site.complaints
+        return site
+
+    def components(self, *names: str, connect: tuple[str, ...] = ()) -> Program:
+        """Start components as one process, and wait until all of them live."""
+        options = [option for endpoint in connect or (self.endpoint(),) for option in ("--connect", endpoint)]
+        command = (sys.executable, "components.py", ",".join(names), "--ecology", self.ecology)
+        program = self.program(*command, *options)
+        profiles = [component_of(name) for name in names]
+        assert self.until(lambda: program.over or all(self.state(c) is not None for c in profiles)), program.complaints
+        assert not program.over, program.complaints
+        return program
+
+    def run(self, *arguments: str) -> Program:
+        """Start a configurator for the paper's task."""
+        return self.selfconf(
+            "run",
+            "navigate.ttl",
+            *("--bind", "robot=:Astrid", "--bind", "goal=(AT BEDROOM)"),
+            *("--ecology", self.ecology, "--format", "json"),
+            *arguments,
+        )
+
+    def _meeting(self, name: str) -> Path:
+        return self.runtime / f"{self.ecology}@{name}.json"
+
+    def endpoint(self, name: str | None = None) -> str:
+        """Where a site listens; the first one's if none is named."""
+        path = self._meeting(name) if name else min(self.runtime.glob("*.json"))
+        endpoint: str = json.loads(path.read_text())["endpoint"]
+        return endpoint
+
+    def arguments(self) -> tuple[str, ...]:
+        """The options by which a command in this process finds the ecology."""
+        return "--ecology", self.ecology, "--connect", self.endpoint()
+
+    # Observing.
+
+    def state(self, component: IRI) -> Answer | None:
+        """What a component says of itself, if it answers."""
+        if self._bus is None or not self._bus.link:
+            if self._bus is not None:
+                self._bus.close()
+            self._bus = client(
+                [json.loads(path.read_text())["endpoint"] for path in sorted(self.runtime.glob("*.json"))]
+            )
+        replies: list[Replies] = []
+        self._bus.ask(self.keys.call(component, "state"), b"", 1.0, replies.append)
+        bus = self._bus
+        deadline = time.monotonic() + PATIENCE
+        while not replies and time.monotonic() < deadline:
+            bus.poll(0.05)
+        for sample in replies[0].samples if replies else ():
+            try:
+                return decode(sample.payload, Answer)
+            except PeerError:
+                return None
+        return None
+
+    def active(self, *names: str) -> set[str]:
+        """Which of these components act."""
+        answers = {name: self.state(component_of(name)) for name in names}
+        return {name for name, answer in answers.items() if answer is not None and answer.active}
+
+    def until(self, condition: Callable[[], bool], seconds: float = PATIENCE) -> bool:
+        """Wait for a condition, until a deadline."""
+        deadline = time.monotonic() + seconds
+        moment = threading.Event()
+        while not condition() and time.monotonic() < deadline:
+            moment.wait(0.02)
+        return condition()
+
+    def close(self) -> None:
+        """End everything that was started."""
+        if self._bus is not None:
+            self._bus.close()
+        for program in reversed(self._programs):
+            program.end(signal.SIGKILL)
+
+
+def component_of(name: str) -> IRI:
+    """The component with an advertisement of that name."""
+    return iri(
+        {
+            "sonar": "sonar-array",
+            "encoder": "wheels",
+            "tracker": "person-tracker",
+            "odometry": "absolute-odometry",
+            "control": "thinking-cap",
+            "drive": "astrid-drive",
+            "pippi": "pippi-drive",
+        }[name]
+    )

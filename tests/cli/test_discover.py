@@ -1,0 +1,66 @@
+"""`discover`: what is out there, and that what dies is not."""
+
+from __future__ import annotations
+
+import signal
+
+import pytest
+
+from tests.cli.command import run
+from tests.cli.processes import Home
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+
+
+def test_everything_that_is_advertised_is_shown_with_its_site_and_whether_it_lives(
+    inhabited: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = run(capsys, "discover", "--format", "json", *inhabited.arguments()).body
+    assert (body["sites"], body["missing"]) == (["peis-home"], [])
+    assert len(body["components"]) == len(ADVERTISEMENTS)
+    assert {row["state"] for row in body["components"]} == {"alive"}
+    (tracker,) = [row for row in body["components"] if row["component"] == iri("person-tracker")]
+    assert tracker["types"] == ["https://w3id.org/selfconf/robotics#PositionSensor"]
+    assert tracker["site"] == "peis-home"
+
+
+def test_the_table_ends_with_a_count(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    outcome = run(capsys, "discover", *inhabited.arguments())
+    assert outcome.code == 0
+    assert outcome.out.splitlines()[-1] == f"7 components at 1 site of ecology {inhabited.ecology}"
+    assert "rob:PositionSensor" in outcome.out
+
+
+def test_the_advertisements_of_a_site_that_is_killed_vanish(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    (home.folder / "ads" / "pippi.ttl").write_text(
+        PREFIXES + ADVERTISEMENTS["pippi"].rstrip(" .") + ' ; sc:grounding [ sc:command "true" ] .\n'
+    )
+    home.site("a", "ads/tracker.ttl")
+    second = home.site("b", "ads/drive.ttl", "ads/pippi.ttl", connect=(home.endpoint("a"),))
+    arguments = "--ecology", home.ecology, "--connect", home.endpoint("a")
+
+    def states() -> dict[str, str]:
+        body = run(capsys, "discover", "--format", "json", *arguments).body
+        return {row["component"]: row["state"] for row in body["components"]}
+
+    assert states() == {
+        iri("person-tracker"): "absent",
+        iri("astrid-drive"): "absent",
+        iri("pippi-drive"): "dormant",
+    }
+    second.end(signal.SIGKILL)
+    assert home.until(lambda: states() == {iri("person-tracker"): "absent"}, 5.0)
+
+
+def test_an_ecology_of_another_name_is_one_sentence(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    outcome = run(capsys, "discover", "--ecology", "nobody-here", "--connect", inhabited.endpoint())
+    assert outcome.is_one_sentence("no site of the ecology 'nobody-here' answers")
+
+
+def test_a_name_that_is_none_is_one_sentence(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    outcome = run(capsys, "discover", "--ecology", "a/b", "--connect", inhabited.endpoint())
+    assert outcome.is_one_sentence("cannot name an ecology")
+
+
+def test_without_any_site_there_is_a_sentence_that_says_what_to_start(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ("discover", "status", "stop"):
+        assert run(capsys, command).is_one_sentence("selfconf site")

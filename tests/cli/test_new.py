@@ -1,0 +1,93 @@
+"""`selfconf new`: what it writes is valid as it stands, runs as it stands, and overwrites nothing."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from selfconf.cli.main import main
+from selfconf.cli.scaffolds import SCAFFOLDS
+from selfconf.cli.validate import check
+
+PATIENCE = 40.0
+
+
+@pytest.mark.parametrize("kind", SCAFFOLDS)
+@pytest.mark.parametrize("name", ["kitchen-thermometer", "x", "Radio2", "a_b-c"])
+def test_what_is_scaffolded_conforms_without_a_warning(kind: str, name: str, tmp_path: Path) -> None:
+    assert main(["new", kind, name, "--dir", str(tmp_path)]) == 0
+    assert not check([str(tmp_path)]).diagnostics
+
+
+@pytest.mark.parametrize("namespace", ["https://example.org/else/", "urn:home:"])
+@pytest.mark.parametrize("kind", SCAFFOLDS)
+def test_a_namespace_of_ones_own_is_used(kind: str, namespace: str, tmp_path: Path) -> None:
+    assert main(["new", kind, "x", "--dir", str(tmp_path), "--namespace", namespace]) == 0
+    assert f"<{namespace}>" in (tmp_path / "x.ttl").read_text()
+    assert not check([str(tmp_path)]).diagnostics
+
+
+@pytest.mark.parametrize("kind", SCAFFOLDS)
+def test_nothing_is_overwritten(kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    last = [*SCAFFOLDS[kind]][-1]
+    (tmp_path / f"x{last}").write_text("mine")
+    assert main(["new", kind, "x", "--dir", str(tmp_path)]) == 2
+    assert "not overwritten" in capsys.readouterr().err
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["mine"]
+
+
+@pytest.mark.parametrize("name", ["", "../x", "2x", "a b", "-x", "x-", "ä", "x.ttl"])
+def test_a_name_that_could_not_be_a_file_and_a_term_is_refused(name: str, tmp_path: Path) -> None:
+    assert main(["new", "--dir", str(tmp_path), "component", "--", name]) == 2
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#"])
+def test_a_namespace_that_is_no_iri_is_refused(namespace: str, tmp_path: Path) -> None:
+    assert main(["new", "component", "x", "--dir", str(tmp_path), "--namespace", namespace]) == 2
+
+
+def test_a_folder_that_is_not_there_is_made(tmp_path: Path) -> None:
+    assert main(["new", "ontology", "x", "--dir", str(tmp_path / "deep" / "er")]) == 0
+    assert (tmp_path / "deep" / "er" / "x.ttl").is_file()
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Path:
+    """A folder with a scaffolded component and a scaffolded template."""
+    for kind, name in (("component", "thermometer"), ("template", "watch")):
+        assert main(["new", kind, name, "--dir", str(tmp_path)]) == 0
+    return tmp_path
+
+
+@pytest.mark.parametrize(("place", "code"), [("kitchen", 0), ("cellar", 1)])
+def test_a_scaffolded_template_finds_the_scaffolded_component(home: Path, place: str, code: int) -> None:
+    arguments = ["configure", str(home / "watch.ttl"), "--ads", str(home), "--bind", f"place=:{place}"]
+    assert main(arguments) == code
+
+
+def test_a_scaffolded_component_runs_until_it_is_interrupted(home: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "selfconf", "run", "watch.ttl", "--ads", "."],
+        cwd=home,
+        env={**os.environ, "SELFCONF_RUNTIME_DIR": str(home / "runtime")},
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+    assert process.stdout is not None
+    said = []
+    for line in process.stdout:
+        said.append(line)
+        if line.rstrip().endswith(" running"):
+            process.send_signal(signal.SIGINT)
+            break
+    rest, _ = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 0, "".join(said) + rest
+    assert ":thermometer is active" in "".join(said)
+    assert "taken down" in rest

@@ -1,0 +1,207 @@
+"""`run` with real processes: the experiment, crashes, kills, and that nothing is left behind."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+from selfconf.sdk.body import GRACE
+from tests.cli.processes import Home, component_of
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
+
+REST = ("sonar", "encoder", "odometry", "control", "drive")
+EVERYBODY = ("tracker", *REST)
+TASK = {"sonar", "encoder", "control", "drive"}
+
+
+def test_the_experiment_and_a_component_that_is_killed(home: Home) -> None:
+    """FAIL of the tracker, then kill -9 of odometry: each is replaced, the second one by a new tracker."""
+    home.site("peis-home", "ads")
+    home.components("sonar", "encoder", "control", "drive")
+    tracker = home.components("tracker")
+    odometry = home.components("odometry")
+    run = home.run()
+    running = run.act("running")["configuration"]
+    assert [role["components"] for role in running["roles"]] == [
+        [component_of(name)] for name in ("sonar", "encoder", "tracker", "control", "drive")
+    ]
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    assert home.until(lambda: (home.folder / "control.goal").exists())
+    assert (home.folder / "control.goal").read_text() == "(AT BEDROOM)"
+    (home.folder / "tracker.fail").touch()
+    lost = run.act("lost")
+    assert (lost["component"], lost["cause"], lost["detail"]) == (component_of("tracker"), "fail", "told to")
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"odometry"}
+    tracker.end()
+    home.components("tracker")
+    odometry.end(signal.SIGKILL)
+    assert run.act("lost")["cause"] == "crash"
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    (home.folder / "tracker.fail").touch()
+    assert run.act("refused")["refusal"]["reasons"]
+    assert run.ended() == 1
+    assert home.active(*EVERYBODY) == set()
+
+
+def test_ctrl_c_takes_everything_down(inhabited: Home) -> None:
+    run = inhabited.run()
+    run.act("running")
+    assert run.end(signal.SIGINT) == 0
+    assert run.complaints == ""
+    assert inhabited.active(*EVERYBODY) == set()
+
+
+def test_ctrl_c_before_anything_is_deployed_ends_it_all_the_same(inhabited: Home) -> None:
+    run = inhabited.run()
+    run.act("query")
+    assert run.end(signal.SIGINT) == 0
+    assert inhabited.active(*EVERYBODY) == set()
+
+
+def test_when_the_configurator_is_killed_components_turn_off_and_a_new_run_recovers(inhabited: Home) -> None:
+    run = inhabited.run()
+    run.act("running")
+    run.end(signal.SIGKILL)
+    assert inhabited.until(lambda: inhabited.active(*EVERYBODY) == set(), 5.0 + GRACE)
+    again = inhabited.run()
+    again.act("running")
+    assert inhabited.active(*EVERYBODY) == TASK | {"tracker"}
+    again.end(signal.SIGKILL)
+    at_once = inhabited.run()  # within the grace period of the one before
+    at_once.act("running")
+    assert inhabited.active(*EVERYBODY) == TASK | {"tracker"}
+    assert at_once.end(signal.SIGTERM) == 0
+    assert inhabited.active(*EVERYBODY) == set()
+
+
+def test_two_sites_on_two_ports_are_as_two_hosts(home: Home) -> None:
+    (home.folder / "living-room").mkdir()
+    (home.folder / "ads" / "tracker.ttl").rename(home.folder / "living-room" / "tracker.ttl")
+    (home.folder / "ads" / "tracker.ttl").symlink_to(home.folder / "living-room" / "tracker.ttl")
+    astrid = [f"ads/{name}.ttl" for name in REST]
+    home.site("living-room", "living-room")
+    home.site("astrid", *astrid, connect=(home.endpoint("living-room"),))
+    home.components("tracker", connect=(home.endpoint("living-room"),))
+    home.components(*REST, connect=(home.endpoint("astrid"),))
+    run = home.run("--connect", home.endpoint("astrid"))
+    discovered = run.act("discovered")
+    assert (discovered["sites"], discovered["missing"]) == (["astrid", "living-room"], [])
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    (home.folder / "tracker.fail").touch()
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"odometry"}
+    assert run.end(signal.SIGINT) == 0
+
+
+def test_a_dormant_component_is_started_by_its_site_and_ends_with_it(home: Home) -> None:
+    command = f"python {home.folder}/components.py tracker"
+    (home.folder / "ads" / "tracker.ttl").write_text(
+        PREFIXES + ADVERTISEMENTS["tracker"].rstrip(" .") + f' ; sc:grounding [ sc:command "{command}" ] .\n'
+    )
+    site = home.site("peis-home", "ads")
+    home.components(*REST)
+    assert home.state(component_of("tracker")) is None
+    run = home.run()
+    run.act("waking")
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    assert run.end(signal.SIGINT) == 0
+    answer = home.state(component_of("tracker"))
+    assert answer is not None
+    assert not answer.active
+    assert site.end() == 0
+
+
+def test_a_dormant_component_behind_a_shell_is_started_too(home: Home) -> None:
+    (home.folder / "start.sh").write_text("python components.py tracker\ntrue\n")
+    (home.folder / "ads" / "tracker.ttl").write_text(
+        PREFIXES + ADVERTISEMENTS["tracker"].rstrip(" .") + ' ; sc:grounding [ sc:command "sh ../start.sh" ] .\n'
+    )
+    (home.folder / "start.sh").write_text("cd ..\npython components.py tracker\ntrue\n")
+    site = home.site("peis-home", "ads")
+    home.components(*REST)
+    run = home.run()
+    run.act("running")
+    assert home.active("tracker") == {"tracker"}
+    assert run.end(signal.SIGINT) == 0
+    site.end(signal.SIGKILL)
+
+
+def test_a_run_with_advertisements_brings_a_site_of_its_own_and_takes_it_away_again(home: Home) -> None:
+    for name in ("sonar", "encoder", "tracker", "control", "drive"):
+        path = home.folder / "ads" / f"{name}.ttl"
+        command = f"python {home.folder}/components.py {name}"
+        text = PREFIXES + ADVERTISEMENTS[name].rstrip(" .") + f' ; sc:grounding [ sc:command "{command}" ] .\n'
+        path.write_text(text)
+    run = home.run("--ads", "ads")
+    run.act("running")
+    assert home.active("tracker", "control", "drive") == {"tracker", "control", "drive"}
+    assert run.end(signal.SIGINT) == 0
+    assert list(home.runtime.glob("*.json")) == []
+
+
+def test_no_peer_is_one_sentence_and_exit_code_2(home: Home) -> None:
+    run = home.run()
+    assert run.ended() == 2
+    assert run.complaints.count("\n") == 1
+    assert "no site of the ecology" in run.complaints
+
+
+def test_a_refused_task_is_exit_code_1_with_the_reasons(home: Home) -> None:
+    home.site("peis-home", "ads/tracker.ttl")
+    run = home.selfconf("run", "navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x")
+    assert run.ended() == 1
+    assert "no component is eligible for the role sonar" in run.complaints
+
+
+def test_a_shape_that_cannot_be_judged_is_one_sentence_and_exit_code_2(inhabited: Home, tmp_path: Path) -> None:
+    template = tmp_path / "broken.ttl"
+    template.write_text(NAVIGATE + ':drive sh:pattern "(" .\n')
+    run = inhabited.selfconf(
+        "run", str(template), "--bind", "robot=:Astrid", "--bind", "goal=x", "--ecology", inhabited.ecology
+    )
+    assert run.ended() == 2
+    assert "Traceback" not in run.complaints
+    assert "broken.ttl" in run.complaints.splitlines()[-1]
+
+
+def test_a_reader_that_has_seen_enough_ends_the_run(inhabited: Home) -> None:
+    """As in `selfconf run ... --format json | head -1`."""
+    run = inhabited.run()
+    run.act("running")
+    run.hang_up()
+    (inhabited.folder / "tracker.fail").touch()
+    assert run.ended() == 0
+    assert "Traceback" not in run.complaints
+    assert inhabited.active(*EVERYBODY) == set()
+
+
+def test_a_site_that_is_killed_and_comes_back_finds_its_ecology_running_again(home: Home) -> None:
+    site = home.site("peis-home", "ads")
+    endpoint = home.endpoint()
+    home.components("tracker", *REST)
+    run = home.run()
+    run.act("running")
+    site.end(signal.SIGKILL)
+    run.act("cut off")
+    home.site("peis-home", "ads", listen=endpoint)
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    assert run.end(signal.SIGINT) == 0
+    assert home.active(*EVERYBODY) == set()
+
+
+def test_when_one_of_two_sites_is_killed_the_task_goes_on_through_the_other(home: Home) -> None:
+    first = home.site("a", "ads")
+    home.site("b", "ads", connect=(home.endpoint("a"),))
+    both = home.endpoint("a"), home.endpoint("b")
+    home.components("tracker", *REST, connect=both)
+    run = home.run("--connect", both[0], "--connect", both[1])
+    run.act("running")
+    first.end(signal.SIGKILL)
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    assert run.end(signal.SIGINT) == 0

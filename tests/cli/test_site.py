@@ -1,0 +1,69 @@
+"""`site`: it serves, finds its sisters on the same machine, and ends cleanly."""
+
+from __future__ import annotations
+
+import json
+import signal
+from pathlib import Path
+
+import pytest
+
+from selfconf.bus.zenoh_bus import ZenohBus, router
+from tests.cli.command import run
+from tests.cli.processes import Home
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+
+
+def test_it_says_what_it_serves_and_where_and_leaves_nothing_behind(home: Home) -> None:
+    site = home.site("peis-home", "ads")
+    meeting = json.loads((home.runtime / f"{home.ecology}@peis-home.json").read_text())
+    assert meeting["process"] == site.number
+    assert site.end(signal.SIGINT) == 0
+    where = f"ecology {home.ecology} serves {len(ADVERTISEMENTS)} advertisements on {meeting['endpoint']}"
+    assert site.complaints == f"site peis-home of {where}\n"
+    assert list(home.runtime.iterdir()) == []
+
+
+def test_sites_of_one_ecology_on_one_machine_find_each_other(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    home.site("a", "ads/tracker.ttl")
+    home.site("b", "ads/drive.ttl")
+    for name in ("a", "b"):
+        arguments = "--ecology", home.ecology, "--connect", home.endpoint(name)
+        body = run(capsys, "discover", "--format", "json", *arguments).body
+        assert {row["component"]: row["site"] for row in body["components"]} == {
+            iri("person-tracker"): "a",
+            iri("astrid-drive"): "b",
+        }
+
+
+def test_a_file_that_is_added_while_it_runs_is_served(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    home.site("a", "ads")
+
+    def known() -> set[str]:
+        body = run(capsys, "discover", "--format", "json", *home.arguments()).body
+        return {row["component"] for row in body["components"]}
+
+    assert iri("lamp") not in known()
+    (home.folder / "ads" / "lamp.ttl").write_text(PREFIXES + ":lamp a sc:Component, :Lamp .")
+    assert home.until(lambda: iri("lamp") in known(), 5.0)
+
+
+@pytest.fixture
+def taken() -> ZenohBus:
+    """Somebody else who listens."""
+    return router()
+
+
+def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str], taken: ZenohBus) -> None:
+    folder = str(tmp_path)
+    for arguments, words in (
+        ((str(tmp_path / "nowhere"), "--ecology", "e"), "no file or folder"),
+        ((folder, "--ecology", "a/b"), "cannot name an ecology"),
+        ((folder, "--ecology", "e", "--name", "a b"), "cannot name a site"),
+        ((folder, "--ecology", "e", "--listen", taken.endpoint), f"cannot listen on {taken.endpoint}"),
+        ((folder, "--ecology", "e", "--listen", "here"), "here"),
+        ((folder, "--ecology", "e", "--listen", "tcp/no.such.host.invalid:0"), "cannot listen on"),
+        ((folder, "--ecology", "e", "--connect", "there"), "there"),
+    ):
+        assert run(capsys, "site", *arguments).is_one_sentence(words)
+    taken.close()

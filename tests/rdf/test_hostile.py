@@ -1,0 +1,200 @@
+"""Turtle from strangers: reading, validating and judging it opens no file and no socket, and comes to an end."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from selfconf import library
+from selfconf.errors import AuthorError, QueryError, TemplateError
+from selfconf.model.codes import PREAMBLE
+from selfconf.model.diagnostic import Report
+from selfconf.rdf import advertisements, bindings, deadline, scrutiny, shacl, templates, turtle
+from selfconf.rdf.dataset import Dataset
+from selfconf.rdf.partition import Partitioner
+from selfconf.rdf.validation import Source, validate
+
+SHAPES = [Source(path.name, path.read_bytes()) for path in library.shapes()]
+ONTOLOGIES = [Source(path.name, path.read_bytes()) for path in library.ontologies()]
+TUNER = ":tuner a sc:Component, rob:Tuner .\n"
+TEMPLATE = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class rob:Tuner .\n"
+ACTS = ("open", "os.listdir", "os.scandir", "subprocess.Popen", "os.system", "urllib.Request", "ftplib.connect")
+seen: list[str] | None = None
+
+
+def _watch(event: str, arguments: tuple[object, ...]) -> None:
+    if seen is not None and (event in ACTS or event.startswith("socket.")):
+        seen.append(f"{event} {arguments[:1]}")
+
+
+sys.addaudithook(_watch)  # for good: an audit hook cannot be taken away
+
+
+@contextmanager
+def nothing_opened() -> Iterator[None]:
+    """Fails if the block opens a file or a socket, whoever does it; what it has to import is there already."""
+    global seen
+    seen = []
+    try:
+        yield
+        assert not seen
+    finally:
+        seen = None
+
+
+@pytest.fixture
+def trap(tmp_path: Path) -> Iterator[tuple[str, str]]:
+    """The IRIs of a file and of a server that nobody may touch."""
+    file = tmp_path / "secret.ttl"
+    file.write_text("<urn:secret> <urn:is> <urn:out> .")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.setblocking(False)
+        yield file.as_uri(), f"http://127.0.0.1:{server.getsockname()[1]}/x.ttl"
+        with pytest.raises(BlockingIOError):
+            server.accept()
+
+
+def check(text: str) -> Report:
+    return validate([Source("a.ttl", (PREAMBLE + text).encode())], SHAPES, ONTOLOGIES)
+
+
+def judge(template: str, advertisement: str = TUNER) -> tuple[int, ...]:
+    """How many components are eligible for each role."""
+    task = bindings.complete(templates.read(turtle.parse(PREAMBLE + template, "t.ttl", "file:///")))
+    found, _ = advertisements.read(turtle.parse(PREAMBLE + advertisement, "a.ttl", "file:///"))
+    return tuple(len(role) for role in Partitioner(task).partition(found).candidates)
+
+
+HOSTILE = [
+    "<urn:o> a owl:Ontology ; owl:imports <{file}> , <{web}> .",
+    ":tuner owl:imports <{file}> , <{web}> ; sh:shapesGraph <{web}> ; rdfs:seeAlso <{file}> .",
+    "@base <{web}> . <> sh:shapesGraph <{file}> ; sh:entailment <{web}> .",
+    ":tuner sc:grounding [ sc:command 'touch {file}' ] .",
+    ":tuner :note '{{ \"@context\": \"{web}\" }}' .",
+    ":x a sh:NodeShape ; sh:targetClass sc:Component ; sh:js [ sh:jsLibrary [ sh:jsLibraryURL <{web}> ] ] .",
+]
+QUERIES = [
+    "SELECT $this FROM <{file}> WHERE {{ $this ?p ?o }}",
+    "SELECT $this FROM <{web}> WHERE {{ $this ?p ?o }}",
+    "SELECT $this FROM NAMED <{file}> WHERE {{ $this a ?t GRAPH ?g {{ ?s ?p ?o }} }}",
+    "SELECT $this WHERE {{ $this a ?t . GRAPH <{file}> {{ ?s ?p ?o }} }}",
+    "SELECT $this WHERE {{ $this a ?t . SERVICE <{web}> {{ ?s ?p ?o }} }}",
+    "SELECT $this WHERE {{ $this a ?t . SERVICE SILENT <{web}> {{ ?s ?p ?o }} }}",
+    "SELECT $this WHERE {{ $this a ?t . ser\\\\u0076ice <{web}> {{ ?s ?p ?o }} }}",
+]
+BEYOND = ":r sh:sparql [ sh:select '''{query}''' ] ."
+
+
+@pytest.fixture(autouse=True)
+def warm() -> None:
+    """Whatever is imported late, and whatever is read once, is there before anybody watches."""
+    check(TUNER + TEMPLATE + BEYOND.format(query="SELECT $this WHERE { $this a sc:Input }"))
+    judge(TEMPLATE + BEYOND.format(query="SELECT $this WHERE { $this a <urn:x> }"))
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_hostile_turtle_opens_nothing(text: str, trap: tuple[str, str]) -> None:
+    hostile = text.format(file=trap[0], web=trap[1]) + TUNER
+    with nothing_opened():
+        check(hostile)
+        check(TEMPLATE + hostile)
+        assert judge(TEMPLATE, hostile) == (1,)
+        judge(TEMPLATE + ":r sh:pattern '.' ." + hostile)
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_the_query_of_a_role_opens_nothing(query: str, trap: tuple[str, str]) -> None:
+    template = TEMPLATE + BEYOND.format(query=query.format(file=trap[0], web=trap[1]))
+    with nothing_opened():
+        assert {found.code for found in check(template).diagnostics} <= {"SC-T13"}
+        try:
+            judge(template)
+        except AuthorError:
+            pass
+
+
+@pytest.mark.parametrize("query", [*QUERIES, "LOAD <{file}>", "SELECT * FROM <{file}> WHERE {{ ?s ?p ?o }}"])
+def test_a_query_to_the_ecology_reads_nothing_else(query: str, trap: tuple[str, str]) -> None:
+    dataset = Dataset()
+    dataset.add_advertisements(advertisements.read(turtle.parse(PREAMBLE + TUNER, "a.ttl"))[0])
+    with nothing_opened():
+        try:
+            answer = dataset.query(query.replace("$this", "?this").format(file=trap[0], web=trap[1]))
+            assert "secret" not in "".join(map(str, answer))
+        except QueryError:
+            pass
+
+
+def test_an_advertisement_cannot_bring_shapes_or_axioms_along() -> None:
+    smuggled = """
+:tuner a sh:NodeShape ; sh:targetClass rob:Tuner ; sh:in () ; rdfs:subClassOf rob:Speaker ; :near :speaker .
+:speaker a sc:Component, rob:Speaker ; owl:sameAs :tuner ; sh:closed true .
+rob:Tuner rdfs:subClassOf sc:Template ; owl:equivalentClass rob:Speaker ; sh:property [ sh:path rdf:type ; sh:maxCount 0 ] .
+rob:place rdfs:subPropertyOf rdf:type . :r sh:in () .
+"""
+    found, _ = advertisements.read(turtle.parse(PREAMBLE + TUNER + smuggled, "a.ttl"))
+    said = {(str(predicate), str(value)) for one in found for _, predicate, value in one.triples}
+    assert not [pair for pair in said if any("shacl#" in part or "owl#" in part for part in pair)]
+    assert not [pair for pair in said if "subClassOf" in pair[0] or "subPropertyOf" in pair[0]]
+    beyond = TEMPLATE + ":r sh:nodeKind sh:IRI ; sh:not [ sh:class sc:Template ] ."
+    assert judge(beyond, TUNER + smuggled) == judge(beyond) == (1,)
+    assert judge(beyond, TUNER + smuggled + ":radio a sc:Component, rob:Tuner .") == (2,)
+
+
+CATASTROPHE = ":r sh:property [ sh:path rdfs:label ; sh:pattern '^(a+)+$' ] ."
+VICTIM = TUNER + f":tuner rdfs:label '{'a' * 40}!' ."
+
+
+def test_a_catastrophic_pattern_ends_in_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shacl, "SECONDS", 0.3)
+    with pytest.raises(TemplateError, match=r"takes more than 0\.3 s"):
+        judge(TEMPLATE + CATASTROPHE, VICTIM)
+
+
+def test_a_file_that_takes_too_long_ends_in_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scrutiny, "SECONDS", 0.3)
+    triples = "\n".join(f":x{n} sh:nodeKind :y{n} ." for n in range(20_000))
+    report = check(triples)
+    assert [found.code for found in report.diagnostics] == ["SC-S05"]
+    assert report.unreadable == {"a.ttl"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":tuner :p " + "[ :p " * 5_000 + "1" + " ]" * 5_000 + " ; sc:name 1 .",
+        ":tuner :p " + "( " * 5_000 + "1" + " )" * 5_000 + " ; sc:name 1 .",
+        ":tuner :p (" + " 1" * 50_000 + " ) ; sc:name 1 .",
+    ],
+    ids=["brackets", "lists in lists", "a long list"],
+)
+def test_a_deeply_nested_file_ends_in_an_error(text: str) -> None:
+    assert "SC-S05" in {found.code for found in check(text).diagnostics}
+
+
+@pytest.mark.parametrize("text", ["[ :p " * 5_000 + "1" + " ]" * 5_000, "( " * 5_000 + "1" + " )" * 5_000])
+def test_a_deeply_nested_advertisement_is_read(text: str) -> None:
+    assert judge(TEMPLATE, f":tuner a sc:Component, rob:Tuner ; :p {text} .") == (1,)
+
+
+@pytest.mark.parametrize(
+    "query",
+    ["SELECT $this { $this :p " + "(" * 5_000 + "1" + ")" * 5_000 + "}", "SELECT $this { $this a 1 } #" + "x" * 50_000],
+    ids=["nested", "long"],
+)
+def test_a_query_that_would_hold_up_the_engine_is_not_handed_to_it(query: str) -> None:
+    found = check(TEMPLATE + BEYOND.format(query=query)).diagnostics
+    assert [each.code for each in found] == ["SC-T13"]
+
+
+def test_a_time_limit_within_another_leaves_the_outer_one_alone() -> None:
+    with pytest.raises(deadline.TimeUp), deadline.deadline(0.2):
+        with deadline.deadline(30):
+            pass
+        while True:
+            pass
