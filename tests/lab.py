@@ -128,7 +128,7 @@ class Lab:
         document = turtle.parse(PREFIXES + ADVERTISEMENTS[name], name)
         (advertisement,), _ = advertisements.read(document)
         recorder = recorder or Recorder()
-        life = f"{name}{len(self.bodies)}"
+        life = f"{name}{len(self.network.nodes)}"
         self.bodies[name] = Body(self.network.node(), self.keys, advertisement.profile, recorder, life)
         self.components[name] = recorder
         return recorder
@@ -179,6 +179,10 @@ class Lab:
     def crash(self, program: Agent | Site | str) -> None:
         """End a configurator, a site, or the component of that name, as kill -9 does."""
         _node(self.bodies[program].bus if isinstance(program, str) else program.bus).close()
+
+    def is_open(self, program: Agent | Site) -> bool:
+        """Whether a program has not been ended."""
+        return _node(program.bus).open
 
     def isolate(self, program: Agent | Site | str) -> None:
         """Cut a program off from everybody else."""

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from selfconf.agent import CALL, SETTLING
+from selfconf.agent.calls import CALL
+from selfconf.agent.lives import SETTLING
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.machine import Phase, Policy
 from selfconf.errors import TemplateError
@@ -174,8 +175,14 @@ def test_an_output_that_promised_a_rate_and_stops_is_replaced(tmp_path: Path, mo
     monkeypatch.setitem(ADVERTISEMENTS, "tracker", promising)
 
     class Tracker(Recorder):
+        seeing = True
+
         def started(self) -> None:
-            self.every(0.1, lambda: self.emit("pose", {"x": 0}))
+            self.every(0.1, self.look)
+
+        def look(self) -> None:
+            if self.seeing:
+                self.emit("pose", {"x": 0})
 
     lab = Lab(tmp_path)
     lab.navigation()
@@ -186,9 +193,7 @@ def test_an_output_that_promised_a_rate_and_stops_is_replaced(tmp_path: Path, mo
     assert lab.running(agent)
     lab.let_pass(5.0)
     assert lab.active() == TASK | {"tracker"}
-    tracker.every = lambda *_: None  # type: ignore[method-assign,assignment]
-    for undo in lab.bodies["tracker"]._timers:
-        undo()
+    tracker.seeing = False
     lab.let_pass(1.0)
     assert lab.active() == TASK | {"odometry"}
     assert lab.acts("lost")[0].facts["cause"] == "silence"

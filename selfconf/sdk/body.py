@@ -25,7 +25,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from selfconf.bus.port import Bus, Publisher, Request, Sample, Undo, Urgency
+from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import PeerError, ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.model.term import Literal, Term
@@ -46,18 +46,12 @@ from selfconf.protocol.messages import (
     Wire,
 )
 from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.following import RAW, Following
 
 log = logging.getLogger(__name__)
 
 GRACE = 1.0
 """Seconds after which a component without a living supervisor turns itself off."""
-PATIENCE = 4.0
-"""After how many promised periods without a signal an output counts as silent."""
-BEGINNING = 20.0
-"""Seconds that an output may take to issue its first signal: its component may have to be started by its site."""
-JUST_COME = 0.5
-"""Seconds for which the signal of an output that stood by counts once it is heeded."""
-_RAW = b"raw"
 
 
 class Body:
@@ -69,7 +63,7 @@ class Body:
         """Which life of the component this is."""
         self.life = Life()
         self.active = False
-        self._following: dict[tuple[str, Wire], _Following] = {}
+        self._following: dict[tuple[str, Wire], Following] = {}
         self._last: dict[str, tuple[bytes, bytes]] = {}
         self._sequence = itertools.count(1)
         self._timers: list[Undo] = []
@@ -111,7 +105,7 @@ class Body:
             self.profile.component, self.name, next(self._sequence), time.time() if moment is None else moment
         )
         if isinstance(value, bytes):
-            payload, attachment = value, _RAW + encode(stamp)
+            payload, attachment = value, RAW + encode(stamp)
         else:
             payload, attachment = self._json(port, value), encode(stamp)
         self._last[port] = payload, attachment
@@ -269,7 +263,7 @@ class Body:
         spare = dict.fromkeys((port, wire) for port, wires in message.standby.items() for wire in wires)
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._following:
-                self._following[port, wire] = _Following(self, port, wire)
+                self._following[port, wire] = Following(self, port, wire)
         for key, following in list(self._following.items()):
             if key in wanted:
                 following.heed()
@@ -331,76 +325,6 @@ class Body:
         self._grace = None
         log.warning("%s: its configurator is gone; turning off", self.profile.component.short)
         self._become(*lives.orphaned(self.life))
-
-
-class _Following:
-    """An input following one output: a subscription, and a watch for silence where a rate is promised.
-
-    While it is muted, because the output only stands by or the connection is about to end, it passes over what it
-    hears, but for the newest signal: that counts if the output is heeded right after.
-    """
-
-    def __init__(self, body: Body, port: str, wire: Wire) -> None:
-        self._body, self._port, self._wire = body, port, wire
-        self._life, self._sequence = "", 0
-        self._deadline: Undo | None = None
-        self._muted = True
-        self._newest: tuple[float, Sample] | None = None
-        self._undo = body.bus.subscribe(body.keys.output(wire.component, wire.output), self._heard)
-
-    def heed(self) -> None:
-        """Hand on what is heard, from the newest signal on if that has only just come."""
-        if not self._muted:
-            return
-        self._muted = False
-        self._expect()
-        if self._newest is not None and self._body.bus.now() - self._newest[0] < JUST_COME:
-            self._heard(self._newest[1])
-        self._newest = None
-
-    def mute(self) -> None:
-        """Pass over what is heard."""
-        self._muted = True
-        if self._deadline is not None:
-            self._deadline()
-
-    def end(self) -> None:
-        """Follow no more."""
-        self.mute()
-        self._undo()
-
-    def _heard(self, sample: Sample) -> None:
-        if self._muted:
-            self._newest = self._body.bus.now(), sample
-            return
-        raw = sample.attachment.startswith(_RAW)
-        try:
-            stamp = decode(sample.attachment[len(_RAW) :] if raw else sample.attachment, Stamp)
-            value = sample.payload if raw else json.loads(sample.payload)
-        except (PeerError, ValueError, RecursionError) as error:
-            log.warning("%s: passed over a signal: %s", self._body.profile.component.short, error)
-            return
-        if stamp.component != self._wire.component:
-            return
-        if stamp.life == self._life and stamp.sequence <= self._sequence:
-            return
-        self._life, self._sequence = stamp.life, stamp.sequence
-        self._expect()
-        self._body.deliver(self._port, Signal(value, stamp.component, stamp.time, stamp.sequence))
-
-    def _expect(self) -> None:
-        if self._wire.period is None:
-            return
-        if self._deadline is not None:
-            self._deadline()
-        usual = max(PATIENCE * self._wire.period, 0.1)
-        seconds = usual if self._sequence else max(usual, BEGINNING)
-
-        def silent() -> None:
-            self._body.report_silence(self._wire, seconds)
-            self._expect()
-
-        self._deadline = self._body.bus.later(seconds, silent)
 
 
 def _python(value: Term) -> Any:

@@ -57,10 +57,10 @@ class History:
             self.chance.choice(
                 (
                     self._fail,
-                    self._fail,
                     self._crash,
                     self._come_back,
-                    self._come_back,
+                    self._restart,
+                    self._restart,
                     self._refuse,
                     self._isolate,
                     self._isolate,
@@ -100,7 +100,7 @@ class History:
 
     def living(self) -> list[Agent]:
         """The configurators that have not died."""
-        return [agent for agent in self.agents if self.lab.network.nodes[agent.bus.number].open]  # type: ignore[attr-defined]
+        return [agent for agent in self.agents if self.lab.is_open(agent)]
 
     def _wrong(self, name: str, agent: Agent) -> Iterator[str]:
         """What is wrong with a component that acts for a configurator."""
@@ -155,9 +155,22 @@ class History:
     def _come_back(self) -> None:
         name = self._some(alive=False)
         if name is not None:
-            self._say(f"{name} comes back")
-            self.alone = [alone for alone in self.alone if alone != name]
-            self.lab.component(name)
+            self._revive(name)
+
+    def _restart(self) -> None:
+        names = {body.profile.component: name for name, body in self.lab.bodies.items()}
+        lost = sorted({names[component] for agent in self.living() for component in agent.state.lost})
+        name = self.chance.choice(lost or COMPONENTS)
+        if self.lab.node_of(name).open:
+            self._say(f"{name} is restarted")
+            self.lab.crash(name)
+            self.lab.let_pass(self.chance.choice((0.0, 0.01, 1.0)))
+        self._revive(name)
+
+    def _revive(self, name: str) -> None:
+        self._say(f"{name} comes back")
+        self.alone = [alone for alone in self.alone if alone != name]
+        self.lab.component(name)
 
     def _refuse(self) -> None:
         name = self._some()

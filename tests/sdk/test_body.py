@@ -28,8 +28,9 @@ from selfconf.protocol.messages import (
     Verdict,
     Wire,
 )
-from selfconf.sdk.body import BEGINNING, GRACE, PATIENCE, Body
+from selfconf.sdk.body import GRACE, Body
 from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.following import BEGINNING, PATIENCE
 from tests.lab import Recorder
 
 KEYS = Keys("lab")
@@ -446,9 +447,10 @@ def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
 
 
 def test_a_component_that_is_part_of_no_ecology_says_so() -> None:
-    for use in (lambda c: c.emit("a", 1), lambda c: c.fail("x"), lambda c: c.every(1.0, lambda: None)):
+    component = Component()
+    for use in (lambda: component.emit("a", 1), lambda: component.fail("x"), lambda: component.every(1.0, list)):
         with pytest.raises(ProgrammerError, match="not part of an ecology"):
-            use(Component())
+            use()
     assert not Component().active
 
 

@@ -1,0 +1,248 @@
+"""The configurator as a program: it runs the machine's effects on the bus and feeds it what the bus says."""
+
+from __future__ import annotations
+
+import logging
+import os
+import secrets
+import socket
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from selfconf.agent.calls import Calls
+from selfconf.agent.lives import Lives
+from selfconf.agent.order import Account, Order
+from selfconf.agent.record import Record
+from selfconf.bus.port import Bus, Sample, Urgency
+from selfconf.configurator import machine
+from selfconf.configurator.effects import (
+    ApplyTo,
+    Compose,
+    Discover,
+    Effect,
+    Finish,
+    ReleaseFrom,
+    Running,
+    SetOn,
+    Unwatch,
+    Watch,
+)
+from selfconf.configurator.events import (
+    Accepted,
+    Appeared,
+    Composed,
+    Discovered,
+    Event,
+    Failed,
+    Stopped,
+)
+from selfconf.configurator.machine import Phase, State
+from selfconf.ecology import Discovery, Ecology
+from selfconf.errors import PeerError, SelfconfError
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import component_chunk, owner_of_fail
+from selfconf.protocol.messages import (
+    Cause,
+    Fail,
+    Status,
+)
+
+log = logging.getLogger(__name__)
+
+TRY_AGAIN = 5.0
+"""Seconds after which a patient configurator gives a crashed component that can be started another chance."""
+
+
+class Agent:
+    """Runs one task: acts 1 to 4, then watches and configures again, until it is stopped or refused."""
+
+    def __init__(
+        self, bus: Bus, ecology: str, order: Order, name: str = "", clock: Callable[[], float] = time.time
+    ) -> None:
+        self.bus, self.order, self.clock = bus, order, clock
+        self.ecology = Ecology(bus, ecology)
+        self.keys = self.ecology.keys
+        self.name = name or f"c{secrets.token_hex(4)}"
+        self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
+        self.state = State(policy=order.policy, patient=order.patient)
+        self.since = clock()
+        self.trouble: SelfconfError | None = None
+        """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
+        self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._tell)
+        self._lives = Lives(self.ecology, self._now, self._step, self._tell, self._calls.woken)
+        self._record = Record(bus, self.keys, self.name, self.status, self.stop)
+        self._watched: set[IRI] = set()
+        self._events: deque[Event] = deque()
+        self._stepping = False
+        self._untold: list[Account] = []
+        self._leave = bus.announce(self.supervisor)
+        # One subscription for the FAIL of all: connecting to each as it joins would delay its activation.
+        bus.subscribe(self.keys.any_fail(), self._heard_fail, Urgency.EVENT)
+        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})), Urgency.EVENT)
+
+    def start(self) -> None:
+        """Begin with act 1."""
+        self._step(Accepted(int(self.clock() * 1000)))
+
+    def stop(self) -> None:
+        """Take the configuration down; `order.settle` hears when that is done."""
+        self._step(Stopped())
+
+    @property
+    def configuration(self) -> Configuration | None:
+        """What is deployed, or being deployed."""
+        return self.state.target
+
+    def _step(self, event: Event) -> None:
+        """Feed the machine; an event that an effect brings about comes after the other effects."""
+        self._events.append(event)
+        if self._stepping:
+            return
+        self._stepping = True
+        try:
+            while self._events:
+                next_event, before = self._events.popleft(), self.state.phase
+                if isinstance(next_event, Failed):
+                    self._notice(next_event)
+                self.state, effects = machine.step(self.state, next_event)
+                for effect in effects:
+                    self._do(effect)
+                returned = isinstance(next_event, Appeared) and bool(next_event.lives)
+                if returned and self.state.phase is Phase.RUNNING and self.state.target is not None:
+                    self._stand_by(self.state.target)
+                if self.state.phase is not before:
+                    self._changed_phase(before)
+        finally:
+            self._stepping = False
+
+    def _now(self) -> State:
+        return self.state
+
+    def _stand_by(self, configuration: Configuration) -> None:
+        standby = self.order.standby(configuration, frozenset(self.state.lost))
+        self._calls.stand_by(configuration, standby)
+
+    def _changed_phase(self, before: Phase) -> None:
+        log.debug("%s -> %s", before.value, self.state.phase.value)
+        self.since = self.clock()
+        if self.state.phase is Phase.REFUSED and self.state.patient:
+            self._tell("waiting", refusal=self.state.refusal)
+            self.bus.later(TRY_AGAIN, self._forgive)
+
+    def _forgive(self) -> None:
+        """Somebody who crashed, and whose site can start it, may be tried again when there is no other way."""
+        crashed = {
+            component: ""
+            for component, loss in self.state.lost.items()
+            if loss.cause is Cause.CRASH and (found := self.ecology.discovery.found.get(component)) and found.startable
+        }
+        if crashed and self.state.phase is Phase.REFUSED:
+            self._step(Appeared(crashed))
+
+    def _notice(self, event: Failed) -> None:
+        held = self.state.held.get(event.component)
+        if held is not None and not (event.life and held.life and event.life != held.life):
+            self._record.lost(event.component, event.cause.value, event.detail, self.clock())
+            self._tell("lost", component=event.component, cause=event.cause.value, detail=event.detail)
+
+    def _tell(self, act: str, **facts: Any) -> None:
+        """Note an account now, and tell it when there is nothing more urgent to do."""
+        if not self._untold:
+            self.bus.wake_up(self._tell_all)
+        self._untold.append(Account(act, self.clock(), facts))
+
+    def _tell_all(self) -> None:
+        untold, self._untold = self._untold, []
+        for account in untold:
+            self.order.tell(account)
+
+    # Effects.
+
+    def _do(self, effect: Effect) -> None:
+        match effect:
+            case Discover():
+                self._tell("query")
+                self.ecology.discover(self._discovered)
+            case Compose():
+                self._compose(effect)
+            case Watch():
+                self._watch(effect.component)
+            case Unwatch():
+                self._watched.discard(effect.component)
+            case ApplyTo():
+                self._calls.apply(effect)
+            case SetOn():
+                self._calls.set(effect)
+            case ReleaseFrom():
+                self.bus.wake_up(partial(self._calls.release, effect))  # not before what others wait for
+            case Running():
+                self._record.deployed(effect.configuration, self.state.epoch, self.clock())
+                self._tell("running", configuration=effect.configuration, epoch=self.state.epoch)
+                self._stand_by(effect.configuration)
+            case Finish():
+                lost = {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
+                self._tell("refused" if effect.refusal else "stopped", refusal=effect.refusal, lost=lost)
+                try:
+                    self._tell_all()
+                finally:  # the end of a task depends on nobody who listens
+                    self._leave()  # whoever could not be told to turn off will notice
+                    self.order.settle(effect.refusal)
+
+    def _discovered(self, discovery: Discovery) -> None:
+        self.ecology.discovery = discovery
+        self._lives.discovered(discovery)
+        for complaint in discovery.complaints:
+            self._tell("complaint", detail=complaint)
+        self._tell("discovered", components=len(discovery.found), sites=discovery.sites, missing=discovery.missing)
+        self._step(Discovered())
+
+    def _compose(self, effect: Compose) -> None:
+        found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
+        began = self.bus.now()
+        try:
+            outcome = self.order.compose(found, effect.lost, effect.running)
+        except SelfconfError as error:
+            self.trouble = error
+            self._step(Stopped())
+            return
+        if isinstance(outcome, Refusal):
+            outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
+        seconds = self.bus.now() - began
+        self._tell("composed", outcome=outcome, seconds=seconds)
+        self._step(Composed(effect.attempt, outcome))
+
+    def _watch(self, component: IRI) -> None:
+        self._tell("watching", component=component)
+        self._watched.add(component)
+
+    def _heard_fail(self, sample: Sample) -> None:
+        try:
+            fail = decode(sample.payload, Fail)
+        except PeerError as error:
+            log.warning("passed over a FAIL on %s: %s", sample.key, error)
+            return
+        own = sample.key == self.keys.fail(fail.component)
+        reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
+        if fail.component in self._watched and (own or reported):
+            self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
+
+    def status(self) -> Status:
+        """What is deployed, by whom, since when."""
+        return Status(
+            configurator=self.name,
+            phase="waiting" if self.state.phase is Phase.REFUSED else self.state.phase.value,
+            template=self.order.template,
+            epoch=self.state.epoch,
+            since=self.since,
+            host=socket.gethostname(),
+            process=os.getpid(),
+            components=tuple(self.state.held),
+            lost={component: loss.cause.value for component, loss in self.state.lost.items()},
+        )

@@ -1,0 +1,82 @@
+"""Several components in one process, and how each finds its advertisement."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.bus.memory import Network
+from selfconf.errors import AuthorError, ProgrammerError, TurtleError
+from selfconf.protocol.keys import Keys
+from selfconf.sdk import Component, Host
+from selfconf.sdk.host import profile_of
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
+
+
+def kind(advertisement: Path, component: str = "") -> type[Component]:
+    """A component class with an advertisement."""
+    return type("Lamp", (Component,), {"advertisement": advertisement, "component": component})
+
+
+def test_a_component_is_what_its_advertisement_says(tmp_path: Path) -> None:
+    folder = write_advertisements(tmp_path, "tracker")
+    profile = profile_of(kind(folder / "tracker.ttl"))
+    assert profile.component == iri("person-tracker")
+    assert [port.name for port in profile.outputs] == ["pose"]
+
+
+def test_of_several_components_in_one_file_the_class_says_which_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "all.ttl"
+    path.write_text(PREFIXES + " ".join(ADVERTISEMENTS.values()))
+    assert profile_of(kind(path, iri("pippi-drive"))).component == iri("pippi-drive")
+    with pytest.raises(ProgrammerError, match="must say by `component`"):
+        profile_of(kind(path))
+    with pytest.raises(ProgrammerError, match="which one"):
+        profile_of(kind(path, iri("nobody")))
+
+
+def test_an_advertisement_that_is_missing_or_wrong_is_said_to_be(tmp_path: Path) -> None:
+    with pytest.raises(ProgrammerError, match="needs an `advertisement`"):
+        profile_of(Component)
+    with pytest.raises(ProgrammerError, match="is not there"):
+        profile_of(kind(tmp_path / "none.ttl"))
+    (tmp_path / "broken.ttl").write_text("no turtle")
+    with pytest.raises(TurtleError, match=r"broken\.ttl:1"):
+        profile_of(kind(tmp_path / "broken.ttl"))
+    (tmp_path / "bad.ttl").write_text(PREFIXES + ":lamp a sc:Component .")
+    with pytest.raises(AuthorError, match="a type of its own"):
+        profile_of(kind(tmp_path / "bad.ttl"))
+
+
+def test_a_relative_path_counts_from_the_file_of_the_class() -> None:
+    class Lamp(Component):
+        advertisement = "lamp.ttl"
+
+    assert Lamp.advertisement_path() == Path(__file__).parent / "lamp.ttl"
+
+
+def test_components_of_one_host_live_and_end_together(tmp_path: Path) -> None:
+    network, folder = Network(), write_advertisements(tmp_path)
+    host = Host(network.node(), "lab")
+    for name in ("tracker", "drive"):
+        host.add(kind(folder / f"{name}.ttl")())
+    observer = network.node()
+    called: list[tuple[str, ...]] = []
+    observer.roll_call(Keys("lab").any_life(), 1.0, called.append)
+    host.poll(0.1)
+    assert len(called[0]) == 2
+    host.close()
+    observer.roll_call(Keys("lab").any_life(), 1.0, called.append)
+    network.run(lambda: len(called) == 2)
+    assert called[1] == ()
+    assert host.bodies == []
+
+
+def test_a_host_runs_until_it_is_told(tmp_path: Path) -> None:
+    network = Network()
+    host = Host(network.node(), "lab")
+    told: list[bool] = []
+    host.bus.later(5.0, lambda: told.append(True))
+    host.run(lambda: bool(told))
+    assert network.time == 5.0
