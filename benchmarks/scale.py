@@ -10,7 +10,8 @@ preference; the paper's template of five roles asks for five of the kinds, on on
     partition  F1 ... F5
     search     the first configuration
     refusal    the same once the robot has lost its drives: the reasons, near misses, and a search in subclass mode
-    rdflib     parsing into a graph, and an Oxigraph store: bulk load; nothing else
+    rdflib     parsing into a graph, nothing else; beside it bulk load into an Oxigraph store in memory, which parses
+               in several threads (left out above 100,000: it takes 10 kB an advertisement)
 
 Times are seconds of processor time, the least of some trials; the two that are compared are measured in turns.
 Memory is what the process grew by at its peak, for each advertisement: every size and engine has a process of its own.
@@ -20,7 +21,6 @@ A second table adds components that no role wants to a task, and shows what that
 from __future__ import annotations
 
 import argparse
-import gc
 import json
 import random
 import resource
@@ -84,9 +84,8 @@ def ecology(size: int, seed: int = 0, wanted: bool = True) -> Iterator[str]:
         said += [f'sc:hasInput [ sc:name "in{k}" ; sc:signalType rob:{s} ]' for k, s in enumerate(inputs)]
         said += [f'sc:hasOutput [ sc:name "out{k}" ; sc:signalType rob:{s} ]' for k, s in enumerate(outputs)]
         said.append(f'sc:hasParameter [ sc:name "mode" ; sc:parameterType :Mode{kind % 7} ]')
-        said.append(
-            f"rob:support :robot{0 if number < len(ROLES) else rng.randrange(ROBOTS)} ; rob:place :room{rng.randrange(20)}"
-        )
+        robot = 0 if number < len(ROLES) else rng.randrange(ROBOTS)
+        said.append(f"rob:support :robot{robot} ; rob:place :room{rng.randrange(20)}")
         said.append(f":latency {rng.random():.3f} ; :accuracy {rng.random():.2f} ; sc:preference {rng.randrange(10)}")
         yield " ;\n    ".join(said) + " .\n"
 
@@ -170,14 +169,12 @@ def crowd(path: Path, trials: int) -> dict[str, float]:
     given, found = task("robot0"), dict[str, float]()
     few = read_advertisements([path])
     many = few | read_advertisements([path.with_name("unwanted.ttl")])
-    ecologies = {"alone": few, "in the crowd": many}
-    composers = {name: Composer(given) for name in ecologies}
-    for name, ads in ecologies.items():
-        composers[name].partition(ads)
-    gc.collect()
-    for _ in range(100 * trials):
-        for name, composer in composers.items():
-            problem = Problem(given.task, composer.partition(ecologies[name]), composer.hierarchy)
+    problems = {
+        name: Problem(given.task, Composer(given).partition(ads))
+        for name, ads in {"alone": few, "in the crowd": many}.items()
+    }
+    for _ in range(200 * trials):
+        for name, problem in problems.items():
             keep(found, name, timed(solve.search, problem)[0])
     found["unwanted"] = len(many) - len(few)
     return found
@@ -220,7 +217,8 @@ def row(size: int, folder: Path, with_rdflib: bool) -> list[str]:
     with path.open("w") as file:
         file.writelines(ecology(size))
     trials = 1 if size > SIZES[-1] else 3 if size == SIZES[-1] else 5
-    own, store = measured("configure", path, trials), measured("store", path, 1)
+    own = measured("configure", path, trials)
+    store = measured("store", path, 1) if size < FULL else None
     graph = measured("rdflib", path, 1) if with_rdflib else None
     after = own["partition"] + own["search"] + own["refusal"]
     path.unlink()
@@ -233,7 +231,7 @@ def row(size: int, folder: Path, with_rdflib: bool) -> list[str]:
         *(f"{1000 * own[part]:.1f}" for part in ("partition", "search", "refusal")),
         f"{100 * after / own['load']:.1f} %",
         f"{own['bytes']:.0f}",
-        f"{store['load']:.2f} ({store['bytes'] / size:.0f})",
+        f"{store['load']:.2f} ({store['bytes'] / size:.0f})" if store else "",
         f"{graph['load']:.1f} ({graph['bytes'] / size:.0f}), {graph['load'] / own['load']:.0f} times" if graph else "",
     ]
 

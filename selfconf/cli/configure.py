@@ -10,8 +10,10 @@ from dataclasses import replace
 from typing import Any
 
 from selfconf.cli import words
-from selfconf.cli.inputs import add_task_arguments, read_advertisements, read_hierarchy, read_task
-from selfconf.cli.live import add_connection_arguments, advertised, connected, discover
+from selfconf.cli.endpoint import add_endpoint_argument
+from selfconf.cli.inputs import add_task_arguments, read_hierarchy, read_task
+from selfconf.cli.live import add_connection_arguments
+from selfconf.cli.sources import read_ecology
 from selfconf.configurator.compose import Composer, Strategy
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Reasoning
@@ -31,6 +33,7 @@ EXAMPLE = """  selfconf configure examples/navigate.ttl --ads examples/peis-home
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     add_task_arguments(parser)
+    add_endpoint_argument(parser)
     parser.add_argument(
         "--format", choices=["text", "json", "turtle", "mermaid"], default="text", help="default: %(default)s"
     )
@@ -45,10 +48,9 @@ def run(given: argparse.Namespace) -> int:
     task = read_task(given)
     seconds: dict[str, float] = {}
     began = time.perf_counter()
-    ecology = _ecology(given)
-    hierarchy = read_hierarchy(given)
+    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy))
+    ecology = read_ecology(given, composer.partitioner)
     seconds["load"] = time.perf_counter() - began
-    composer = Composer(task, hierarchy, Strategy(given.strategy))
     began = time.perf_counter()
     partition = composer.partition(ecology)
     seconds["partition"] = time.perf_counter() - began
@@ -66,13 +68,6 @@ def run(given: argparse.Namespace) -> int:
     }
     print(_shown(outcome, task, given.format, eligible, seconds, losses))
     return 1 if isinstance(outcome, Refusal) else 0
-
-
-def _ecology(given: argparse.Namespace) -> Mapping[IRI, Advertisement]:
-    if given.ads is not None:
-        return read_advertisements(given.ads)
-    with connected(given) as ecology:
-        return advertised(discover(ecology))
 
 
 def _with_hint(

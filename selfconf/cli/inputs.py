@@ -17,6 +17,7 @@ from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf import bindings, stream, templates, turtle
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.clauses import Clauses
 from selfconf.rdf.closure import hierarchy
 from selfconf.rdf.templates import TaskDocument
 from selfconf.rdf.turtle import Document
@@ -150,7 +151,7 @@ def read_hierarchy(given: argparse.Namespace, reasoning: Reasoning | None = None
 def read_advertisements(paths: Sequence[Path]) -> dict[IRI, Advertisement]:
     """The advertisements in files and folders. One that does not conform is named on stderr and left out."""
     found: dict[IRI, Advertisement] = {}
-    clauses = stream.Clauses()
+    clauses = Clauses()
     with collector_at_rest():
         for path in turtle_files(paths):
             good, bad = stream.read(_bytes(path), str(path), path.resolve().as_uri(), clauses)

@@ -16,7 +16,7 @@ from types import ModuleType
 
 from selfconf.errors import SelfconfError
 
-COMMANDS = ("new", "validate", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
+COMMANDS = ("new", "validate", "partition", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
 INTERRUPTED = 130
 
 

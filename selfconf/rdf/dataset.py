@@ -6,7 +6,6 @@ Oxigraph. They read the dataset and nothing else: SERVICE is refused, and FROM o
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 
 import pyoxigraph as ox
@@ -14,6 +13,7 @@ import pyoxigraph as ox
 from selfconf.errors import QueryError
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.queries import says
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import PROV, RDF, RDFS, ROB, SC, SH, XSD
 from selfconf.rdf.write import ox_term
@@ -28,16 +28,6 @@ PREFIXES = {
     "xsd": XSD.base,
     "prov": PROV.base,
 }
-_STRINGS_IRIS_COMMENTS = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*"""'
-    r"|'''(?:[^'\\]|\\.|'(?!''))*'''"
-    r'|"(?:[^"\\\n]|\\.)*"'
-    r"|'(?:[^'\\\n]|\\.)*'"
-    r"|<[^<>\"{}|^`\\\s]*>"
-    r"|\#[^\n]*"
-)
-_SERVICE = re.compile(r"(?<![\w?$:@.-])service(?![\w:-])", re.IGNORECASE)
-
 Answer = ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples
 
 
@@ -70,18 +60,13 @@ class Dataset:
 
     def query(self, text: str, prefixes: Mapping[str, str] | None = None) -> Answer:
         """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it."""
-        if _SERVICE.search(_STRINGS_IRIS_COMMENTS.sub(" ", text)):
+        if says(text, "SERVICE"):
             raise QueryError("SERVICE is not allowed: a query reads the ecology and nothing else")
         try:
             return self._store.query(
                 text,
                 prefixes={**PREFIXES, **(prefixes or {})},
-                use_default_graph_as_union=not _names_graphs(text),
+                use_default_graph_as_union=not says(text, "FROM"),
             )
         except (SyntaxError, ValueError, OSError) as error:
             raise QueryError(f"not a SPARQL query: {' '.join(str(error).split())}") from None
-
-
-def _names_graphs(text: str) -> bool:
-    """Whether a query chooses its own default graph by FROM."""
-    return re.search(r"(?<![\w?$:-])from(?![\w:-])", _STRINGS_IRIS_COMMENTS.sub(" ", text), re.IGNORECASE) is not None

@@ -145,10 +145,6 @@ class CompiledRole:
         """The tests of which the types alone decide."""
         return tuple(test for test in self.tests if isinstance(test, ClassTest))
 
-    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> str | None:
-        """The first thing that keeps a component out, or None if every test lets it pass."""
-        return next(self.obstacles(profile, hierarchy), None)
-
     def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[str]:
         """Everything that keeps a component out, in the order of the shape."""
         for test in self.tests:

@@ -20,7 +20,7 @@ from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.bindings import free_parameters
-from selfconf.rdf.eligibility import ClassTest, CompiledRole, Count, ParameterTest, PropertyTest, SelfTest, Test
+from selfconf.rdf.eligibility import CompiledRole, Count, ParameterTest, PropertyTest, SelfTest, Test
 from selfconf.rdf.roles import bound_shape, compile_role
 from selfconf.rdf.shacl import violations
 from selfconf.rdf.templates import TaskDocument, mentions
@@ -41,6 +41,14 @@ class Eligible:
 
 
 @dataclass(frozen=True, slots=True)
+class Verdict:
+    """What the tests of a role say of a profile: everything that keeps it out, or the values it allows."""
+
+    obstacles: tuple[str, ...]
+    allows: Mapping[IRI, frozenset[Term]]
+
+
+@dataclass(frozen=True, slots=True)
 class Exclusion:
     """A component that is not eligible for a role, and everything that keeps it out."""
 
@@ -50,24 +58,36 @@ class Exclusion:
     """Whether it is of the classes that the role asks for."""
 
 
+class _Wanting(dict[frozenset[IRI], tuple[CompiledRole, ...]]):
+    """For a component's types, the roles of whose classes it is; worked out when they are first met."""
+
+    def __init__(self, roles: Iterable[CompiledRole], hierarchy: Hierarchy) -> None:
+        self._classes = [(role, role.classes) for role in roles]
+        self._hierarchy = hierarchy
+
+    def __missing__(self, types: frozenset[IRI]) -> tuple[CompiledRole, ...]:
+        self[types] = found = tuple(
+            role for role, classes in self._classes if all(test.admits(types, self._hierarchy) for test in classes)
+        )
+        return found
+
+
 class Ecology:
-    """Advertisements by the types of their components."""
+    """Advertisements by the roles of whose classes their components are; most are of none, and looked at once."""
 
-    def __init__(self, advertisements: Sequence[Advertisement]) -> None:
+    def __init__(
+        self, advertisements: Sequence[Advertisement], roles: Iterable[CompiledRole], hierarchy: Hierarchy
+    ) -> None:
         self.advertisements = advertisements
-        self._by_types: dict[frozenset[IRI], list[Advertisement]] = {}
-        for advertisement in advertisements:
-            types = advertisement.types
-            if types in self._by_types:
-                self._by_types[types].append(advertisement)
-            else:
-                self._by_types[types] = [advertisement]
+        self._akin: dict[IRI, list[Advertisement]] = {}
+        wanting = _Wanting(roles, hierarchy)
+        for advertisement in [a for a in advertisements if wanting[a.types]]:
+            for role in wanting[advertisement.types]:
+                self._akin.setdefault(role.iri, []).append(advertisement)
 
-    def of_classes(self, classes: Sequence[ClassTest], hierarchy: Hierarchy) -> Iterator[Advertisement]:
-        """Those whose types pass some tests."""
-        for types, members in self._by_types.items():
-            if all(test.admits(types, hierarchy) for test in classes):
-                yield from members
+    def akin(self, role: CompiledRole) -> Sequence[Advertisement]:
+        """Those of the classes that a role asks for."""
+        return self._akin.get(role.iri, ())
 
 
 class Partitioner:
@@ -83,7 +103,7 @@ class Partitioner:
 
     def partition(self, advertisements: Sequence[Advertisement]) -> Partition:
         """F1 ... Fn and the variables that the free parameters are. Raises TemplateError for a shape that is none."""
-        ecology = Ecology(advertisements)
+        ecology = Ecology(advertisements, self.roles, self.hierarchy)
         eligible = [list(self.eligible(role, ecology)) for role in self.roles]
         variables = tuple(self._variables(eligible))
         bits = [{value: 1 << number for number, value in enumerate(variable.domain)} for variable in variables]
@@ -97,27 +117,20 @@ class Partitioner:
 
     def near_misses(self, advertisements: Iterable[Advertisement]) -> Iterator[NearMiss]:
         """For each role the components of its class that exactly one other test keeps out, with that obstacle."""
-        ecology = Ecology(list(advertisements))
+        ecology = Ecology(list(advertisements), self.roles, self.hierarchy)
         for role in self.roles:
-            for advertisement in ecology.of_classes(role.classes, self.hierarchy):
-                obstacles = list(role.obstacles(advertisement.profile, self.hierarchy))
-                if len(obstacles) == 1:
-                    yield NearMiss(role.iri, advertisement.component, obstacles[0])
+            for advertisement, verdict in self._tested(role, ecology.akin(role)):
+                if len(verdict.obstacles) == 1:
+                    yield NearMiss(role.iri, advertisement.component, verdict.obstacles[0])
 
     def exclusions(self, role: CompiledRole, advertisements: Sequence[Advertisement]) -> list[Exclusion]:
         """All that keeps each other component out of a role; first those of its class, and those with few obstacles."""
-        ecology = Ecology(advertisements)
+        ecology = Ecology(advertisements, self.roles, self.hierarchy)
         inside = {found.profile.component for found in self.eligible(role, ecology)}
-        akin = {a.component for a in ecology.of_classes(role.classes, self.hierarchy)}
-        obstacles: dict[IRI, tuple[str, ...]] = {}
-        passed: list[Advertisement] = []
-        for advertisement in advertisements:
-            if advertisement.component not in inside:
-                found = obstacles[advertisement.component] = tuple(
-                    role.obstacles(advertisement.profile, self.hierarchy)
-                )
-                if not found:
-                    passed.append(advertisement)
+        akin = {advertisement.component for advertisement in ecology.akin(role)}
+        outside = [advertisement for advertisement in advertisements if advertisement.component not in inside]
+        obstacles = {a.component: verdict.obstacles for a, verdict in self._tested(role, outside)}
+        passed = [advertisement for advertisement in outside if not obstacles[advertisement.component]]
         if passed and not role.complete:
             judged = self._violations(role, passed, advertisements, {})
             obstacles |= {component: (_clause(message),) for component, message in judged.items()}
@@ -128,9 +141,9 @@ class Partitioner:
 
     def eligible(self, role: CompiledRole, ecology: Ecology) -> Iterator[Eligible]:
         """The components that conform to a role, unordered."""
-        passed = list(self._passed(role, ecology))
+        passed = [pair for pair in self._tested(role, ecology.akin(role)) if not pair[1].obstacles]
         if role.complete:
-            yield from (Eligible(a.profile, allows) for a, allows in passed if all(allows.values()))
+            yield from (Eligible(a.profile, v.allows) for a, v in passed if all(v.allows.values()))
             return
         survivors = [advertisement for advertisement, _ in passed]
         if mentions(self.document, role.iri, self.free):
@@ -139,21 +152,20 @@ class Partitioner:
             outside = self._violations(role, survivors, ecology.advertisements, {})
             yield from (Eligible(a.profile, {}) for a in survivors if a.component not in outside)
 
-    def _passed(
-        self, role: CompiledRole, ecology: Ecology
-    ) -> Iterator[tuple[Advertisement, Mapping[IRI, frozenset[Term]]]]:
-        """Who passes every test of a role, with the values it allows for free parameters."""
+    def _tested(
+        self, role: CompiledRole, advertisements: Iterable[Advertisement]
+    ) -> Iterator[tuple[Advertisement, Verdict]]:
+        """What the tests of a role say of some advertisements; of equal signatures they say the same."""
         signature = _signature(role.tests, self.hierarchy)
-        known: dict[Hashable, Mapping[IRI, frozenset[Term]] | None] = {}
-        for advertisement in ecology.of_classes(role.classes, self.hierarchy):
+        known: dict[Hashable, Verdict] = {}
+        for advertisement in advertisements:
             profile = advertisement.profile
             key = signature(profile)
-            if key not in known:
-                keeps_out = role.obstacle(profile, self.hierarchy) is not None
-                known[key] = None if keeps_out else role.allows(profile, self.hierarchy)
-            allows = known[key]
-            if allows is not None:
-                yield advertisement, allows
+            verdict = known.get(key)
+            if verdict is None:
+                obstacles = tuple(role.obstacles(profile, self.hierarchy))
+                verdict = known[key] = Verdict(obstacles, {} if obstacles else role.allows(profile, self.hierarchy))
+            yield advertisement, verdict
 
     def _by_value(
         self, role: CompiledRole, passed: Sequence[Advertisement], everything: Sequence[Advertisement]

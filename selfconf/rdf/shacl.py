@@ -17,10 +17,16 @@ from pyshacl.errors import ConstraintLoadError, ReportableRuntimeError, ShapeLoa
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
 from selfconf.rdf.deadline import TimeUp, deadline
+from selfconf.rdf.queries import faults
 
 SECONDS = 30.0
 """How long one shape may be judged: what a pattern or query of it is matched against is untrusted."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
+_TARGETS = frozenset(
+    (_SH.targetClass, _SH.targetNode, _SH.targetSubjectsOf, _SH.targetObjectsOf, _SH.target, _SH.targetWhere)
+)
+_CLASSES = frozenset((rdflib.RDFS.Class, rdflib.OWL.Class))
+"""A shape that is a class has its instances as targets (SHACL, 2.1.3.3)."""
 _ILL_FORMED = (
     ShapeLoadError,
     ConstraintLoadError,
@@ -47,15 +53,12 @@ def violations(
     """
     if not focus:
         return {}
+    for reason in faults(shapes).values():
+        raise TemplateError(f"the shape {shape!r} is not evaluated: {reason}", file=source)
     try:
         with deadline(SECONDS):
             _, report, text = validate(
-                subjects,
-                shacl_graph=shapes,
-                focus_nodes=[str(node) for node in focus],
-                use_shapes=[str(shape)],
-                inference="none",
-                advanced=False,
+                subjects, shacl_graph=aimed(shapes, shape, focus), inference="none", advanced=False
             )
     except TimeUp:
         raise TemplateError(
@@ -76,6 +79,23 @@ def violations(
         if node in wanted:
             message = str(report.value(result, _SH.resultMessage) or "does not conform")
             found[node] = min(message, found.get(node, message))
+    return found
+
+
+def aimed(shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI]) -> rdflib.Graph:
+    """The shapes with one target: `focus`, for `shape`.
+
+    Not `focus_nodes` and `use_shapes`: under the latter pySHACL 0.40 takes every other shape that has an IRI for absent,
+    so that `sh:property :named` asks for nothing.
+    """
+    found = rdflib.Graph()
+    for subject, predicate, value in shapes:
+        if predicate not in _TARGETS and not (predicate == rdflib.RDF.type and value in _CLASSES):
+            found.add((subject, predicate, value))
+    aim = rdflib.URIRef(shape)
+    found.add((aim, rdflib.RDF.type, _SH.NodeShape))
+    for node in focus:
+        found.add((aim, _SH.targetNode, rdflib.URIRef(node)))
     return found
 
 

@@ -11,8 +11,10 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 
 from selfconf.errors import TemplateError
+from selfconf.model.cost import CostLevel, CostTerm, number
 from selfconf.model.profile import Place
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -122,6 +124,7 @@ class _Reader:
             interactions=tuple(dict.fromkeys(interactions)),
             parameters=self._parameters(template, roles),
             label=self._label(template),
+            cost=tuple(self._cost(template, known)),
         )
 
     def _role(self, name: Term) -> Role:
@@ -191,6 +194,35 @@ class _Reader:
         if len(values) > 1 or not isinstance(values[0], Literal) or not values[0].lexical:
             raise self._error(f"sc:{predicate.short} of an interaction is the name of one port, a string")
         return values[0].lexical
+
+    def _cost(self, template: IRI, known: frozenset[IRI]) -> Iterator[CostLevel]:
+        heads = self.document.values(template, SC.cost)
+        levels = self.document.items(heads[0]) if heads else []
+        if len(heads) > 1 or (heads and not levels):
+            raise self._error("the cost of a template is one list of levels, sc:cost ( [ sc:term ... ] )")
+        for level in levels:
+            terms = self.document.values(level, SC.term)
+            if not terms:
+                raise self._error("each level of sc:cost has at least one sc:term")
+            yield tuple(self._term(term, known) for term in terms)
+
+    def _term(self, term: Term, known: frozenset[IRI]) -> CostTerm:
+        counted = self._iri(term, SC.property, "a term of sc:cost needs exactly one sc:property, an IRI")
+        weight, otherwise = self._number(term, SC.weight), self._number(term, SC.otherwise)
+        roles = self.document.values(term, SC.ofRole)
+        role = roles[0] if roles else None
+        if len(roles) > 1:
+            raise self._error("a term of sc:cost has at most one sc:ofRole; write a term for each role")
+        if role is not None and (role not in known or not isinstance(role, IRI)):
+            raise self._error(f"a term of sc:cost counts {_show(role)}, which is no role of the template")
+        return CostTerm(counted, Fraction(1) if weight is None else weight, otherwise, role)
+
+    def _number(self, term: Term, predicate: IRI) -> Fraction | None:
+        values = self.document.values(term, predicate)
+        found = number(values[0]) if values else None
+        if len(values) > 1 or (values and found is None):
+            raise self._error(f"sc:{predicate.short} of a term of sc:cost is one finite number")
+        return found
 
     def _parameters(self, template: IRI, roles: tuple[Role, ...]) -> tuple[Parameter, ...]:
         listed = self.document.values(template, SC.parameter)

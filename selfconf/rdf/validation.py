@@ -9,9 +9,11 @@ components are described twice.
 
 from __future__ import annotations
 
+import hashlib
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 
 from selfconf.errors import TurtleError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
@@ -40,7 +42,52 @@ class Source:
         return lines[number - 1].rstrip("\r") if number <= len(lines) else ""
 
 
-def validate(sources: Iterable[Source], shapes: Iterable[Source], ontologies: Iterable[Source]) -> Report:
+@dataclass(frozen=True, slots=True)
+class Suspect:
+    """A file that did not pass at first sight."""
+
+    source: Source
+    elsewhere: dict[str, str] = field(default_factory=dict)
+    """Components of it that another file, which is named, describes as well."""
+
+
+@dataclass(frozen=True)
+class Judge:
+    """The close look at one file, and all that its outcome depends on besides the file."""
+
+    shapes: tuple[Source, ...]
+    familiar: Familiar
+
+    def __call__(self, suspect: Suspect) -> list[Diagnostic]:
+        """The problems of a file."""
+        # rdflib and pySHACL take longer to load than thousands of good files take to pass.
+        from selfconf.rdf import scrutiny
+
+        close = scrutiny.Scrutiny(scrutiny.shapes_of(*(source.text() for source in self.shapes)), self.familiar)
+        return close.of(suspect.source.text(), suspect.source.name, suspect.source.base, suspect.elsewhere)
+
+    @cached_property
+    def knowledge(self) -> bytes:
+        """A digest of the shapes and of the terms that are known."""
+        known = (self.familiar.terms, self.familiar.object_properties, self.familiar.covered)
+        words = "\n\n".join("\n".join(sorted(terms)) for terms in known)
+        return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
+
+    def key(self, suspect: Suspect) -> str:
+        """A digest of all that the outcome depends on; whoever remembers outcomes adds the versions of the programs."""
+        source = suspect.source
+        elsewhere = repr(sorted(suspect.elsewhere.items()))
+        said = (source.name, source.base, elsewhere)
+        return _digest(self.knowledge, source.octets, *(text.encode() for text in said)).hexdigest()
+
+
+Each = Callable[[Judge, Sequence[Suspect]], Iterable[list[Diagnostic]]]
+"""Calls a judge for each suspect, in whatever order, process or memory; `map` is one."""
+
+
+def validate(
+    sources: Iterable[Source], shapes: Iterable[Source], ontologies: Iterable[Source], each: Each = map
+) -> Report:
     """Every problem of every source; raises TurtleError if an ontology is not Turtle."""
     files = list(sources)
     diagnostics: list[Diagnostic] = []
@@ -57,30 +104,18 @@ def validate(sources: Iterable[Source], shapes: Iterable[Source], ontologies: It
         diagnostics += problems
     elsewhere = described_twice(seen)
     suspects = [
-        source
+        Suspect(source, elsewhere.get(source.name, {}))
         for source in files
         if source.name in seen
         and (source.name in elsewhere or not (seen[source.name].clear and familiar.clear(seen[source.name])))
     ]
-    diagnostics += scrutinise(suspects, list(shapes), familiar, elsewhere)
+    for problems in each(Judge(tuple(shapes), familiar), suspects):
+        diagnostics += problems
     concerned = {found.file for found in diagnostics}
     for name, screened in seen.items():
         if not screened.relevant and name not in concerned:
             diagnostics.append(Diagnostic(name, 1, 1, "SC-S04", _NOTHING, Severity.WARNING))
     return report((source.name for source in files), diagnostics)
-
-
-def scrutinise(
-    suspects: list[Source], shapes: list[Source], familiar: Familiar, elsewhere: dict[str, dict[str, str]]
-) -> Iterator[Diagnostic]:
-    """The problems of files that did not pass at first sight."""
-    if suspects:
-        # rdflib and pySHACL take longer to load than thousands of good files take to pass.
-        from selfconf.rdf import scrutiny
-
-        judge = scrutiny.Scrutiny(scrutiny.shapes_of(*(source.text() for source in shapes)), familiar)
-        for source in suspects:
-            yield from judge.of(source.text(), source.name, source.base, elsewhere.get(source.name, {}))
 
 
 def described_twice(seen: dict[str, Screened]) -> dict[str, dict[str, str]]:
@@ -92,6 +127,14 @@ def described_twice(seen: dict[str, Screened]) -> dict[str, dict[str, str]]:
             if not component.startswith("_:") and first.setdefault(component, name) != name:
                 again[name][component] = first[component]
     return dict(again)
+
+
+def _digest(*parts: bytes) -> hashlib.blake2s:
+    """Of some octets, each set off from the next by its length."""
+    found = hashlib.blake2s(digest_size=16)
+    for part in parts:
+        found.update(len(part).to_bytes(8, "big") + part)
+    return found
 
 
 def _loaded(source: Source) -> Screened:

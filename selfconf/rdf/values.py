@@ -14,10 +14,14 @@ from functools import lru_cache
 import rdflib
 from pyshacl.rdfutil.compare import compare_literal
 
+from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.deadline import TimeUp, deadline
 from selfconf.rdf.turtle import rdflib_term
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
 
+SECONDS = 5.0
+"""How long a pattern may be matched against one value."""
 _compare: Callable[[rdflib.Literal, rdflib.Literal], int] = compare_literal
 _KINDS: Mapping[IRI, tuple[type, ...]] = {
     SH.IRI: (IRI,),
@@ -123,7 +127,21 @@ def _passes(test: ValueTest, value: Term) -> bool:
         if least and number == 0:
             return True
         return not isinstance(value, BlankNode) and (len(str(value)) >= number if least else len(str(value)) <= number)
-    return not isinstance(value, BlankNode) and _expression(str(wanted), test.flags).search(str(value)) is not None
+    return not isinstance(value, BlankNode) and _matches(_expression(str(wanted), test.flags), str(value))
+
+
+def _matches(expression: re.Pattern[str], value: str) -> bool:
+    """Whether a pattern is found in a value. Raises TemplateError where that would take for ever."""
+    if len(value) < 16:  # too short for the worst of patterns to take long
+        return expression.search(value) is not None
+    try:
+        with deadline(SECONDS):
+            return expression.search(value) is not None
+    except TimeUp:
+        raise TemplateError(
+            f"matching the sh:pattern {expression.pattern!r} takes more than {SECONDS:g} s; "
+            "it probably repeats what is repeated already, as ^(a+)+$ does"
+        ) from None
 
 
 def _within(value: rdflib.term.Identifier, limit: rdflib.term.Identifier, holds: Callable[[int], bool]) -> bool:

@@ -15,7 +15,6 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
-from itertools import accumulate
 
 import pyoxigraph as ox
 import pyshacl
@@ -24,8 +23,11 @@ from rdflib import RDF, SH, XSD, Graph, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.term import IRI
 from selfconf.rdf.findings import at
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.queries import fault
+from selfconf.rdf.shacl import aimed
 from selfconf.rdf.vocabulary import SC
 
 _SAMPLES: dict[Node, Literal] = {
@@ -37,10 +39,6 @@ _SAMPLES: dict[Node, Literal] = {
     XSD.date: Literal("2000-01-01", datatype=XSD.date),
     XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
 }
-_SERVICE = re.compile(r"\bSERVICE\b", re.IGNORECASE)
-LONGEST_QUERY = 20_000
-"""Characters of a query in a role; and its brackets may nest `DEEPEST_QUERY` deep. Oxigraph cannot be interrupted."""
-DEEPEST_QUERY = 100
 _NOBODY = URIRef("urn:x-selfconf:nobody")
 
 
@@ -143,21 +141,14 @@ def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     for predicate in (SH.select, SH.ask):
         for constraint, query in graph.subject_objects(predicate):
             offset = positions.triples[constraint, predicate, query].object
-            if _SERVICE.search(str(query)):
-                yield at(positions, offset, "SC-T13", "A role cannot ask another machine: leave out SERVICE.")
-                continue
-            if len(query) > LONGEST_QUERY or _depth(str(query)) > DEEPEST_QUERY:
-                yield at(positions, offset, "SC-T13", "This query is too long, or nests too deeply, to be judged.")
+            reason = fault(str(query))
+            if reason is not None:
+                yield at(positions, offset, "SC-T13", reason)
                 continue
             try:
                 ox.Store().query(str(query), prefixes=dict(_declared(graph, constraint)))
             except SyntaxError as error:
                 yield at(positions, offset, "SC-T13", f"This is not SPARQL: {error.msg.partition(': ')[2]}.")
-
-
-def _depth(text: str) -> int:
-    """How deep brackets nest, those in strings included."""
-    return max(accumulate((mark in "([{") - (mark in ")]}") for mark in text), default=0)
 
 
 def _declared(graph: Graph, constraint: Node) -> Iterator[tuple[str, str]]:
@@ -175,7 +166,7 @@ def _rehearse(shapes: Graph, role: str) -> str | None:
     stage.add((_NOBODY, RDF.type, URIRef(SC.Component)))
     try:
         _, report, text = pyshacl.validate(
-            stage, shacl_graph=shapes, inference="none", focus_nodes=[str(_NOBODY)], use_shapes=[role]
+            stage, shacl_graph=aimed(shapes, IRI(role), [IRI(_NOBODY)]), inference="none"
         )
     except (ReportableRuntimeError, AssertionError, ValueError, TypeError, KeyError) as error:
         return _first_sentence(str(error))

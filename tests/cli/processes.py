@@ -63,7 +63,7 @@ kinds = [
     type(name, (Act,), {"advertisement": HERE / "ads" / f"{name}.ttl", "name": name, "outputs": OUTPUTS.get(name, [])})
     for name in sys.argv[1].split(",")
 ]
-sys.exit(main(*kinds, arguments=sys.argv[2:]))
+main(*kinds, arguments=sys.argv[2:])
 '''
 
 

@@ -413,7 +413,7 @@ def bad_templates() -> list[tuple[str, str]]:
             f':t a sc:Template ; sc:roles ( :r ) . {role} :r sh:property [ sh:minCount "x" ; sh:path 3 ] .',
             "well-formed",
         ),
-        (f":t a sc:Template ; sc:roles ( :r ) . {role} :r sh:property [ sh:minCount 1 ] .", "sh:path"),
+        (f":t a sc:Template ; sc:roles ( :r ) . {role} :r sh:property [ sh:minCount 1 ] .", "well-formed"),
         (":k a sc:Task ; sc:template :elsewhere .", "not in this file"),
     ]
 
@@ -458,7 +458,8 @@ def test_files_that_are_not_there_or_are_not_turtle_are_one_sentence(desk: Desk)
 def test_without_a_peer_there_is_a_sentence_that_says_what_to_start(
     desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("selfconf.cli.live.client", partial(client, seconds=0.1))
+    for module in ("selfconf.cli.live", "selfconf.rendezvous"):
+        monkeypatch.setattr(f"{module}.client", partial(client, seconds=0.1))
     assert desk.configure(*BOUND, ads=False).is_one_sentence("selfconf site")
     assert desk.configure(*BOUND, "--connect", "tcp/127.0.0.1:1", ads=False).is_one_sentence("nobody answers")
     assert desk.configure(*BOUND, "--connect", "here", ads=False).is_one_sentence("no endpoint")

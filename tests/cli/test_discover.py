@@ -51,6 +51,11 @@ def test_the_advertisements_of_a_site_that_is_killed_vanish(home: Home, capsys: 
     assert home.until(lambda: states() == {iri("person-tracker"): "absent"}, 5.0)
 
 
+def test_the_ecology_behind_an_endpoint_need_not_be_named(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    body = run(capsys, "discover", "--format", "json", "--connect", inhabited.endpoint()).body
+    assert body["ecology"] == inhabited.ecology
+
+
 def test_an_ecology_of_another_name_is_one_sentence(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
     outcome = run(capsys, "discover", "--ecology", "nobody-here", "--connect", inhabited.endpoint())
     assert outcome.is_one_sentence("no site of the ecology 'nobody-here' answers")

@@ -53,7 +53,7 @@ CONSTRAINTS = st.one_of(
     st.just('sh:pattern "^A" ; sh:flags "i"'),
     st.just("sh:deactivated true"),
     st.just('sh:message "so" ; sh:severity sh:Warning'),
-    st.sampled_from(("sh:class :Thing", "sh:equals :r", "sh:lessThan :r", "sh:disjoint :q", 'sh:languageIn ( "en" )')),
+    st.sampled_from(("sh:class :Thing", "sh:equals :r", "sh:disjoint :q", 'sh:languageIn ( "en" )')),
     st.just("sh:uniqueLang true"),
 )
 
@@ -111,7 +111,10 @@ def ecology(components: list[tuple[str, list[tuple[str, str]], bool]]) -> list[A
 def eligible(partitioner: Partitioner, ads: list[Advertisement]) -> dict[IRI, object]:
     """Who is eligible for the only role, and the values that it allows."""
     (role,) = partitioner.roles
-    return {e.profile.component: dict(e.allows) for e in partitioner.eligible(role, Ecology(ads))}
+    return {
+        e.profile.component: dict(e.allows)
+        for e in partitioner.eligible(role, Ecology(ads, partitioner.roles, partitioner.hierarchy))
+    }
 
 
 def by_pyshacl(partitioner: Partitioner) -> Partitioner:

@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
-from selfconf.rdf import advertisements, stream, turtle
+from selfconf.rdf import advertisements, clauses, stream, turtle
 from selfconf.rdf.advertisements import Advertisement, Malformed
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.write import ntriples
@@ -111,10 +111,8 @@ def test_a_document_longer_than_a_piece_is_read_as_one() -> None:
 
 
 def test_documents_may_share_their_clauses() -> None:
-    clauses = stream.Clauses()
-    found = [
-        stream.read((PREFIXES + text).encode(), name, None, clauses)[0][0] for name, text in ADVERTISEMENTS.items()
-    ]
+    shared = clauses.Clauses()
+    found = [stream.read((PREFIXES + text).encode(), name, None, shared)[0][0] for name, text in ADVERTISEMENTS.items()]
     assert [a.profile.place and a.profile.place.source for a in found] == list(ADVERTISEMENTS)
     assert found[2].profile.preference == 10
 
@@ -135,6 +133,6 @@ def test_oxigraph_writes_a_subject_as_streaming_expects_it() -> None:
     text = "<s:a> a <s:T> , <s:U> ; <s:p> 'x\ty ;\\n\\t' , [ <s:q> 1 ; <s:r> [ <s:q> 2 ] ] ."
     parser = ox.parse(text, format=ox.RdfFormat.TURTLE)
     written = (ox.serialize(parser, format=ox.RdfFormat.TURTLE) or b"").decode()
-    lines = [block.partition(" ")[2].split(stream.NEXT) for block in written[: -len(stream.END)].split(stream.END)]
+    lines = [block.partition(" ")[2].split(clauses.NEXT) for block in written[: -len(clauses.END)].split(clauses.END)]
     assert lines[0] == ["a <s:T> , <s:U>", '<s:p> "x\\ty ;\\n\\t"']
     assert [line[0].partition(" ")[0] for line in lines[1:]] == ["<s:q>", "<s:q>", "<s:r>", "<s:p>"]

@@ -1,0 +1,101 @@
+"""Values for the parameters of a template: as text, as defaults, and as the parameter's own shape allows."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.errors import BindingError
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf import bindings, templates, turtle
+from selfconf.rdf.vocabulary import XSD
+from tests.lab import PREFIXES, iri
+
+KNOWN = {"": "https://example.org/peis-home#", "rob": "https://w3id.org/selfconf/robotics#"}
+
+
+@pytest.mark.parametrize(
+    ("text", "term"),
+    [
+        (":Astrid", iri("Astrid")),
+        ("rob:Encoder", IRI("https://w3id.org/selfconf/robotics#Encoder")),
+        ("<urn:x>", IRI("urn:x")),
+        ("(AT BEDROOM)", Literal("(AT BEDROOM)")),
+        ("two words", Literal("two words")),
+        ("at 10:30", Literal("at 10:30")),
+        ('"a:b"', Literal("a:b")),
+        ("'x'@en", Literal("x", IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString"), "en")),
+        ("5", Literal("5", XSD.integer)),
+        ("-2.5", Literal("-2.5", XSD.decimal)),
+        ("1e3", Literal("1e3", XSD.double)),
+        ("true", Literal("true", XSD.boolean)),
+        ('"5"^^<urn:t>', Literal("5", IRI("urn:t"))),
+        ("", Literal("")),
+    ],
+)
+def test_a_term_on_the_command_line_is_read_as_an_author_means_it(text: str, term: Term) -> None:
+    assert bindings.read_term(text, KNOWN) == term
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("nobody:x", "no prefix nobody:"),
+        ("http://example.org/x", "angle brackets"),
+        ("<no iri>", "no Turtle term"),
+        ('"unfinished', "no Turtle term"),
+        ("<urn:a> . <urn:b> <urn:c> <urn:d>", "no Turtle term"),
+        ('"a", "b"', "no Turtle term"),
+    ],
+)
+def test_a_term_that_is_none_is_refused_with_what_to_write(text: str, words: str) -> None:
+    with pytest.raises(BindingError, match=words):
+        bindings.read_term(text, KNOWN)
+
+
+TEMPLATE = """
+:t a sc:Template ; sc:roles ( :r ) ; sc:parameter :robot, :goal, :speed .
+:robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .
+:goal  a sc:Parameter ; sc:name "goal" ; sh:datatype xsd:string .
+:speed a sc:Parameter ; sc:name "speed" ; sh:defaultValue 0.5 ; sh:datatype xsd:decimal ; sh:minExclusive 0 .
+:r a sc:Role ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ] ;
+    sc:sets [ sc:parameterType :G ; sc:value :goal ] , [ sc:parameterType :S ; sc:value :speed ] .
+"""
+
+
+def completed(*bound: tuple[str, str]) -> dict[str, Term]:
+    """The values by name, after binding."""
+    task = templates.read(turtle.parse(PREFIXES + TEMPLATE, "t.ttl"))
+    return bindings.complete(bindings.bind(task, bound)).task.by_name()
+
+
+def test_what_is_bound_and_what_has_a_default_has_a_value_and_the_rest_stays_free() -> None:
+    assert completed(("goal", "x")) == {"goal": Literal("x"), "speed": Literal("0.5", XSD.decimal)}
+    assert completed(("goal", "x"), ("robot", ":Astrid"), ("speed", "1.5")) == {
+        "robot": iri("Astrid"),
+        "goal": Literal("x"),
+        "speed": Literal("1.5", XSD.decimal),
+    }
+
+
+@pytest.mark.parametrize(
+    ("bound", "words"),
+    [
+        ((), "'goal' needs a value"),
+        ((("goal", "x"), ("colour", "red")), "no parameter 'colour'; it has: goal, robot, speed"),
+        ((("goal", "x"), ("goal", "y")), "bound twice"),
+        ((("goal", "5"),), "cannot stand for the parameter 'goal'"),
+        ((("goal", "x"), ("robot", "Astrid")), "cannot stand for the parameter 'robot'"),
+        ((("goal", "x"), ("speed", "-1.0")), "cannot stand for the parameter 'speed'"),
+    ],
+)
+def test_a_value_that_does_not_fit_is_refused(bound: tuple[tuple[str, str], ...], words: str) -> None:
+    with pytest.raises(BindingError, match=words):
+        completed(*bound)
+
+
+def test_a_task_binds_for_itself_and_may_not_be_contradicted() -> None:
+    text = TEMPLATE + ':k a sc:Task ; sc:template :t ; sc:binding [ sc:parameter :goal ; sc:value "y" ] .'
+    task = templates.read(turtle.parse(PREFIXES + text, "t.ttl"))
+    assert bindings.complete(task).task.by_name()["goal"] == Literal("y")
+    with pytest.raises(BindingError, match="bound twice"):
+        bindings.bind(task, [("goal", "z")])

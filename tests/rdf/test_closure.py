@@ -1,0 +1,84 @@
+"""The hierarchy that a reasoning mode lets a role see."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf import library
+from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.rdf import turtle
+from selfconf.rdf.closure import hierarchy
+from selfconf.rdf.vocabulary import ROB
+from tests.lab import PREFIXES, iri
+
+OWL = "@prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
+
+
+def of(text: str, reasoning: Reasoning = Reasoning.SUBCLASS) -> Hierarchy:
+    """The hierarchy of an ontology."""
+    return hierarchy([turtle.parse(PREFIXES + OWL + text, "ontology.ttl")], reasoning)
+
+
+def test_syntactic_mode_knows_no_hierarchy() -> None:
+    found = of(":A rdfs:subClassOf :B .", Reasoning.SYNTACTIC)
+    assert not found.matches(iri("A"), iri("B"))
+    assert found.matches(iri("A"), iri("A"))
+
+
+def test_a_class_matches_every_class_above_it_and_none_below() -> None:
+    found = of(":A rdfs:subClassOf :B . :B rdfs:subClassOf :C . :D rdfs:subClassOf :B .")
+    assert found.matches(iri("A"), iri("C"))
+    assert not found.matches(iri("C"), iri("A"))
+    assert not found.matches(iri("A"), iri("D"))
+    assert found.superclasses(iri("A")) == {iri("A"), iri("B"), iri("C")}
+
+
+def test_equivalent_classes_match_each_other_and_circles_end() -> None:
+    found = of(":A owl:equivalentClass :B . :B rdfs:subClassOf :C . :C rdfs:subClassOf :A .")
+    for one in "ABC":
+        for other in "ABC":
+            assert found.matches(iri(one), iri(other))
+
+
+def test_properties_have_a_hierarchy_of_their_own() -> None:
+    found = of(":p rdfs:subPropertyOf :q . :q owl:equivalentProperty :r . :p rdfs:subClassOf :X .")
+    assert found.superproperties(iri("p")) == {iri("p"), iri("q"), iri("r")}
+    assert found.superclasses(iri("p")) == {iri("p"), iri("X")}
+
+
+def test_what_is_above_everything_and_what_has_no_name_is_left_out() -> None:
+    found = of(":A rdfs:subClassOf owl:Thing , rdfs:Resource , [ a owl:Restriction ] .")
+    assert found.superclasses(iri("A")) == {iri("A")}
+
+
+def test_owl_rl_infers_what_subclass_mode_does_not() -> None:
+    text = ":A owl:intersectionOf ( :B :C ) . :A a owl:Class ."
+    assert not of(text).matches(iri("A"), iri("B"))
+    assert of(text, Reasoning.OWL_RL).matches(iri("A"), iri("B"))
+
+
+def test_owl_rl_says_no_less_than_subclass_mode_and_hands_out_no_values() -> None:
+    text = ":A rdfs:subClassOf :B . :B rdfs:subClassOf :C . :x :p 1 . :y :p 1.0 ."
+    assert of(text, Reasoning.OWL_RL).superclasses(iri("A")) >= of(text).superclasses(iri("A"))
+
+
+def test_the_ontologies_that_ship_put_a_person_tracker_below_a_position_sensor() -> None:
+    documents = [turtle.parse(path.read_bytes(), str(path)) for path in library.ontologies()]
+    found = hierarchy(documents, Reasoning.SUBCLASS)
+    assert found.matches(ROB.PersonTracker, ROB.PositionSensor)
+    assert not found.matches(ROB.PositionSensor, ROB.PersonTracker)
+
+
+edges = st.lists(st.tuples(st.integers(0, 7), st.integers(0, 7)), max_size=16)
+
+
+@given(edges)
+def test_the_closure_is_reflexive_and_transitive_and_no_more(pairs: list[tuple[int, int]]) -> None:
+    found = of(" ".join(f":c{low} rdfs:subClassOf :c{high} ." for low, high in pairs))
+    reach = {number: {number} for number in range(8)}
+    for _ in range(8):
+        for low, high in pairs:
+            reach[low] |= reach[high]
+    for number in range(8):
+        assert found.superclasses(iri(f"c{number}")) == {iri(f"c{other}") for other in reach[number]}

@@ -1,0 +1,80 @@
+"""The ecology as an RDF dataset: a graph each, and questions that reach nothing else."""
+
+from __future__ import annotations
+
+import pyoxigraph as ox
+import pytest
+
+from selfconf.errors import QueryError
+from selfconf.rdf import advertisements, turtle
+from selfconf.rdf.dataset import Dataset
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+
+
+@pytest.fixture
+def dataset() -> Dataset:
+    """The paper's ecology."""
+    dataset = Dataset()
+    document = turtle.parse(PREFIXES + " ".join(ADVERTISEMENTS.values()), "ads")
+    dataset.add_advertisements(advertisements.read(document)[0])
+    return dataset
+
+
+def values(dataset: Dataset, text: str) -> list[str]:
+    """The first value of each solution."""
+    answer = dataset.query(text)
+    assert isinstance(answer, ox.QuerySolutions)
+    return [str(solution[0].value) if solution[0] is not None else "" for solution in answer]
+
+
+def test_the_default_graph_is_the_union_of_all_advertisements(dataset: Dataset) -> None:
+    assert len(values(dataset, "SELECT ?c WHERE { ?c a sc:Component }")) == len(ADVERTISEMENTS)
+
+
+def test_each_graph_holds_what_one_component_says(dataset: Dataset) -> None:
+    text = f"SELECT ?o WHERE {{ GRAPH <{iri('astrid-drive')}> {{ ?s rob:support ?o }} }}"
+    assert values(dataset, text) == [iri("Astrid")]
+
+
+def test_from_chooses_among_the_graphs_that_are_there(dataset: Dataset) -> None:
+    text = f"SELECT ?c FROM <{iri('pippi-drive')}> WHERE {{ ?c a sc:Component }}"
+    assert values(dataset, text) == [iri("pippi-drive")]
+
+
+def test_prefixes_of_ones_own_may_be_given(dataset: Dataset) -> None:
+    answer = dataset.query("ASK { my:astrid-drive a rob:MotorDrive }", {"my": "https://example.org/peis-home#"})
+    assert bool(answer)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "SELECT * WHERE { SERVICE <http://127.0.0.1:1/> { ?s ?p ?o } }",
+        "SELECT * WHERE { service <http://127.0.0.1:1/> { ?s ?p ?o } }",
+        "SELECT * WHERE { SERVICE SILENT ?x { ?s ?p ?o } }",
+        "SELECT * WHERE { { SELECT * WHERE { SERVICE\n<http://127.0.0.1:1/> { ?s ?p ?o } } } }",
+        "SELECT * WHERE { ?s ?p 'it\\'s' . SERVICE <http://127.0.0.1:1/> { ?s ?p ?o } }",
+        "SELECT * WHERE { ?s ?p ?o } # \nVALUES ?x { 1 } SERVICE <http://127.0.0.1:1/> {}",
+        "SELECT * WHERE { \\u0053ERVICE <http://127.0.0.1:1/> { ?s ?p ?o } }",
+        "INSERT DATA { <urn:a> <urn:b> <urn:c> }",
+        "LOAD <file:///etc/passwd>",
+        "DROP ALL",
+        "SELECT",
+    ],
+)
+def test_nothing_but_reading_this_dataset_is_a_query(dataset: Dataset, text: str) -> None:
+    with pytest.raises(QueryError):
+        dataset.query(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'SELECT ?s WHERE { ?s rdfs:label "SERVICE <http://x/>" }',
+        "SELECT ?service WHERE { ?service a sc:Component }",
+        "SELECT ?s WHERE { ?s <urn:SERVICE> ?o } # SERVICE",
+        'SELECT ?s WHERE { ?s rdfs:label """a "SERVICE" in quotes""" }',
+    ],
+)
+def test_the_word_alone_is_no_crime(dataset: Dataset, text: str) -> None:
+    dataset.query(text)

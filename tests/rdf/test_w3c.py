@@ -1,0 +1,128 @@
+"""The W3C SHACL core tests as roles: tests compiled from a shape, then pySHACL, give the verdicts of pySHACL alone.
+
+Each IRI that a test describes stands as a component, each node shape with an IRI as a role. What the suite expects of
+targets, literals and reports does not apply: a role has no targets, and a component is an IRI.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pyshacl import validate
+from rdflib import RDF, RDFS, SH, Graph, URIRef
+
+from selfconf.model.hierarchy import Reasoning
+from selfconf.model.profile import Profile
+from selfconf.model.template import Role, Task, Template
+from selfconf.model.term import IRI
+from selfconf.rdf import turtle
+from selfconf.rdf.advertisements import STRUCTURE, Told
+from selfconf.rdf.closure import hierarchy
+from selfconf.rdf.partition import Partitioner
+from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import SC, TYPE
+from selfconf.rdf.vocabulary import SH as SHACL
+
+BESIDE = Path(__file__).parents[3] / "shared" / "data" / "w3c-shacl-tests"
+SUITE = Path(os.environ.get("SELFCONF_W3C_SHACL", BESIDE)) / "core"
+pytestmark = [
+    pytest.mark.w3c,
+    pytest.mark.skipif(not SUITE.is_dir(), reason="the W3C SHACL tests are not here; SELFCONF_W3C_SHACL names them"),
+]
+MANIFEST = "http://www.w3.org/2001/sw/DataAccess/tests/test-manifest#"
+TEST = "http://www.w3.org/ns/shacl-test#"
+EXCEPTIONS = {"xone-duplicate": "the compiler counts a shape once that stands twice in the list of sh:xone"}
+"""The tests in which the two ways differ, and why."""
+
+
+def cases() -> Iterator[Path]:
+    """Every test of the suite that has at least one node shape with an IRI."""
+    for path in sorted(SUITE.rglob("*.ttl")):
+        text = path.read_text("utf-8")
+        if "sht:Validate" in text and "mf:entries" in text and path.name != "manifest.ttl":
+            yield path
+
+
+def graphs(path: Path) -> tuple[Document, Document]:
+    """The data and the shapes of a test."""
+    manifest = turtle.parse(path.read_bytes(), path.name, path.as_uri())
+
+    def named(role: str) -> Document:
+        (graph,) = {value for _, predicate, value in manifest.triples() if predicate == TEST + role}
+        if graph == path.as_uri():
+            return manifest
+        file = path.parent / str(graph).rpartition("/")[2]
+        return turtle.parse(file.read_bytes(), file.name, file.as_uri())
+
+    return named("dataGraph"), named("shapesGraph")
+
+
+def roles(shapes: Document) -> list[IRI]:
+    """The node shapes of a test that have an IRI."""
+    targets = {SHACL[name] for name in ("targetClass", "targetNode", "targetSubjectsOf", "targetObjectsOf")}
+    return [
+        subject
+        for subject, statements in shapes.statements.items()
+        if isinstance(subject, IRI)
+        and not any(predicate == SHACL.path for predicate, _ in statements)
+        and ((TYPE, SHACL.NodeShape) in statements or any(predicate in targets for predicate, _ in statements))
+    ]
+
+
+def advertised(data: Document) -> list[Told]:
+    """Each IRI that is described, as a component; what is said of blank nodes goes along with the first."""
+    nodes = [subject for subject in data.statements if isinstance(subject, IRI)]
+    rest = [triple for triple in data.triples() if not isinstance(triple[0], IRI)]
+    found = []
+    for number, node in enumerate(nodes):
+        said = data.statements[node]
+        profile = Profile(
+            node,
+            frozenset(value for predicate, value in said if predicate == TYPE and isinstance(value, IRI)),
+            tuple((predicate, value) for predicate, value in dict.fromkeys(said) if predicate not in STRUCTURE),
+        )
+        found.append(Told(profile, tuple((node, *statement) for statement in said) + tuple(() if number else rest)))
+    return found
+
+
+def alone(data: Graph, shapes: Graph, role: IRI, nodes: list[str]) -> set[str]:
+    """Which nodes conform, as pySHACL tells when the shape has these targets and no other shape has any."""
+    for target in (SH.targetClass, SH.targetNode, SH.targetSubjectsOf, SH.targetObjectsOf):
+        shapes.remove((None, target, None))
+    shapes.remove((None, RDF.type, RDFS.Class))
+    for node in nodes:
+        shapes.add((URIRef(role), SH.targetNode, URIRef(node)))
+    _, report, _ = validate(data, shacl_graph=shapes, inference="none")
+    assert isinstance(report, Graph)
+    return set(nodes) - {str(report.value(result, SH.focusNode)) for result in report.objects(predicate=SH.result)}
+
+
+@pytest.mark.parametrize(
+    "path", list(cases()) if SUITE.is_dir() else [], ids=lambda path: f"{path.parent.name}-{path.stem}"
+)
+def test_a_role_has_the_verdicts_of_pyshacl(path: Path) -> None:
+    data, shapes = graphs(path)
+    wanted = roles(shapes)
+    if not wanted:
+        pytest.skip("no node shape with an IRI")
+    for role in wanted:
+        shapes.statements[role].append((TYPE, SC.Role))
+    template = Template(IRI("urn:template"), tuple(Role(role) for role in wanted))
+    everything = advertised(data)
+    nodes = [str(one.component) for one in everything]
+    graph = turtle.to_rdflib(data.triples())
+    expected = [alone(graph, turtle.to_rdflib(shapes.triples()), role, nodes) for role in wanted]
+    partitioner = Partitioner(TaskDocument(Task(template), shapes), hierarchy([data], Reasoning.SUBCLASS))
+    found = partitioner.partition(everything)
+    same = [{str(one.profile.component) for one in role} for role in found.candidates] == expected
+    assert same is (path.stem not in EXCEPTIONS)
+
+
+def test_the_suite_is_used() -> None:
+    used = [path for path in cases() if roles(graphs(path)[1])]
+    assert len(used) > 60
+    assert EXCEPTIONS.keys() <= {path.stem for path in used}

@@ -1,0 +1,88 @@
+"""Triples out: what is written is read again, and a configuration tells what it is and why."""
+
+from __future__ import annotations
+
+from hypothesis import given
+
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf import advertisements, turtle, write
+from selfconf.rdf.vocabulary import PROV, SC, XSD
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+from tests.protocol.strategies import literals
+
+CONFIGURATION = Configuration(
+    iri("t"),
+    (Assignment(iri("r"), (iri("a"), iri("b"))), Assignment(iri("s"), (iri("c"),))),
+    (Connection(iri("a"), "pose", iri("c"), "position"), Connection(iri("b"), "pose", iri("c"), "position")),
+    (ParameterSetting(iri("c"), "goal", Literal("(AT BEDROOM)")),),
+    {"goal": Literal("(AT BEDROOM)")},
+)
+NAME = IRI("urn:selfconf:configuration:x")
+
+
+def test_an_advertisement_on_the_wire_is_read_as_it_was() -> None:
+    for name, text in ADVERTISEMENTS.items():
+        (sent,), _ = advertisements.read(turtle.parse(PREFIXES + text, name))
+        (received,), _ = advertisements.read(turtle.parse(write.ntriples(sent.triples), name))
+        assert received.profile == sent.profile
+
+
+@given(literals)
+def test_every_literal_survives_the_wire(value: Literal) -> None:
+    if value.datatype.startswith("https://example.org/") and " " in value.datatype:
+        return
+    term: Term = Literal(value.lexical, XSD.string if value.language is None else value.datatype, value.language)
+    document = turtle.parse(write.ntriples([(iri("s"), iri("p"), term)]), "wire")
+    assert document.values(iri("s"), iri("p")) == [term]
+
+
+def test_a_configuration_says_who_plays_what_and_what_is_connected_and_set() -> None:
+    text = write.turtle(write.configuration_triples(CONFIGURATION, NAME))
+    document = turtle.parse(text, "configuration")
+    assert document.instances(SC.Configuration) == [NAME]
+    played = {
+        (document.value(node, SC.role), document.value(node, SC.component))
+        for node in document.values(NAME, SC.assignment)
+    }
+    assert played == {(iri("r"), iri("a")), (iri("r"), iri("b")), (iri("s"), iri("c"))}
+    connected = {
+        tuple(document.value(node, SC[end]) for end in ("from", "output", "to", "input"))
+        for node in document.values(NAME, SC.connection)
+    }
+    assert connected == {(iri(source), Literal("pose"), iri("c"), Literal("position")) for source in ("a", "b")}
+    (setting,) = document.values(NAME, SC.setting)
+    assert document.value(setting, SC.value) == Literal("(AT BEDROOM)")
+
+
+def test_a_deployed_configuration_says_when_by_whom_and_after_which_failures() -> None:
+    text = write.turtle(
+        write.configuration_triples(
+            CONFIGURATION,
+            NAME,
+            epoch=7,
+            generated=0.0,
+            revises=IRI("urn:selfconf:configuration:before"),
+            configurator="c1",
+            failures=[(iri("x"), "fail", "lost her", 1.5), (iri("y"), "crash", "", 2.0)],
+        )
+    )
+    document = turtle.parse(text, "configuration")
+    assert document.value(NAME, SC.epoch) == Literal("7", XSD.integer)
+    assert document.value(NAME, PROV.wasRevisionOf) == IRI("urn:selfconf:configuration:before")
+    assert document.value(NAME, PROV.generatedAtTime) == Literal("1970-01-01T00:00:00.000+00:00", XSD.dateTime)
+    causes = {
+        (document.value(node, SC.component), document.value(node, SC.cause))
+        for node in document.values(NAME, PROV.wasInfluencedBy)
+    }
+    assert causes == {(iri("x"), Literal("fail")), (iri("y"), Literal("crash"))}
+
+
+def test_the_name_of_a_configuration_tells_it_and_its_epoch_from_others() -> None:
+    names = {
+        write.configuration_iri(CONFIGURATION, 1),
+        write.configuration_iri(CONFIGURATION, 2),
+        write.configuration_iri(Configuration(iri("t"), ()), 1),
+    }
+    assert len(names) == 3
+    assert write.configuration_iri(CONFIGURATION, 1) in names
