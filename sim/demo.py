@@ -24,6 +24,16 @@ from sim.crew import Crew, Line
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
+RESULTS = (
+    "run.npz",
+    "result.json",
+    "run.webp",
+    "run-*.png",
+    "configuration-*.svg",
+    "configuration-*.png",
+    "tracker-view.png",
+)
+"""What a run leaves in its folder."""
 STARTING = 60.0
 """Seconds that a process may take to be there."""
 
@@ -107,6 +117,8 @@ def _tell(sentence: str) -> None:
 def _navigate(given: argparse.Namespace) -> int:
     from sim.gallery import draw_run, result, summary
 
+    for old in (path for pattern in RESULTS for path in given.out.glob(pattern)):
+        old.unlink()  # an earlier run's pictures would pass for this one's
     _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act of self-configuration, what.")
     _tell("Act 1 asks the ecology, act 2 collects its answers, act 3 composes a configuration, act 4 deploys it.")
     record = given.out / "run.npz"
@@ -137,7 +149,9 @@ def _navigate(given: argparse.Namespace) -> int:
     _tell("")
     for sentence in summary(account):
         _tell(sentence)
-    (given.out / "result.json").write_text(json.dumps(result(account), indent=2) + "\n")
+    figures = given.out / "result.json"
+    figures.write_text(json.dumps(result(account), indent=2) + "\n")
+    _tell(f"wrote {figures}")
     if given.pictures != "none":
         for path in draw_run(account, record, given.out, given.pictures, _tell):
             _tell(f"wrote {path}")
