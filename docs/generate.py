@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from docs import ontology
 from selfconf.cli import validate
 from selfconf.cli.main import COMMANDS, command, parser
 
@@ -33,7 +34,7 @@ def codes() -> str:
     return f"{NOTE}\n\n{validate.reference()}"
 
 
-PAGES: dict[str, Callable[[], str]] = {"commands.md": commands, "codes.md": codes}
+PAGES: dict[str, Callable[[], str]] = {"commands.md": commands, "codes.md": codes, "ontology.html": ontology.page}
 
 
 def main() -> int:

@@ -7,6 +7,7 @@ stdin, the answer goes out on stdout. Time, rows and memory are limited; a query
 
 from __future__ import annotations
 
+import contextlib
 import json
 import resource
 import signal
@@ -62,8 +63,9 @@ def answer(dataset: Dataset, question: Question, seconds: float = SECONDS) -> tu
 def main() -> int:
     """Answer the question that comes in on stdin."""
     question = Question(**json.loads(sys.stdin.buffer.readline()))
-    resource.setrlimit(resource.RLIMIT_AS, (question.memory, question.memory))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    with contextlib.suppress(ValueError, OSError):  # some systems have no such limit
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_AS, (question.memory, question.memory))
     dataset = Dataset()
     dataset.load(sys.stdin.buffer.read())
     try:

@@ -10,15 +10,15 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from selfconf import library
+from selfconf.cli.close_looks import Remembered, shared
 from selfconf.cli.reports import FORMATS, text
 from selfconf.errors import AuthorError
 from selfconf.model.codes import BY_CODE, CODES, Code
-from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
-from selfconf.rdf.validation import Source, validate
+from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
+from selfconf.rdf.validation import Each, Source, validate
 
 LARGEST = 64 << 20
 """A file of more bytes is not read."""
-
 NAME = "validate"
 HELP = "check advertisements, templates, tasks and ontologies"
 EXAMPLE = "selfconf validate advertisements/ navigate.ttl --ontology my-robots.ttl"
@@ -46,6 +46,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="an ontology whose terms the files use, besides those of selfconf; may be repeated",
     )
     parser.add_argument(
+        "--cache",
+        action="store_true",
+        help="remember what was found, and look only at what has changed since the last run over the same paths",
+    )
+    parser.add_argument(
         "--explain",
         metavar="CODE",
         help="say what a code means, with a bad and a good example, and do nothing else",
@@ -59,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if not arguments.paths:
         raise AuthorError("there is nothing to validate; name a Turtle file or a folder")
-    result = check(arguments.paths, arguments.ontology)
+    result = check(arguments.paths, arguments.ontology, _remembered(arguments.paths) if arguments.cache else shared)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
     sys.stdout.write(text.illustrate(result) if illustrated else FORMATS[arguments.format](result))
     sys.stdout.flush()
@@ -71,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if result.conforms else 1
 
 
-def check(paths: Iterable[str], ontologies: Iterable[str] = ()) -> Report:
+def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: Each = map) -> Report:
     """Validate files and folders against the shapes that selfconf brings along."""
     sources: dict[Path, Source] = {}
     found: list[Diagnostic] = []
@@ -82,13 +87,18 @@ def check(paths: Iterable[str], ontologies: Iterable[str] = ()) -> Report:
             found.append(Diagnostic(path, 1, 1, "SC-S04", message, Severity.WARNING))
         for name in names:
             try:
-                sources.setdefault(Path(name).resolve(), _read(name))
+                if name != "-" and Path(name).stat().st_size > LARGEST:
+                    message = f"This file is larger than {LARGEST >> 20} MiB: that cannot be meant."
+                    found.append(Diagnostic(name, 1, 1, "SC-S05", message))
+                else:
+                    sources.setdefault(Path(name).resolve(), _read(name))
             except OSError as error:
                 message = f"This file cannot be read: {error.strerror or error}."
                 found.append(Diagnostic(name, 1, 1, "SC-S03", message))
     shapes = [_load(path) for path in library.shapes()]
-    result = validate(sources.values(), shapes, [*map(_load, library.ontologies()), *_ontologies(ontologies)])
-    concerned = {*result.files, *(problem.file for problem in found if problem.code == "SC-S03")}
+    known = [*map(_load, library.ontologies()), *_ontologies(ontologies)]
+    result = validate(sources.values(), shapes, known, each)
+    concerned = {*result.files, *(problem.file for problem in found if problem.code in UNREADABLE)}
     return report(sorted(concerned), (*result.diagnostics, *found))
 
 
@@ -117,6 +127,12 @@ def reference(codes: Iterable[Code] = CODES) -> str:
             ]
         sections.append("\n".join(lines))
     return "\n".join(sections)
+
+
+def _remembered(paths: Iterable[str]) -> Each:
+    from selfconf.entailment import folder  # loads rdflib, which a run without a memory may not need
+
+    return Remembered(folder(), paths)
 
 
 def _indented(snippet: str) -> str:

@@ -2,7 +2,8 @@
 
 SHACL and SPARQL on rdflib are Python, and Python's regular expressions look for signals as they go, so an alarm
 (`setitimer`, POSIX) ends both without a process or a thread of its own. An alarm reaches only the main thread, in which
-every program of selfconf does its work; elsewhere there is no limit.
+every program of selfconf does its work; elsewhere there is no limit. What is raised inside a destructor or a callback of
+the garbage collector is lost, so the alarm goes on ringing until the block is left.
 """
 
 from __future__ import annotations
@@ -13,6 +14,9 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+
+RINGING = 0.05
+"""Seconds between one ring of the alarm and the next."""
 
 
 class TimeUp(BaseException):
@@ -28,14 +32,14 @@ def deadline(seconds: float) -> Iterator[None]:
     began = time.monotonic()
     handler = signal.signal(signal.SIGALRM, _raise)
     outside, _ = signal.getitimer(signal.ITIMER_REAL)
-    signal.setitimer(signal.ITIMER_REAL, min(seconds, outside or seconds))
+    signal.setitimer(signal.ITIMER_REAL, min(seconds, outside or seconds), RINGING)
     try:
         yield
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, handler)
         if outside:
-            signal.setitimer(signal.ITIMER_REAL, max(outside - (time.monotonic() - began), 1e-6))
+            signal.setitimer(signal.ITIMER_REAL, max(outside - (time.monotonic() - began), 1e-6), RINGING)
 
 
 def _raise(number: int, frame: FrameType | None) -> None:

@@ -148,7 +148,7 @@ class _Compiler:
             self.rest = True
             return
         whole, self.rest = self.rest, False
-        groups = tuple(tuple(self.shape(shape)) for shape in dict.fromkeys(shapes))
+        groups = tuple(tuple(self.shape(shape)) for shape in shapes)
         exact, self.rest = not self.rest, whole or self.rest
         if predicate in (SH["and"], SH.node):
             yield Count(groups, len(groups))

@@ -85,8 +85,8 @@ def violations(
 def aimed(shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI]) -> rdflib.Graph:
     """The shapes with one target: `focus`, for `shape`.
 
-    Not `focus_nodes` and `use_shapes`: under the latter pySHACL 0.40 takes every other shape that has an IRI for absent,
-    so that `sh:property :named` asks for nothing.
+    Not `focus_nodes` and `use_shapes`: under the latter pySHACL 0.40 takes every other shape that has an IRI for
+    absent, so that `sh:property :named` asks for nothing.
     """
     found = rdflib.Graph()
     for subject, predicate, value in shapes:

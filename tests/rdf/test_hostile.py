@@ -5,20 +5,26 @@ from __future__ import annotations
 import socket
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 
-from selfconf import library
+from selfconf import entailment, library
+from selfconf.cli import asking
+from selfconf.cli.validate import LARGEST
+from selfconf.ecology import LARGEST_ADVERTISEMENT
 from selfconf.errors import AuthorError, QueryError, TemplateError
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Report
-from selfconf.rdf import advertisements, bindings, deadline, scrutiny, shacl, templates, turtle, values
+from selfconf.rdf import advertisements, bindings, deadline, queries, scrutiny, shacl, templates, turtle, values
 from selfconf.rdf.dataset import Dataset
 from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.validation import Source, validate
+
+# An alarm that rings while the garbage collector calls back is lost there, and rings again.
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 
 SHAPES = [Source(path.name, path.read_bytes()) for path in library.shapes()]
 ONTOLOGIES = [Source(path.name, path.read_bytes()) for path in library.ontologies()]
@@ -113,10 +119,8 @@ def test_the_query_of_a_role_opens_nothing(query: str, trap: tuple[str, str]) ->
     template = TEMPLATE + BEYOND.format(query=query.format(file=trap[0], web=trap[1]))
     with nothing_opened():
         assert {found.code for found in check(template).diagnostics} <= {"SC-T13"}
-        try:
+        with suppress(AuthorError):
             judge(template)
-        except AuthorError:
-            pass
 
 
 @pytest.mark.parametrize("query", [*QUERIES, "LOAD <{file}>", "SELECT * FROM <{file}> WHERE {{ ?s ?p ?o }}"])
@@ -135,7 +139,8 @@ def test_an_advertisement_cannot_bring_shapes_or_axioms_along() -> None:
     smuggled = """
 :tuner a sh:NodeShape ; sh:targetClass rob:Tuner ; sh:in () ; rdfs:subClassOf rob:Speaker ; :near :speaker .
 :speaker a sc:Component, rob:Speaker ; owl:sameAs :tuner ; sh:closed true .
-rob:Tuner rdfs:subClassOf sc:Template ; owl:equivalentClass rob:Speaker ; sh:property [ sh:path rdf:type ; sh:maxCount 0 ] .
+rob:Tuner rdfs:subClassOf sc:Template ; owl:equivalentClass rob:Speaker .
+rob:Tuner sh:property [ sh:path rdf:type ; sh:maxCount 0 ] .
 rob:place rdfs:subPropertyOf rdf:type . :r sh:in () .
 """
     found, _ = advertisements.read(turtle.parse(PREAMBLE + TUNER + smuggled, "a.ttl"))
@@ -198,8 +203,28 @@ def test_a_query_that_would_hold_up_the_engine_is_not_handed_to_it(query: str) -
 
 
 def test_a_time_limit_within_another_leaves_the_outer_one_alone() -> None:
-    with pytest.raises(deadline.TimeUp), deadline.deadline(0.2):
+    def endless() -> None:
         with deadline.deadline(30):
             pass
         while True:
             pass
+
+    with pytest.raises(deadline.TimeUp), deadline.deadline(0.2):
+        endless()
+
+
+def test_the_page_on_limits_names_the_limits_there_are() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "untrusted.md").read_text()
+    for words in (
+        f"{LARGEST >> 20} MiB | SC-S05",
+        f"{scrutiny.SECONDS:g} s | SC-S05",
+        f"{queries.LONGEST:,} characters, brackets {queries.DEEPEST} deep",
+        f"{values.SECONDS:g} s | `configure` says which pattern",
+        f"{shacl.SECONDS:g} s | `configure` says which shape",
+        f"{entailment.LIMIT:g} s, `SELFCONF_OWL_RL_SECONDS`",
+        f"{asking.SECONDS:g} s, `--seconds`",
+        f"{asking.ROWS:,}, `--rows`",
+        f"{asking.MEMORY >> 30} GiB",
+        f"{LARGEST_ADVERTISEMENT >> 20} MiB | it is left out",
+    ):
+        assert words in page

@@ -1,0 +1,90 @@
+"""The close looks of `validate` over many files: shared among processes, and remembered from one run to the next.
+
+Processes are forked: a validating program has no other threads, and what is loaded is loaded once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import multiprocessing
+import os
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.rdf.validation import Each, Judge, Suspect
+
+WORTH = 16
+"""Close looks that take about as long as starting a process."""
+PROGRAMS = ("selfconf", "pyshacl", "rdflib", "pyoxigraph")
+_judge: Judge | None = None
+
+
+def shared(judge: Judge, suspects: Sequence[Suspect]) -> Iterator[list[Diagnostic]]:
+    """Look at each suspect, in as many processes as there are processors to use, where that pays."""
+    processes = min(os.cpu_count() or 1, len(suspects) // WORTH)
+    if processes < 2:
+        yield from map(judge, suspects)
+        return
+    yield judge(suspects[0])  # loads what each process will need
+    with multiprocessing.get_context("fork").Pool(processes, _begin, (judge,)) as pool:
+        yield from pool.imap(_look, suspects[1:], chunksize=4)
+
+
+def _begin(judge: Judge) -> None:
+    global _judge
+    _judge = judge
+
+
+def _look(suspect: Suspect) -> list[Diagnostic]:
+    assert _judge is not None
+    return _judge(suspect)
+
+
+class Remembered:
+    """Close looks whose outcomes are kept in a file, of the last run only; it depends on nothing but what is hashed."""
+
+    def __init__(self, folder: Path, paths: Iterable[str], each: Each = shared) -> None:
+        """`paths` are what is validated: each selection of files has a memory of its own."""
+        absolute = "\n".join(str(Path(path).absolute()) for path in paths)
+        self._file = folder / "validate" / f"{hashlib.blake2s(absolute.encode(), digest_size=8).hexdigest()}.json"
+        self._each, self._versions = each, {name: version(name) for name in PROGRAMS}
+
+    def __call__(self, judge: Judge, suspects: Sequence[Suspect]) -> Iterator[list[Diagnostic]]:
+        """What is remembered, and then what is not."""
+        known = self._recalled()
+        keys = [judge.key(suspect) for suspect in suspects]
+        outcomes = {key: known[key] for key in keys if key in known}
+        unknown = {key: suspect for key, suspect in zip(keys, suspects, strict=True) if key not in outcomes}
+        outcomes.update(zip(unknown, self._each(judge, list(unknown.values())), strict=True))
+        if outcomes.keys() != known.keys():
+            self._keep(outcomes)
+        yield from (outcomes[key] for key in keys)
+
+    def _recalled(self) -> dict[str, list[Diagnostic]]:
+        try:
+            body = json.loads(self._file.read_bytes())
+            if body["versions"] != self._versions:
+                return {}
+            return {key: [_diagnostic(entry) for entry in entries] for key, entries in body["outcomes"].items()}
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return {}  # none yet, or not one of ours
+
+    def _keep(self, outcomes: dict[str, list[Diagnostic]]) -> None:
+        """Write it so that nobody ever reads half of it; a memory that cannot be written is done without."""
+        entries = {key: [asdict(found) for found in problems] for key, problems in outcomes.items()}
+        with contextlib.suppress(OSError):
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile("w", dir=self._file.parent, delete=False, encoding="utf-8") as file:
+                json.dump({"versions": self._versions, "outcomes": entries}, file)
+            Path(file.name).replace(self._file)
+
+
+def _diagnostic(entry: dict[str, Any]) -> Diagnostic:
+    return Diagnostic(**{**entry, "severity": Severity(entry["severity"])})

@@ -1,0 +1,33 @@
+"""The manual's examples: each command on a page is run, and says what the page says."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from selfconf.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[1]
+BLOCK = re.compile(r"^```console\n\$ selfconf (.+)\n((?:.*\n)*?)```$", re.MULTILINE)
+
+
+EXAMPLES = BLOCK.findall((ROOT / "docs" / "search.md").read_text("utf-8"))
+"""Each command of the page on the search, and what it prints."""
+
+
+@pytest.mark.parametrize(("command", "output"), EXAMPLES, ids=lambda text: text.partition("\n")[0])
+def test_a_command_says_what_its_page_says(
+    command: str, output: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    code = main(shlex.split(command))
+    said = capsys.readouterr()
+    assert said.out + said.err == output
+    assert code == (1 if output.startswith("no configuration") else 2 if "not decided" in output else 0)
+
+
+def test_the_page_has_examples() -> None:
+    assert len(EXAMPLES) == 4
