@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from selfconf.agent import Account, Agent, Order
+from selfconf.agent.agent import AT_LEISURE
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
 from selfconf.configurator.compose import Composer
@@ -170,7 +171,9 @@ class Lab:
 
     def running(self, agent: Agent) -> bool:
         """Whether an agent's configuration is complete, after letting time pass."""
-        return self.until(lambda: agent.state.phase is Phase.RUNNING)
+        running = self.until(lambda: agent.state.phase is Phase.RUNNING)
+        self.until(lambda: False, 2 * AT_LEISURE)  # accounts are told when there is time for it
+        return running and agent.state.phase is Phase.RUNNING
 
     def node_of(self, name: str) -> MemoryBus:
         """The node of a component."""

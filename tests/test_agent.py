@@ -403,6 +403,29 @@ def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_con
     assert agent.state.phase is Phase.RUNNING
 
 
+def test_a_component_that_fails_while_it_is_cut_off_for_a_moment_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate("tracker")
+    lab.components["tracker"].fail("unheard")
+    lab.let_pass(0.01)
+    lab.rejoin("tracker")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_component_that_is_cut_off_for_a_moment_and_goes_on_is_kept(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate("tracker")
+    lab.let_pass(0.01)
+    lab.rejoin("tracker")
+    lab.let_pass(10.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.acts("lost") == []
+
+
 @pytest.mark.parametrize("seconds", [0.3, GRACE + 0.5, 30.0])
 def test_a_configurator_that_was_cut_off_brings_its_configuration_up_again(lab: Lab, seconds: float) -> None:
     agent = lab.agent()

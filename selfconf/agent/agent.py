@@ -56,6 +56,8 @@ from selfconf.protocol.messages import (
 
 log = logging.getLogger(__name__)
 
+AT_LEISURE = 0.01
+"""Seconds for which accounts, and turning off whom nobody waits for, stand back while a configuration is deployed."""
 TRY_AGAIN = 5.0
 """Seconds after which a patient configurator gives a crashed component that can be started another chance."""
 
@@ -76,7 +78,7 @@ class Agent:
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._tell)
-        self._lives = Lives(self.ecology, self._now, self._step, self._tell, self._calls.woken)
+        self._lives = Lives(self.ecology, self._now, self._step, self._tell, self._calls)
         self._record = Record(bus, self.keys, self.name, self.status, self.stop)
         self._watched: set[IRI] = set()
         self._events: deque[Event] = deque()
@@ -155,7 +157,7 @@ class Agent:
     def _tell(self, act: str, **facts: Any) -> None:
         """Note an account now, and tell it when there is nothing more urgent to do."""
         if not self._untold:
-            self.bus.wake_up(self._tell_all)
+            self.bus.later(AT_LEISURE, self._tell_all)
         self._untold.append(Account(act, self.clock(), facts))
 
     def _tell_all(self) -> None:
@@ -181,7 +183,8 @@ class Agent:
             case SetOn():
                 self._calls.set(effect)
             case ReleaseFrom():
-                self.bus.wake_up(partial(self._calls.release, effect))  # not before what others wait for
+                leisure = AT_LEISURE if self.state.phase is Phase.DEPLOYING else 0.0
+                self.bus.later(leisure, partial(self._calls.release, effect))
             case Running():
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())
                 self._tell("running", configuration=effect.configuration, epoch=self.state.epoch)

@@ -170,6 +170,18 @@ class Calls:
 
         self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
 
+    def look(self, component: IRI, seen: Callable[[Answer | None], None], attempts: int = ATTEMPTS) -> None:
+        """Ask a component for its actual state; `seen` hears None if it does not say."""
+
+        def answered(replies: Replies) -> None:
+            answer = _answer_in(replies)
+            if answer is None and not replies.complete and attempts > 1:
+                self.look(component, seen, attempts - 1)
+            else:
+                seen(answer)
+
+        self.bus.ask(self.keys.call(component, "state"), b"", CALL, answered)
+
     def _heard_answer(self, component: IRI, call: Call, epoch: int, answer: Answer) -> None:
         word = {Call.APPLY: "activated", Call.SET: "set", Call.RELEASE: "released"}[call]
         done = answer.verdict is Verdict.DONE

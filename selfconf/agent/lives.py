@@ -7,14 +7,16 @@ there is no link nothing is believed; what has become of the others is asked whe
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
+from selfconf.agent.calls import Calls
 from selfconf.agent.order import Tell
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
 from selfconf.configurator.machine import State
 from selfconf.ecology import Discovery, Ecology
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
-from selfconf.protocol.messages import Cause
+from selfconf.protocol.messages import Answer, Cause
 
 SECOND_LOOK = 0.03
 """When to look again whether a life that has ended has: the network tells of it before it tells of a broken link."""
@@ -35,10 +37,10 @@ class Lives:
         state: Callable[[], State],
         step: Callable[[Event], None],
         tell: Tell,
-        woken: Callable[[IRI], None],
+        calls: Calls,
     ) -> None:
         self.bus, self.ecology = ecology.bus, ecology
-        self._state, self._step, self._tell, self._woken = state, step, tell, woken
+        self._state, self._step, self._tell, self._calls = state, step, tell, calls
         self._sites: set[str] = set()
         self._unheard: dict[str, str] = {}
         self._link, self._cut_off = self.bus.link, False
@@ -61,7 +63,7 @@ class Lives:
         if alive and not known:
             self.ecology.lives[chunk] = life
             if component is not None:
-                self._woken(component)
+                self._calls.woken(component)
             self._step(Appeared({component: life} if component is not None else {}))
         elif not alive:
             self._ended(chunk, life)
@@ -81,9 +83,18 @@ class Lives:
                 self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
                 if now is not None:
                     self._step(Appeared({component: now}))
+            elif component is not None and self._held_life(component) == life:
+                self._calls.look(component, partial(self._seen, component, life))
 
         if known or (component is not None and self._held_life(component) == life):
             self.bus.later(SECOND_LOOK, look_again)
+
+    def _seen(self, component: IRI, life: str, answer: Answer | None) -> None:
+        """Who was cut off for a moment may have failed in it, unheard."""
+        if answer is None:
+            self._step(Failed(component, life, Cause.CRASH, "it does not answer since it was cut off"))
+        elif not answer.active:
+            self._step(Failed(component, life, Cause.FAIL, "it failed while it was cut off"))
 
     def _end_unheard(self) -> None:
         """Who died between the roll-call and the beginning of the watch was called, but has never been heard."""

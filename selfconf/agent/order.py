@@ -8,12 +8,12 @@ from typing import Any, Protocol
 
 from selfconf.configurator.machine import Policy
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 
-Composer = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], "Configuration | Refusal"]
+Composer = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
 
 Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
@@ -40,7 +40,7 @@ class Order:
     standby: Callable[[Configuration, frozenset[IRI]], Standby] = lambda configuration, lost: {}
     """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
     tell: Callable[[Account], None] = lambda account: None
-    settle: Callable[[Refusal | None], None] = lambda refusal: None
+    settle: Callable[[Refusal | Undecided | None], None] = lambda refusal: None
     """Hears once when the task has ended; with the refusal if that is why."""
 
 

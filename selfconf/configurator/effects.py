@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Wire
 
@@ -76,7 +76,7 @@ class Running:
 class Finish:
     """The task has ended: taken down as wanted, or refused."""
 
-    refusal: Refusal | None = None
+    refusal: Refusal | Undecided | None = None
 
 
 Effect = Discover | Compose | Watch | Unwatch | ApplyTo | SetOn | ReleaseFrom | Running | Finish

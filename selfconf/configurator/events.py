@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 
@@ -37,7 +36,7 @@ class Composed:
     """The search has ended; `attempt` tells which search, so that the answer to an older question is passed over."""
 
     attempt: int
-    outcome: Configuration | Refusal
+    outcome: Outcome
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,7 +54,7 @@ from selfconf.configurator.events import (
     Stopped,
 )
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause, Verdict, Wire
 
@@ -123,7 +123,7 @@ class State:
     lost: Mapping[IRI, Loss] = field(default_factory=dict)
     afterwards: Phase = Phase.STOPPED
     """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""
-    refusal: Refusal | None = None
+    refusal: Refusal | Undecided | None = None
     news: bool = False
     """Whether something has appeared since the ecology was last asked."""
 

@@ -5,6 +5,9 @@
     ACTIVE    ACTIVE             ACTIVE     IDLE, stop      FAILED, tell      IDLE, stop
     FAILED    ACTIVE, restart    FAILED     IDLE, stop      FAILED            IDLE, stop
 
+A component that has failed stays failed for the epoch it failed in: an apply of that epoch, repeated or late, is
+REFUSED, or it would hide the failure.
+
 *Orphaned* means that the configurator which answers for the component has been gone for the grace period: nobody
 supervises the configuration any more, so the component stops acting on it.
 
@@ -55,6 +58,8 @@ def obey(life: Life, call: Apply | SetParameters | Release) -> tuple[Life, Verdi
     if life.supervisor is not None and call.supervisor != life.supervisor:
         return life, Verdict.BUSY, Step.NONE
     if isinstance(call, Apply):
+        if life.phase is Phase.FAILED and call.epoch == life.epoch:
+            return life, Verdict.REFUSED, Step.NONE
         step = {Phase.IDLE: Step.START, Phase.ACTIVE: Step.NONE, Phase.FAILED: Step.RESTART}[life.phase]
         return Life(Phase.ACTIVE, call.epoch, call.supervisor), Verdict.DONE, step
     if isinstance(call, SetParameters):

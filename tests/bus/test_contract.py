@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from functools import partial
 
 import pytest
 
@@ -126,9 +127,12 @@ def test_a_publisher_is_told_when_its_last_subscriber_dies(net: Net, top: str) -
 
 def test_a_latched_signal_reaches_who_comes_late(net: Net, top: str) -> None:
     one, two = net.node(), net.node()
-    publisher = one.publisher(
-        f"{top}/pose", Urgency.SIGNAL, lambda matching: publisher.put(b"last") if matching else None
-    )
+
+    def matched(matching: bool) -> None:
+        if matching:
+            publisher.put(b"last")
+
+    publisher = one.publisher(f"{top}/pose", Urgency.SIGNAL, matched)
     net.settle()
     heard: list[Sample] = []
     two.subscribe(f"{top}/pose", heard.append)
@@ -378,7 +382,11 @@ def test_timers_go_off_once_in_the_order_of_their_times(net: Net) -> None:
     went_off: list[tuple[str, float]] = []
     began = node.now()
     for name, seconds in (("c", 0.06), ("a", 0.02), ("b", 0.04)):
-        node.later(seconds, lambda name=name: went_off.append((name, node.now() - began)))
+
+        def go_off(name: str = name) -> None:
+            went_off.append((name, node.now() - began))
+
+        node.later(seconds, go_off)
     assert net.until(lambda: len(went_off) == 3)
     net.settle()
     assert [name for name, _ in went_off] == ["a", "b", "c"]
@@ -421,7 +429,7 @@ def test_what_is_woken_up_is_said_in_order(net: Net) -> None:
     node = net.node()
     said: list[int] = []
     for number in range(10):
-        node.wake_up(lambda number=number: said.append(number))
+        node.wake_up(partial(said.append, number))
     assert net.until(lambda: len(said) == 10)
     assert said == list(range(10))
 
@@ -474,6 +482,6 @@ def test_what_is_taken_back_or_put_after_the_end_does_nothing(net: Net, top: str
 def test_a_node_that_reaches_the_network_is_linked_and_one_that_is_closed_is_not(net: Net) -> None:
     node = net.node()
     net.node()
-    assert net.until(lambda: node.link)
+    assert net.until(lambda: bool(node.link))
     node.close()
     assert not node.link

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Sample, Urgency
 
@@ -24,7 +26,7 @@ def history(seed: int, faults: Faults) -> list[tuple[float, bytes]]:
     two.subscribe("a", lambda sample: heard.append((network.time, sample.payload)))
     publisher = one.publisher("a", Urgency.SIGNAL)
     for number in range(100):
-        one.later(number * 0.01, lambda number=number: publisher.put(b"%d" % number))
+        one.later(number * 0.01, partial(publisher.put, b"%d" % number))
     network.run(lambda: False, 10.0)
     return heard
 

@@ -84,7 +84,7 @@ def test_a_client_whose_router_is_gone_is_not_linked_and_is_again_when_it_is_bac
     first.close()
     assert until(lambda: not bus.link, bus)
     second = router(first.endpoint)
-    assert until(lambda: bus.link, bus)
+    assert until(lambda: bool(bus.link), bus)
     other = client([first.endpoint])
     called: list[tuple[str, ...]] = []
     other.roll_call(f"{top}/live/*", 1.0, called.append)

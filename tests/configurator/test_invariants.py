@@ -141,7 +141,8 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
         ]
         return Answered(component, call, state.epoch, verdict, str(which % 2), state.epoch + when)
     if kind < 30:
-        return [Accepted(when), Discovered(), Composed(state.attempt, navigation())][how % 3]
+        choices: list[Event] = [Accepted(when), Discovered(), Composed(state.attempt, navigation())]
+        return choices[how % 3]
     if kind < 34:
         free = [c for c in (TRACKER, ODOMETRY) if c not in state.lost]
         possible = bool(free) and not {CONTROL, EVERYBODY[3]} & set(state.lost)

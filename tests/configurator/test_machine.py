@@ -61,7 +61,7 @@ def test_a_task_goes_through_the_four_acts() -> None:
     assert history.answer(TRACKER, Call.APPLY) == []
     assert history.answer(DRIVE, Call.APPLY) == []
     assert history.answer(CONTROL, Call.APPLY) == [SetOn(CONTROL, history.state.epoch, {"goal": GOAL})]
-    assert history.state.phase is Phase.SETTING
+    assert history.state.pending == {(CONTROL, Call.SET)}
     assert history.answer(CONTROL, Call.SET) == [Running(navigation())]
     assert history.state.phase is Phase.RUNNING
 

@@ -36,7 +36,8 @@ def life_in(phase: Phase, epoch: int = 5) -> Life:
 def test_every_phase_answers_every_call(
     phase: Phase, call: type[Call], after: Phase, verdict: Verdict, step: Step
 ) -> None:
-    for epoch in (5, 6):
+    repeated = (phase, call) == (Phase.FAILED, Apply)
+    for epoch in (6,) if repeated else (5, 6):
         life, said, told = obey(life_in(phase), call(epoch, US))
         assert (life.phase, said, told, life.epoch) == (after, verdict, step, epoch)
         assert life.supervisor == (None if after is Phase.IDLE else US)
@@ -99,6 +100,7 @@ def test_whatever_happens_the_epoch_never_falls_and_only_who_is_held_acts(
         else:
             life, verdict, told = obey(life, event)
             assert (verdict in (Verdict.STALE, Verdict.BUSY)) <= (life == before)
+            assert (verdict is Verdict.REFUSED) <= (life.phase is before.phase)
         assert life.epoch >= before.epoch
         assert (life.supervisor is None) == (life.phase is Phase.IDLE)
         if told in (Step.START, Step.RESTART):
@@ -117,6 +119,11 @@ def test_an_old_apply_that_comes_after_its_release_does_not_wake_the_component()
         life, verdict, _ = obey(life, call)
         assert verdict is Verdict.DONE
     assert obey(life, late)[1] is Verdict.STALE
+
+
+def test_an_apply_that_is_repeated_does_not_hide_a_failure() -> None:
+    failed = life_in(Phase.FAILED)
+    assert obey(failed, Apply(5, US)) == (failed, Verdict.REFUSED, Step.NONE)
 
 
 def test_the_table_is_complete() -> None:
