@@ -7,8 +7,12 @@ may give any, which is the easier question. Building the model is part of the ti
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from importlib import import_module
+from importlib.util import find_spec
 from typing import TypeVar
 
+from benchmarks.search import sparql
+from selfconf.model.configuration import Configuration
 from selfconf.search import paper, solve
 from selfconf.search.compact import Prepared
 from selfconf.search.problem import Problem
@@ -24,7 +28,7 @@ def selfconf(problem: Problem) -> bool:
 
 def algorithm_1(problem: Problem) -> bool:
     """The paper's algorithm."""
-    return paper.search(problem) is not None
+    return isinstance(paper.search(problem), Configuration)
 
 
 PROGRAM = """
@@ -188,6 +192,24 @@ ENGINES: dict[str, Callable[[Problem], bool]] = {
     "clingo": clingo,
     "CP-SAT": cp_sat,
     "python-sat": python_sat,
+    "Oxigraph": sparql.oxigraph,
+    "rdflib": sparql.rdflib_graph,
     "Algorithm 1": algorithm_1,
 }
-LIBRARIES = {"clingo": "clingo", "CP-SAT": "ortools.sat.python.cp_model", "python-sat": "pysat.solvers"}
+LIBRARIES = {
+    "selfconf": "pysat.solvers",
+    "clingo": "clingo",
+    "CP-SAT": "ortools.sat.python.cp_model",
+    "python-sat": "pysat.solvers",
+}
+"""What an engine imports, before its time begins."""
+SMALL = {"Oxigraph": 100, "rdflib": 10, "Algorithm 1": 10}
+"""Up to which size an engine is tried that is hopeless beyond."""
+
+
+def installed() -> list[str]:
+    """The engines whose libraries are there, and now imported."""
+    found = [engine for engine in ENGINES if find_spec(LIBRARIES.get(engine, "selfconf").partition(".")[0])]
+    for engine in found:
+        import_module(LIBRARIES.get(engine, "selfconf"))
+    return found

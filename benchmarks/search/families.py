@@ -19,6 +19,8 @@ class Instance:
 
     family: str
     name: str
+    size: int
+    """What grows in the family: candidates per role, roles, or variables."""
     make: Callable[[], Problem]
 
 

@@ -6,22 +6,25 @@ import argparse
 import json
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
-from selfconf.cli import words
+from selfconf.cli import budget, words
 from selfconf.cli.endpoint import add_endpoint_argument
-from selfconf.cli.inputs import add_task_arguments, read_hierarchy, read_task
+from selfconf.cli.inputs import add_task_arguments, complain, read_hierarchy, read_task
 from selfconf.cli.live import add_connection_arguments
+from selfconf.cli.places import Places
 from selfconf.cli.sources import read_ecology
+from selfconf.cli.why import explained
 from selfconf.configurator.compose import Composer, Strategy
 from selfconf.model.configuration import Configuration
-from selfconf.model.hierarchy import Reasoning
-from selfconf.model.refusal import Refusal
+from selfconf.model.cost import number
+from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.rdf import write
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.templates import TaskDocument
+from selfconf.search.best import Optimum
 from selfconf.search.whatif import Loss
 
 NAME = "configure"
@@ -40,77 +43,110 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--what-if", action="store_true", help="tell for each component what would replace it if it failed"
     )
+    budget.add_budget_arguments(parser)
     add_connection_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 with a configuration, 1 with a refusal."""
+    """0 with a configuration, 1 with a refusal, 2 where the budget ended before it was decided."""
     task = read_task(given)
     seconds: dict[str, float] = {}
     began = time.perf_counter()
-    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy))
+    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy), given.steps)
     ecology = read_ecology(given, composer.partitioner)
     seconds["load"] = time.perf_counter() - began
     began = time.perf_counter()
     partition = composer.partition(ecology)
     seconds["partition"] = time.perf_counter() - began
+    clock = budget.Clock(given.seconds)
     began = time.perf_counter()
-    outcome = composer.compose(ecology, frozenset(), None)
+    answer = budget.composed(composer, ecology, frozenset(), None, clock)
     seconds["search"] = time.perf_counter() - began
     losses: list[Loss] | None = None
-    if isinstance(outcome, Refusal):
-        outcome = _with_hint(composer.mended(ecology, outcome), task, ecology, given)
-    elif given.what_if:
-        losses = composer.what_if(ecology, outcome)
+    if isinstance(answer, Refusal):
+        answer = explained(composer, ecology, answer, given, clock)
+    elif given.what_if and not isinstance(answer, Undecided):
+        found = answer.configuration if isinstance(answer, Optimum) else answer
+        losses = clock.within(lambda: composer.what_if(ecology, found), None)
+        if losses is None:
+            complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")
+    if isinstance(answer, Undecided) and given.format != "json":
+        complain(words.undecided_text(answer, task.task.template.iri, words.Names(task.document.prefixes)))
+        return 2
     eligible = {
         str(role.iri): len(candidates)
         for role, candidates in zip(task.task.template.roles, partition.candidates, strict=True)
     }
-    print(_shown(outcome, task, given.format, eligible, seconds, losses))
-    return 1 if isinstance(outcome, Refusal) else 0
+    report = Report(task, composer, ecology, eligible, seconds, losses)
+    if isinstance(answer, Undecided) or given.format == "json":
+        print(json.dumps(report.body(answer), indent=2, ensure_ascii=False))
+    else:
+        print(report.text(answer, given.format))
+    return 1 if isinstance(answer, Refusal) else 2 if isinstance(answer, Undecided) else 0
 
 
-def _with_hint(
-    refusal: Refusal, task: TaskDocument, ecology: Mapping[IRI, Advertisement], given: argparse.Namespace
-) -> Refusal:
-    """Whether subclass mode would have found an answer."""
-    if given.reasoning != Reasoning.SYNTACTIC.value:
-        return refusal
-    hierarchy = read_hierarchy(given, Reasoning.SUBCLASS)
-    if isinstance(Composer(task, hierarchy).compose(ecology, frozenset(), None), Refusal):
-        return refusal
-    return replace(refusal, hint="with --reasoning subclass there is a configuration")
+@dataclass(frozen=True)
+class Report:
+    """What there is to print around an answer."""
 
+    task: TaskDocument
+    composer: Composer
+    ecology: Mapping[IRI, Advertisement]
+    eligible: Mapping[str, int]
+    seconds: Mapping[str, float]
+    losses: Sequence[Loss] | None
 
-def _shown(
-    outcome: Configuration | Refusal,
-    task: TaskDocument,
-    form: str,
-    eligible: Mapping[str, int],
-    seconds: Mapping[str, float],
-    losses: Sequence[Loss] | None,
-) -> str:
-    names = words.Names(task.document.prefixes)
-    refused = isinstance(outcome, Refusal)
-    if form == "json":
-        bound = {name: words.plain(value) for name, value in task.task.by_name().items()}
-        body: dict[str, Any] = {"status": "refused" if refused else "configured", "bindings": bound}
-        body |= words.refusal_body(outcome) if isinstance(outcome, Refusal) else words.configuration_body(outcome)
-        if losses is not None:
-            body["what_if"] = words.losses_body(losses)
-        body |= {
-            "eligible": dict(eligible),
-            "seconds": {part: round(value, 6) for part, value in seconds.items()},
+    def body(self, answer: Optimum | Outcome) -> dict[str, Any]:
+        """The answer as JSON."""
+        body: dict[str, Any] = {
+            "template": self.task.task.template.iri,
+            "bindings": {name: words.plain(value) for name, value in self.task.task.by_name().items()},
         }
-        return json.dumps(body, indent=2, ensure_ascii=False)
-    if isinstance(outcome, Refusal):
-        text = words.refusal_text(outcome, names)
-        mark = {"turtle": "# ", "mermaid": "%% "}.get(form, "")
-        return "\n".join(mark + line for line in text.splitlines())
-    if form == "turtle":
-        name = write.configuration_iri(outcome, 0)
-        return write.turtle(write.configuration_triples(outcome, name), task.document.prefixes).rstrip()
-    if form == "mermaid":
-        return words.mermaid(outcome, names)
-    text = words.configuration_text(outcome, names)
-    return text if losses is None else f"{text}\n{words.losses_text(losses, names)}"
+        if isinstance(answer, Undecided):
+            body = {"status": "undecided", **body, **words.undecided_body(answer)}
+        elif isinstance(answer, Refusal):
+            body = {"status": "refused", **body, **words.refusal_body(answer, self._places)}
+        else:
+            found = answer.configuration if isinstance(answer, Optimum) else answer
+            body = {"status": "configured", **body, **words.configuration_body(found)}
+        if isinstance(answer, Optimum):
+            body["cost"] = words.cost_body(answer, self._strangers(answer))
+        if self.losses is not None:
+            body["what_if"] = words.losses_body(self.losses)
+        timed = {part: round(value, 6) for part, value in self.seconds.items()}
+        return body | {"eligible": dict(self.eligible), "seconds": timed}
+
+    def text(self, answer: Optimum | Configuration | Refusal, form: str) -> str:
+        """The answer as text, Turtle or Mermaid."""
+        names = words.Names(self.task.document.prefixes)
+        if isinstance(answer, Refusal):
+            mark = {"turtle": "# ", "mermaid": "%% "}.get(form, "")
+            lines = words.refusal_text(answer, names, self._places).splitlines()
+            return "\n".join(mark + line for line in lines)
+        found = answer.configuration if isinstance(answer, Optimum) else answer
+        if form == "turtle":
+            name = write.configuration_iri(found, 0)
+            return write.turtle(write.configuration_triples(found, name), self.task.document.prefixes).rstrip()
+        if form == "mermaid":
+            return words.mermaid(found, names)
+        parts = [words.configuration_text(found, names)]
+        if isinstance(answer, Optimum):
+            parts.append(words.cost_text(answer, self._strangers(answer), names))
+        if self.losses is not None:
+            parts.append(words.losses_text(self.losses, names))
+        return "\n".join(parts)
+
+    @property
+    def _places(self) -> Places:
+        return Places(self.task.task.template, self.ecology)
+
+    def _strangers(self, optimum: Optimum) -> list[IRI]:
+        """The properties of unknown terms that no component in the ecology has a number for."""
+        wanted = {one for _, one in optimum.missing}
+        for advertisement in self.ecology.values():
+            for predicate, value in advertisement.profile.properties:
+                if number(value) is not None:
+                    wanted -= self.composer.hierarchy.superproperties(predicate)
+            if not wanted:
+                break
+        return sorted(wanted)

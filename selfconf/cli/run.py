@@ -16,7 +16,7 @@ from typing import Any
 from selfconf import rendezvous
 from selfconf.agent import Account, Agent, Order
 from selfconf.bus.zenoh_bus import client
-from selfconf.cli import words
+from selfconf.cli import budget, words
 from selfconf.cli.inputs import add_task_arguments, complain, existing, read_hierarchy, read_task
 from selfconf.cli.live import add_connection_arguments
 from selfconf.configurator.compose import Composer, Strategy
@@ -24,8 +24,10 @@ from selfconf.configurator.machine import Policy
 from selfconf.ending import Ending, environment
 from selfconf.errors import NetworkError
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.search.best import Optimum
 
 NAME = "run"
 HELP = "configure, deploy, monitor and configure again, until Ctrl-C takes everything down"
@@ -47,18 +49,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--wait", action="store_true", help="when there is no configuration, wait for the ecology to change"
     )
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    budget.add_budget_arguments(parser)
     add_connection_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 when it was taken down as wanted; 1 when there is no configuration (any more)."""
+    """0 when it was taken down as wanted; 1 when there is no configuration (any more); 2 when that was not decided."""
     task = read_task(given)
-    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy))
+    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy), given.steps)
     names = words.Names(task.document.prefixes)
     tell = _tell_json if given.format == "json" else Teller(names)
     with _ecology(given) as (ecology, endpoints):
         bus = client(endpoints)
-        ended: list[Refusal | None] = []
+        ended: list[Refusal | Undecided | None] = []
 
         def told(account: Account) -> None:
             try:
@@ -68,9 +71,13 @@ def run(given: argparse.Namespace) -> int:
                     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
                 bus.wake_up(agent.stop)
 
+        def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+            answer = budget.composed(composer, found, lost, running, budget.Clock(given.seconds))
+            return answer.configuration if isinstance(answer, Optimum) else answer
+
         order = Order(
             template=task.task.template.iri,
-            compose=composer.compose,
+            compose=compose,
             standby=composer.standby,
             policy=Policy(given.policy),
             patient=given.wait,
@@ -87,6 +94,9 @@ def run(given: argparse.Namespace) -> int:
     if agent.trouble is not None:
         raise agent.trouble
     refusal = ended[0] if ended else None
+    if isinstance(refusal, Undecided):
+        complain(words.undecided_text(refusal, task.task.template.iri, names))
+        return 2
     if refusal is not None and given.format == "text":
         complain(words.refusal_text(refusal, names))
         for component, loss in agent.state.lost.items():
@@ -173,7 +183,9 @@ class Teller:
         self._began = self._began or account.time
         sentence = self.SENTENCES.get(account.act)
         if account.act == "waiting":
-            complain(words.refusal_text(account.facts["refusal"], self._names))
+            refusal = account.facts["refusal"]
+            undecided = isinstance(refusal, Undecided)
+            complain(f"  {refusal}" if undecided else words.refusal_text(refusal, self._names))
             sentence = "       waiting for the ecology to change"
         if account.act == "composed":
             sentence = "act 3  {roles} in {milliseconds:.1f} ms"
@@ -203,6 +215,8 @@ def _tell_json(account: Account) -> None:
             facts[key] = words.configuration_body(value)
         elif isinstance(value, Refusal):
             facts[key] = words.refusal_body(value)
+        elif isinstance(value, Undecided):
+            facts[key] = words.undecided_body(value)
         else:
             facts[key] = value
     print(json.dumps({"act": account.act, "time": account.time, **facts, "process": os.getpid()}), flush=True)

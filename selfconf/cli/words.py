@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal
+from selfconf.model.partition import NearMiss
+from selfconf.model.profile import Place
+from selfconf.model.refusal import InputUnfed, Reason, Refusal, Undecided
+from selfconf.model.repair import AcceptNearMiss, Repair
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.search.best import Optimum
 from selfconf.search.whatif import Loss
 
+Where = Callable[[IRI], Place | None]
+"""Where a role or component is spoken of, if that is known."""
 _LOCAL = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
 
@@ -113,47 +120,116 @@ def losses_body(losses: Sequence[Loss]) -> list[dict[str, Any]]:
     ]
 
 
-def refusal_text(refusal: Refusal, names: Names, most: int = 8) -> str:
-    """A refusal on one screen, the most likely cause first."""
-    lines = [f"no configuration for {names(refusal.template)}"]
-    lines += [f"  because {reason}" for reason in refusal.reasons]
-    if refusal.near_misses:
-        lines.append("near misses")
-        lines += [
-            f"  {miss.role.short}: {names(miss.component)} would fit, but its {miss.obstacle}"
-            if not miss.obstacle.startswith(("has ", "is ", "declares "))
-            else f"  {miss.role.short}: {names(miss.component)} would fit, but it {miss.obstacle}"
-            for miss in refusal.near_misses[:most]
-        ]
-        if len(refusal.near_misses) > most:
-            lines.append(f"  and {len(refusal.near_misses) - most} more")
-    repairs = repairs_of(refusal)
-    if repairs:
-        lines.append("what would mend it")
-        lines += [f"  {repair['message']}" for repair in repairs]
+def cost_text(optimum: Optimum, strangers: Iterable[IRI], names: Names) -> str:
+    """What a configuration costs, for people; `strangers` are properties of the cost that nobody in the ecology has."""
+    lines = ["cost, compared level by level" if len(optimum.cost) > 1 else "cost"]
+    for number, (spent, least) in enumerate(zip(optimum.cost, optimum.bound, strict=True), 1):
+        bound = "" if optimum.proved else f"  (bound {_decimal(least)})"
+        lines.append(f"  level {number}  {_decimal(spent)}{bound}")
+    lines.append("  proved: nothing costs less" if optimum.proved else "  not proved: there may be something better")
+    if optimum.missing:
+        terms = "1 term is" if optimum.unknown == 1 else f"{optimum.unknown} terms are"
+        lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")
+    nobody = set(strangers)
+    lines += [f"    nobody in the ecology has a number for {names(one)}" for one in sorted(nobody)]
+    told = dict.fromkeys(pair for pair in optimum.missing if pair[1] not in nobody)
+    lines += [f"    {names(component)} has no number for {names(wanted)}" for component, wanted in told]
     return "\n".join(lines)
 
 
-def refusal_body(refusal: Refusal) -> dict[str, Any]:
-    """A refusal as JSON."""
+def cost_body(optimum: Optimum, strangers: Iterable[IRI]) -> dict[str, Any]:
+    """What a configuration costs, as JSON."""
     return {
-        "template": refusal.template,
-        "reasons": [{"code": reason.code, "role": reason.role, "message": str(reason)} for reason in refusal.reasons],
-        "near_misses": [
-            {"role": miss.role, "component": miss.component, "obstacle": miss.obstacle} for miss in refusal.near_misses
-        ],
-        "repairs": repairs_of(refusal),
+        "levels": [float(amount) for amount in optimum.cost],
+        "bound": [float(amount) for amount in optimum.bound],
+        "proved": optimum.proved,
+        "unknown": optimum.unknown,
+        "missing": [{"component": component, "property": wanted} for component, wanted in optimum.missing],
+        "nobody_has": sorted(strangers),
     }
 
 
-def repairs_of(refusal: Refusal) -> list[dict[str, Any]]:
-    """What would make the task feasible, as JSON objects with a code and a message."""
+def _decimal(amount: Fraction) -> str:
+    return f"{float(amount):g}"
+
+
+def undecided_text(undecided: Undecided, template: IRI, names: Names) -> str:
+    """That there is no answer yet, in one sentence."""
+    return f"{names(template)} is {undecided}"
+
+
+def undecided_body(undecided: Undecided) -> dict[str, Any]:
+    """The same as JSON."""
+    return {"code": undecided.code, "message": str(undecided)}
+
+
+def nowhere(named: IRI) -> Place | None:
+    """The place of what is known from the network alone."""
+    return None
+
+
+def _spoken_of(fact: Reason | Repair | NearMiss) -> IRI:
+    """The role or component that a reason, a near miss or a repair is about."""
+    if isinstance(fact, AcceptNearMiss):
+        return fact.near.component
+    return fact.component if isinstance(fact, InputUnfed | NearMiss) else fact.role
+
+
+def refusal_text(refusal: Refusal, names: Names, where: Where = nowhere, most: int = 8) -> str:
+    """A refusal on one screen, the most likely cause first, each line with the place it speaks of."""
+
+    def placed(sentence: str, fact: Reason | Repair | NearMiss) -> str:
+        place = where(_spoken_of(fact))
+        return sentence if place is None else f"{sentence}  [{place}]"
+
+    lines = [f"no configuration for {names(refusal.template)}"]
+    lines += [placed(f"  because {reason}", reason) for reason in refusal.reasons[:most]]
+    if len(refusal.reasons) > most:
+        lines.append(f"  and {len(refusal.reasons) - most} more reasons")
+    if refusal.near_misses:
+        lines.append("near misses")
+        lines += [placed(f"  {_missed(miss, names)}", miss) for miss in refusal.near_misses[:most]]
+        if len(refusal.near_misses) > most:
+            lines.append(f"  and {len(refusal.near_misses) - most} more")
+    if refusal.repairs or refusal.hint:
+        lines.append("what would mend it")
+        lines += [placed(f"  {repair}", repair) for repair in refusal.repairs]
+    if refusal.hint:
+        lines.append(f"  {refusal.hint}")
+    return "\n".join(lines)
+
+
+def _missed(miss: NearMiss, names: Names) -> str:
+    whose = "it" if miss.obstacle.startswith(("has ", "is ", "declares ")) else "its"
+    but = f"{whose} {miss.obstacle}"
+    return f"{miss.role.short}: {names(miss.component)} would fit, but {but}"
+
+
+def refusal_body(refusal: Refusal, where: Where = nowhere) -> dict[str, Any]:
+    """A refusal as JSON; `place` is there where it is known."""
+
+    def place(fact: Reason | Repair | NearMiss) -> dict[str, Any]:
+        found = where(_spoken_of(fact))
+        return {} if found is None else {"place": str(found)}
+
     repairs: list[dict[str, Any]] = [
-        {"code": repair.code, "role": repair.role, "message": str(repair)} for repair in refusal.repairs
+        {"code": repair.code, "role": repair.role, "message": str(repair), **place(repair)}
+        for repair in refusal.repairs
     ]
     if refusal.hint:
         repairs.append({"code": "reasoning", "message": refusal.hint})
-    return repairs
+    return {
+        "template": refusal.template,
+        "reasons": [
+            {"code": reason.code, "role": reason.role, "message": str(reason), **place(reason)}
+            for reason in refusal.reasons
+        ],
+        "near_misses": [
+            {"role": miss.role, "component": miss.component, "obstacle": miss.obstacle, **place(miss)}
+            for miss in refusal.near_misses
+        ],
+        "repairs": repairs,
+    }
 
 
 def plain(value: Term) -> Any:

@@ -6,26 +6,29 @@ a failure only the lost components leave it and the search alone runs again.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from enum import Enum
 
 from selfconf import certificate
-from selfconf.errors import ProgrammerError
+from selfconf.errors import ProgrammerError, TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition
-from selfconf.model.refusal import Refusal, TooFewEligible, Undecided
+from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.templates import TaskDocument
 from selfconf.search import best, mend, paper, repair, solve, whatif
+from selfconf.search.best import Optimum
 from selfconf.search.problem import Problem
 
 STANDBY = 2
 """How many candidates per role an input is told of in advance."""
+SLICES = (10_000, 200_000, best.STEPS)
+"""Steps after which the strategy `best` tells how far it has come, and begins again with more."""
 
 
 class Strategy(str, Enum):
@@ -40,9 +43,20 @@ class Composer:
     """Composes one task, again and again as the ecology changes."""
 
     def __init__(
-        self, task: TaskDocument, hierarchy: Hierarchy = NOTHING_ABOVE, strategy: Strategy = Strategy.FIRST
+        self,
+        task: TaskDocument,
+        hierarchy: Hierarchy = NOTHING_ABOVE,
+        strategy: Strategy = Strategy.FIRST,
+        steps: int | None = None,
     ) -> None:
-        self.task, self.hierarchy, self.strategy = task, hierarchy, strategy
+        """`steps` limits each search. Raises TemplateError where `best` is asked for and no cost is stated."""
+        if strategy is Strategy.BEST and not task.task.template.cost:
+            name = task.task.template.iri
+            raise TemplateError(
+                f"the template {name!r} states no sc:cost, and the strategy best needs one; add it, or use first",
+                file=task.document.source,
+            )
+        self.task, self.hierarchy, self.strategy, self.steps = task, hierarchy, strategy, steps
         self.partitioner = Partitioner(task, hierarchy)
         self._ecology: Mapping[IRI, Advertisement] | None = None
         self._partition = Partition(())
@@ -55,33 +69,63 @@ class Composer:
 
     def compose(
         self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
-    ) -> Configuration | Refusal:
-        """The configuration without the lost components, keeping what runs where that can be; or why there is none.
+    ) -> Outcome:
+        """The configuration without the lost components, keeping what runs where that can be; or why there is none."""
+        *_, answer = self.answers(ecology, lost, running)
+        return answer.configuration if isinstance(answer, Optimum) else answer
+
+    def answers(
+        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Iterator[Optimum | Outcome]:
+        """The same, with the cost where there is one; whoever has no more time stops, and keeps the last answer.
 
         A configuration is certified before it is handed out, by rules that share nothing with the search.
         """
         partition = self.partition(ecology)
         problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
-        outcome = self._search(problem, running)
-        if isinstance(outcome, Configuration):
-            wrong = certificate.check(self.task.task, problem.partition, outcome, self.hierarchy)
-            if wrong:
-                raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
-            return outcome
-        short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
-        present = [a for component, a in ecology.items() if component not in lost]
-        misses = tuple(miss for miss in self.partitioner.near_misses(present) if not short or miss.role in short)
-        return replace(outcome, near_misses=misses)
+        for answer in self._search(problem, running):
+            outcome = answer.configuration if isinstance(answer, Optimum) else answer
+            if isinstance(outcome, Configuration):
+                wrong = certificate.check(self.task.task, problem.partition, outcome, self.hierarchy)
+                if wrong:
+                    raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
+                yield answer
+            elif isinstance(outcome, Refusal):
+                short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
+                present = [a for component, a in ecology.items() if component not in lost]
+                misses = self.partitioner.near_misses(present)
+                yield replace(outcome, near_misses=tuple(m for m in misses if not short or m.role in short))
+            else:
+                yield outcome
 
-    def _search(self, problem: Problem, running: Configuration | None) -> Configuration | Refusal:
-        if self.strategy is Strategy.PAPER:
-            return paper.search(problem) or solve.search(problem)
+    def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         if self.strategy is Strategy.BEST:
-            found = best.search(problem)
-            if isinstance(found, Undecided):
-                return solve.search(problem)
-            return found.configuration if isinstance(found, best.Optimum) else found
-        return solve.search(problem) if running is None else repair.search(problem, running)
+            yield from self._best(problem)
+            return
+        found = paper.search(problem, self.steps) if self.strategy is Strategy.PAPER else None
+        if found is not None:
+            yield found
+        elif running is None or self.strategy is Strategy.PAPER:
+            yield self._first(problem)
+        elif self.steps is None:
+            yield repair.search(problem, running)
+        else:
+            first = self._first(problem)
+            near = repair.nearest(problem, running, self.steps) if isinstance(first, Configuration) else first
+            yield near.configuration if isinstance(near, repair.Repaired) else near
+
+    def _first(self, problem: Problem) -> Outcome:
+        return solve.search(problem) if self.steps is None else solve.decide(problem, self.steps)
+
+    def _best(self, problem: Problem) -> Iterator[Optimum | Outcome]:
+        most = SLICES[-1] if self.steps is None else self.steps
+        for steps in (*(slice_ for slice_ in SLICES if slice_ < most), most):
+            found = best.search(problem, steps)
+            yield found
+            if isinstance(found, Refusal) or (isinstance(found, Optimum) and found.proved):
+                return
+        if isinstance(found, Undecided) and self.steps is None:
+            yield self._first(problem)
 
     def mended(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""

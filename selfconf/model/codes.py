@@ -281,6 +281,17 @@ CODES: tuple[Code, ...] = (
         f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 1 ] .",
     ),
     Code(
+        "SC-T14", "The cost of a template is a list of levels, each with terms that count a property.",
+        "The first level matters most, so there has to be an order; a term counts numbers, times its weight.",
+        f"{_PAIR}\n:radio sc:cost ( [ sc:term [ sc:weight 2 ] ] ) .",
+        f"{_PAIR}\n:radio sc:cost ( [ sc:term [ sc:property rob:latency ; sc:weight 2 ; sc:ofRole :sink ] ] ) .",
+        (
+            "CostTemplate", "CostOnce", "CostList", "LevelTerms", "TermPropertyOnce", "TermPropertyIri",
+            "TermWeightOnce", "TermWeight", "TermOtherwiseOnce", "TermOtherwise", "TermRoleOnce", "TermRoleTyped",
+            "TermRoleListed",
+        ),
+    ),
+    Code(
         "SC-K01", "A task has exactly one template, given by its IRI.",
         "A task is a template with bindings.",
         ":music a sc:Task .", ":music a sc:Task ; sc:template :radio .",

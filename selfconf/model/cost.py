@@ -55,12 +55,22 @@ def cost(
     Unknown comes first: something that is not known is never preferred to something that is. Of several values of a
     property the one that costs most counts.
     """
-    found = [list(_terms(level, role, profile, hierarchy)) for level in levels]
+    found = [[value for _, value in _terms(level, role, profile, hierarchy)] for level in levels]
     unknown = sum(value is None for level in found for value in level)
     return Fraction(unknown), *(sum((v for v in level if v is not None), Fraction(0)) for level in found)
 
 
-def _terms(level: CostLevel, role: IRI, profile: Profile, hierarchy: Hierarchy) -> Iterator[Fraction | None]:
+def unknown(
+    levels: Sequence[CostLevel], role: IRI, profile: Profile, hierarchy: Hierarchy = NOTHING_ABOVE
+) -> Iterator[IRI]:
+    """The properties that terms of a component in a role ask for, that it does not have, with nothing said for that."""
+    for level in levels:
+        yield from (term.property for term, value in _terms(level, role, profile, hierarchy) if value is None)
+
+
+def _terms(
+    level: CostLevel, role: IRI, profile: Profile, hierarchy: Hierarchy
+) -> Iterator[tuple[CostTerm, Fraction | None]]:
     for term in level:
         if term.role not in (None, role):
             continue
@@ -71,6 +81,6 @@ def _terms(level: CostLevel, role: IRI, profile: Profile, hierarchy: Hierarchy) 
             if (value := number(said)) is not None
         ]
         if values:
-            yield max(values)
+            yield term, max(values)
         else:
-            yield None if term.otherwise is None else term.otherwise * term.weight
+            yield term, None if term.otherwise is None else term.otherwise * term.weight

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from selfconf.model.configuration import Configuration
 from selfconf.model.partition import NearMiss
 from selfconf.model.repair import Repair
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
@@ -193,12 +194,22 @@ class Refusal:
 
 @dataclass(frozen=True, slots=True)
 class Undecided:
-    """The steps that were allowed are used up, and there is neither a configuration nor a proof that there is none."""
+    """What was allowed is used up, and there is neither a configuration nor a proof that there is none."""
 
-    steps: int
+    code: ClassVar[str] = "undecided"
+    steps: int = 0
+    seconds: float | None = None
+    """The time that was allowed, if it was time that ended the search."""
 
     def __str__(self) -> str:
-        return f"not decided within {self.steps} steps; allow more, or install selfconf[solvers]"
+        if self.seconds is not None:
+            return f"not decided within {self.seconds:g} s; allow more by --seconds"
+        steps = "1 step" if self.steps == 1 else f"{self.steps} steps"
+        return f"not decided within {steps}; allow more by --steps, or install selfconf[solvers]"
+
+
+Outcome = Configuration | Refusal | Undecided
+"""What a search can come to."""
 
 
 def _eligible(number: int) -> str:

@@ -2,8 +2,8 @@
 
 SHACL and SPARQL on rdflib are Python, and Python's regular expressions look for signals as they go, so an alarm
 (`setitimer`, POSIX) ends both without a process or a thread of its own. An alarm reaches only the main thread, in which
-every program of selfconf does its work; elsewhere there is no limit. What is raised inside a destructor or a callback of
-the garbage collector is lost, so the alarm goes on ringing until the block is left.
+every program of selfconf does its work; elsewhere there is no limit. What is raised inside a destructor or a callback
+of the garbage collector is lost, so the alarm goes on ringing until the block is left.
 """
 
 from __future__ import annotations

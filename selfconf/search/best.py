@@ -24,9 +24,10 @@ from itertools import accumulate
 from math import lcm
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import cost
+from selfconf.model.cost import cost, unknown
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.term import IRI
 from selfconf.search import explain, sat, solve
 from selfconf.search.compact import Compact, Option, Prepared, compact
 from selfconf.search.maxsat import minimise
@@ -47,13 +48,15 @@ class Optimum:
     configuration: Configuration
     cost: tuple[Fraction, ...]
     bound: tuple[Fraction, ...]
-    unknown: int
-    """How many terms of the cost are over a property that a component does not have, with nothing said for that."""
+    missing: tuple[tuple[IRI, IRI], ...]
+    """Components of the solution and the properties that terms ask for in vain, with nothing said for that."""
+    proved: bool
+    """Whether there is nothing better for sure."""
 
     @property
-    def proved(self) -> bool:
-        """Whether there is nothing better for sure."""
-        return self.cost == self.bound
+    def unknown(self) -> int:
+        """How many terms of the cost are over a property that a component does not have."""
+        return len(self.missing)
 
 
 def search(problem: Problem, steps: int = STEPS) -> Optimum | Refusal | Undecided:
@@ -61,7 +64,7 @@ def search(problem: Problem, steps: int = STEPS) -> Optimum | Refusal | Undecide
     given = Prepared(problem)
     playing = solve.solution(given, Budget(steps))
     if isinstance(playing, Undecided):
-        return playing
+        return Undecided(steps)
     if playing is None:
         return explain.refusal(given)
     prices = Prices(problem)
@@ -82,9 +85,15 @@ def search(problem: Problem, steps: int = STEPS) -> Optimum | Refusal | Undecide
         playing = [[] for _ in problem.roles]
         for option in chosen:
             playing[option.kind.role].append(problem.candidates[option.kind.role][option.number])
-    unknown, *spent = prices.levels(playing)
-    least = spent if done else prices.unfolded(bound, len(part.slots))[1:]
-    return Optimum(problem.solved(playing), tuple(spent), tuple(least), int(unknown))
+    spent = prices.levels(playing)
+    least = spent if done else prices.unfolded(bound, len(part.slots))
+    missing = [
+        (candidate.profile.component, wanted)
+        for role, some in zip(problem.roles, playing, strict=True)
+        for candidate in some
+        for wanted in unknown(problem.task.template.cost, role.iri, candidate.profile, problem.hierarchy)
+    ]
+    return Optimum(problem.solved(playing), spent[1:], least[1:], tuple(missing), proved=spent == least)
 
 
 class Prices:

@@ -27,17 +27,22 @@ from collections.abc import Iterator
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate
+from selfconf.model.refusal import Undecided
 from selfconf.search.problem import Problem
 
 Partial = tuple[int | None, ...]
 """For each slot the index of its candidate, or None while nobody plays it."""
 
 
-def search(problem: Problem) -> Configuration | None:
-    """The configuration that Algorithm 1 returns, or None where it returns FAIL."""
+def search(problem: Problem, steps: int | None = None) -> Configuration | Undecided | None:
+    """The configuration that Algorithm 1 returns, or None where it returns FAIL; a step is a partial configuration."""
     slots = [position for position, role in enumerate(problem.roles) for _ in range(role.minimum)]
     queue: dict[Partial, None] = {tuple(None for _ in slots): None}
+    taken = 0
     while queue:
+        if taken == steps:
+            return Undecided(taken)
+        taken += 1
         partial = next(iter(queue))
         del queue[partial]
         if None not in partial:

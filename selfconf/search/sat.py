@@ -32,6 +32,9 @@ from selfconf.search.compact import Compact, Option
 from selfconf.search.requirement import Distinct, Fed, Played, Requirement, Shared
 from selfconf.search.walk import Budget
 
+SLICE = 5_000
+"""Conflicts for one call of the solver, a fraction of a second."""
+
 
 def available() -> bool:
     """Whether the extra `solvers` is installed."""
@@ -188,12 +191,13 @@ class Clauses:
         if budget.steps == 0:
             return Undecided(0)
         before = self._conflicts()
-        if budget.steps is None:
-            found: bool | None = self._solver.solve(assumptions=list(assumed))
-        else:
-            self._solver.conf_budget(budget.steps)
+        found: bool | None = None
+        while found is None and budget.steps != 0:
+            # The solver hears no signal inside a call, so that calls have to end for a time limit to be kept.
+            self._solver.conf_budget(SLICE if budget.steps is None else min(SLICE, budget.steps))
             found = self._solver.solve_limited(assumptions=list(assumed))
-        budget.spend(1 + self._conflicts() - before)
+            budget.spend(1 + self._conflicts() - before)
+            before = self._conflicts()
         if found is None:
             return Undecided(self._conflicts())
         if found:

@@ -55,7 +55,7 @@ def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
     given = Prepared(problem)
     playing = solution(given, Budget(steps))
     if isinstance(playing, Undecided):
-        return playing
+        return Undecided(steps)
     return explain.refusal(given, steps) if playing is None else problem.solved(playing)
 
 

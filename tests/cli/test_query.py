@@ -72,7 +72,7 @@ JOIN = " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(30))
 
 
 def test_a_query_without_end_is_ended(dataset: Dataset) -> None:
-    with pytest.raises(QueryError, match="more than 0.5 s"):
+    with pytest.raises(QueryError, match=r"more than 0\.5 s"):
         answer(dataset, Question(f"SELECT (COUNT(*) AS ?n) WHERE {{ {JOIN} }}"), 0.5)
 
 

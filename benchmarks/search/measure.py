@@ -1,0 +1,64 @@
+"""One engine on one instance, in a process of its own, with a time limit."""
+
+from __future__ import annotations
+
+import gc
+import multiprocessing
+import resource
+import time
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+
+from benchmarks.search.engines import ENGINES
+from selfconf.search.problem import Problem
+
+QUICK = 0.3
+"""Seconds; what is quicker is measured several times, and the shortest time counts."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Seconds, the answer (None: none within the limit) and the growth of memory in megabytes."""
+
+    seconds: float
+    answer: bool | None
+    memory: float = 0.0
+
+
+def measure(engine: str, problem: Problem, limit: float, times: int = 3) -> Measured:
+    """The time from the problem to the answer, building a model of it included, importing a library not."""
+    found = _once(engine, problem, limit)
+    for _ in range(times - 1):
+        if found.answer is not None and found.seconds < QUICK:
+            found = min(found, _once(engine, problem, limit), key=lambda one: (one.answer is None, one.seconds))
+    return found
+
+
+def _once(engine: str, problem: Problem, limit: float) -> Measured:
+    context = multiprocessing.get_context("fork")
+    receiving, sending = context.Pipe(duplex=False)
+    gc.collect()
+    gc.freeze()  # so that the child does not copy the pages of the problem as it counts references to nothing
+    process = context.Process(target=_child, args=(engine, problem, sending))
+    process.start()
+    sending.close()
+    found = Measured(limit, None)
+    try:
+        if receiving.poll(60) and receiving.recv() and receiving.poll(limit):
+            found = receiving.recv()
+    except EOFError:
+        found = Measured(limit, None)
+    process.kill()
+    process.join()
+    gc.unfreeze()
+    return found
+
+
+def _child(engine: str, problem: Problem, sending: Connection) -> None:
+    sending.send(True)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    start = time.perf_counter()
+    answer = ENGINES[engine](problem)
+    seconds = time.perf_counter() - start
+    sending.send(Measured(seconds, answer, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024))
+    sending.close()

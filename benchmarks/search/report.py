@@ -1,0 +1,210 @@
+"""What was measured, as a page of Markdown and a plot."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchmarks.search.engines import ENGINES
+from benchmarks.search.families import Instance
+from benchmarks.search.measure import Measured
+
+WORK = 0.01
+"""Seconds; an instance on which the slower of ours and the best takes less is no work."""
+GOAL = 1.5
+PLOTTED = ("navigation", "navigation, impossible", "fleet of 100", "chain", "3-SAT", "distinct, impossible")
+
+
+@dataclass(frozen=True)
+class Row:
+    """An instance, what each engine did on it, and the answer on which those agree that have one."""
+
+    instance: Instance
+    found: Mapping[str, Measured]
+    answer: bool | None
+
+    @property
+    def others(self) -> dict[str, float]:
+        """Seconds of the other engines that have an answer."""
+        return {e: m.seconds for e, m in self.found.items() if e != "selfconf" and m.answer is not None}
+
+    @property
+    def ratio(self) -> float | None:
+        """Our time over that of the best other engine."""
+        return self.found["selfconf"].seconds / min(self.others.values()) if self.others else None
+
+    @property
+    def counts(self) -> bool:
+        """Whether it is one of the instances that the goal speaks of."""
+        return bool(self.others) and max(self.found["selfconf"].seconds, min(self.others.values())) > WORK
+
+
+def table(rows: Sequence[Row]) -> str:
+    """The times, an engine in each column."""
+    engines = [engine for engine in ENGINES if any(engine in row.found for row in rows)]
+    lines = [
+        f"| family | instance | {' | '.join(engines)} | selfconf / best |",
+        "|---|---|" + "---:|" * (len(engines) + 1),
+    ]
+    for row in rows:
+        cells = " | ".join(_cell(row.found.get(engine)) for engine in engines)
+        ratio = "no other answers" if row.ratio is None else f"{row.ratio:.2f}"
+        missed = row.counts and (row.ratio or 0.0) > GOAL
+        ratio = f"**{ratio}**" if missed else ratio
+        lines.append(f"| {row.instance.family} | {row.instance.name} | {cells} | {ratio} |")
+    return "\n".join(lines)
+
+
+def _cell(found: Measured | None) -> str:
+    if found is None:
+        return ""
+    return f"> {found.seconds:g} s" if found.answer is None else f"{found.seconds * 1000:.1f} ms"
+
+
+def exponents(rows: Sequence[Row]) -> str:
+    """How time grows with size: the slope in a log-log diagram, where three sizes take over a millisecond."""
+    lines = ["| family | engine | time grows as size to the |", "|---|---|---:|"]
+    for family in dict.fromkeys(row.instance.family for row in rows):
+        for engine in ENGINES:
+            points = [
+                (math.log(row.instance.size), math.log(m.seconds))
+                for row in rows
+                if row.instance.family == family and (m := row.found.get(engine)) and m.answer is not None
+                if m.seconds > 0.001
+            ]
+            if len({x for x, _ in points}) >= 3:
+                slope = statistics.linear_regression([x for x, _ in points], [y for _, y in points]).slope
+                lines.append(f"| {family} | {engine} | {slope:.1f} |")
+    return "\n".join(lines)
+
+
+def memory(rows: Sequence[Row]) -> str:
+    """The growth of memory where some engine needs over 20 MB."""
+    engines = [engine for engine in ENGINES if any(engine in row.found for row in rows)]
+    lines = [f"| family | instance | {' | '.join(engines)} |", "|---|---|" + "---:|" * len(engines)]
+    for row in rows:
+        if any(one.memory > 20 for one in row.found.values()):
+            cells = [
+                f"{row.found[e].memory:.0f} MB" if e in row.found and row.found[e].answer is not None else ""
+                for e in engines
+            ]
+            lines.append(f"| {row.instance.family} | {row.instance.name} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def verdict(rows: Sequence[Row]) -> Iterator[str]:
+    """Whether the goals are met, and where not."""
+    counted = [row for row in rows if row.counts]
+    ratios = [row.ratio for row in counted if row.ratio is not None]
+    if ratios:
+        yield (
+            f"* On the {len(ratios)} instances beyond {WORK * 1000:g} ms of work, selfconf takes"
+            f" {statistics.median(ratios):.2f} times as long as the best other engine in the median, {max(ratios):.2f}"
+            f" times at worst. The goal is at most {GOAL:g} times on each."
+        )
+        missed = [row for row in counted if (row.ratio or 0.0) > GOAL]
+        places = "; ".join(f"{r.instance.family}, {r.instance.name} ({r.ratio:.2f})" for r in missed)
+        yield f"* It is missed on {len(missed)} of them: {places}." if missed else "* It is met on all of them."
+    undecided = [row for row in rows if row.found["selfconf"].answer is None]
+    if undecided:
+        places = "; ".join(f"{r.instance.family}, {r.instance.name}" for r in undecided)
+        yield f"* Without an answer within the limit: {places}."
+    for engine in ENGINES:
+        against = [
+            (one.seconds / row.found["selfconf"].seconds, one.answer is None)
+            for row in rows
+            if engine != "selfconf" and (one := row.found.get(engine)) is not None
+        ]
+        if against:
+            mean = statistics.geometric_mean(one for one, _ in against)
+            late = sum(out for _, out in against)
+            tail = f"; {late} time-outs count as the limit" if late else ""
+            yield f"* {engine} takes {mean:.1f} times as long as selfconf (geometric mean of {len(against)}{tail})."
+    large = [
+        row for row in rows if row.instance.family.startswith(("navigation", "fleet")) and row.instance.size >= 1000
+    ]
+    quickest = [row.ratio for row in large if row.ratio is not None]
+    if quickest:
+        met = "met" if max(quickest) <= 0.1 else "missed"
+        yield (
+            "* On the paper's template and the fleet from 1,000 candidates per role, the goal is 10 times quicker than"
+            f" each general solver: at least {1 / max(quickest):.0f} times, {met}."
+        )
+    ours = [row for row in rows if "Algorithm 1" in row.found and row.instance.size == 10]
+    for row in ours:
+        factor = row.found["Algorithm 1"].seconds / row.found["selfconf"].seconds
+        least = "at least " if row.found["Algorithm 1"].answer is None else ""
+        met = "met" if factor >= 1000 else "missed"
+        yield (
+            f"* {row.instance.family}, 10 per role: {least}{factor:.0f} times quicker than Algorithm 1; the goal of"
+            f" 1,000 is {met}."
+        )
+
+
+def page(rows: Sequence[Row], limit: float) -> str:
+    """The page."""
+    setting = (
+        f"One run on {platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f},"
+        f" Python {platform.python_version()}. Every engine in a process of its own, {limit:g} s for each answer;"
+        " building a model is part of the time, importing a library is not. selfconf answers with the"
+        " lexicographically first configuration, the others with any, which is the easier question. SPARQL asks one"
+        " query for the whole template, on small sizes."
+    )
+    parts = [
+        "# The search beside general solvers",
+        "<!-- Made by `python -m benchmarks.search.run --write`. -->",
+        setting,
+        "![Time by size](search.png)",
+        "\n".join(verdict(rows)),
+    ]
+    for answer, title in ((True, "Time to an answer"), (False, "Time to the proof that there is none")):
+        some = [row for row in rows if row.answer is answer]
+        if some:
+            parts += [f"## {title}", table(some)]
+    rest = [row for row in rows if row.answer is None]
+    if rest:
+        parts += ["## Decided by nobody", table(rest)]
+    note = (
+        "How far the peak of resident memory rises above that of the problem itself, where some engine needs over"
+        " 20 MB. What fits into memory that making the problem has left free shows as 0."
+    )
+    parts += ["## Growth", exponents(rows), "## Memory", note, memory(rows)]
+    return "\n\n".join(parts) + "\n"
+
+
+def plot(rows: Sequence[Row], limit: float, path: Path) -> None:
+    """Time by size, a panel for each family."""
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    families = [family for family in PLOTTED if any(row.instance.family == family for row in rows)]
+    figure, axes = pyplot.subplots(2, 3, figsize=(12, 7), sharey=True, layout="constrained")
+    for number, family in enumerate(families):
+        panel = axes.flat[number]
+        for color, engine in enumerate(ENGINES):
+            times: dict[int, list[float]] = {}
+            for row in rows:
+                if row.instance.family == family and engine in row.found:
+                    times.setdefault(row.instance.size, []).append(row.found[engine].seconds)
+            middle = [statistics.median(some) for some in times.values()]
+            width = 2.8 if engine == "selfconf" else 1.2
+            if times:
+                panel.plot(list(times), middle, f"C{color}o-", ms=4, label=engine, linewidth=width)
+        panel.axhline(limit, color="grey", linestyle=":", linewidth=1)
+        wide = family.startswith(("navigation", "fleet"))
+        unit = "candidates per role" if wide else "variables" if family == "3-SAT" else "roles"
+        panel.set(xscale="log" if wide else "linear", yscale="log", title=family, xlabel=unit)
+        panel.grid(visible=True, which="major", alpha=0.3)
+        if number % 3 == 0:
+            panel.set_ylabel("seconds")
+    handles = {label: h for panel in axes.flat for h, label in zip(*panel.get_legend_handles_labels(), strict=True)}
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles), frameon=False)
+    figure.savefig(path, dpi=100)
+    pyplot.close(figure)

@@ -1,0 +1,52 @@
+"""What else a refusal can tell: who nearly fits by type, what would mend it, and the reasoning that would."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from dataclasses import replace
+
+from selfconf.cli.budget import Clock
+from selfconf.cli.inputs import read_hierarchy
+from selfconf.configurator.compose import Composer
+from selfconf.model.configuration import Configuration
+from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.partition import NearMiss
+from selfconf.model.refusal import Refusal, TooFewEligible
+from selfconf.model.term import IRI
+from selfconf.rdf import kinship
+from selfconf.rdf.advertisements import Advertisement
+
+
+def explained(
+    composer: Composer,
+    ecology: Mapping[IRI, Advertisement],
+    refusal: Refusal,
+    given: argparse.Namespace,
+    clock: Clock,
+) -> Refusal:
+    """The refusal with all that the time allows to find out."""
+    syntactic = given.reasoning == Reasoning.SYNTACTIC.value
+    known = read_hierarchy(given, Reasoning.SUBCLASS) if syntactic else composer.hierarchy
+    refusal = replace(refusal, near_misses=(*_by_type(composer, ecology, refusal, known), *refusal.near_misses))
+    refusal = clock.within(lambda: composer.mended(ecology, refusal), refusal)
+    if syntactic and clock.within(lambda: _possible(Composer(composer.task, known), ecology), False):
+        return replace(refusal, hint="with --reasoning subclass there is a configuration")
+    return refusal
+
+
+def _possible(composer: Composer, ecology: Mapping[IRI, Advertisement]) -> bool:
+    return isinstance(composer.compose(ecology, frozenset(), None), Configuration)
+
+
+def _by_type(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal, known: Hierarchy
+) -> tuple[NearMiss, ...]:
+    """For roles with too few candidates, those whose type alone keeps them out: the most likely cause, a slip."""
+    short = {reason.role for reason in refusal.reasons if isinstance(reason, TooFewEligible)}
+    return tuple(
+        miss
+        for role in composer.partitioner.roles
+        if role.iri in short
+        for miss in kinship.near_misses(role, ecology.values(), composer.hierarchy, known)
+    )

@@ -1,0 +1,111 @@
+"""Searches that end before they are through: an honest "not decided", and never a wrong answer."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from selfconf.cli.budget import Clock, composed
+from selfconf.cli.inputs import read_advertisements
+from selfconf.configurator.compose import Composer, Strategy
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Undecided
+from selfconf.rdf import templates, turtle
+from selfconf.search.best import Optimum
+from tests.cli.command import Outcome, run
+from tests.lab import PREFIXES
+
+ROLES = 7
+CROWD = "\n".join(f":c{k} a sc:Component, :Worker ." for k in range(ROLES - 1))
+"""One worker too few: Algorithm 1 tries them all in every order, which takes longer than anyone waits."""
+TEAM = f":team a sc:Template ; sc:roles ( {' '.join(f':r{k}' for k in range(ROLES))} ) .\n" + "\n".join(
+    f":r{k} a sc:Role ; sh:class :Worker ." for k in range(ROLES)
+)
+
+
+@pytest.fixture
+def team(tmp_path: Path) -> Path:
+    """A template and a folder of advertisements beside it."""
+    (tmp_path / "ads").mkdir()
+    (tmp_path / "ads" / "crowd.ttl").write_text(PREFIXES + CROWD)
+    (tmp_path / "team.ttl").write_text(PREFIXES + TEAM)
+    return tmp_path
+
+
+def configure(capsys: pytest.CaptureFixture[str], team: Path, *arguments: str) -> Outcome:
+    """Run `configure` for the team."""
+    return run(capsys, "configure", str(team / "team.ttl"), "--ads", str(team / "ads"), *arguments)
+
+
+@pytest.mark.parametrize(
+    ("budget", "words"), [(("--steps", "50"), "within 50 steps"), (("--seconds", "0.3"), "within 0.3 s")]
+)
+def test_a_search_that_ends_before_it_is_through_is_undecided(
+    capsys: pytest.CaptureFixture[str], team: Path, budget: tuple[str, ...], words: str
+) -> None:
+    assert configure(capsys, team, "--strategy", "paper", *budget).is_one_sentence("not decided", words)
+    outcome = configure(capsys, team, "--strategy", "paper", "--format", "json", *budget)
+    assert outcome.code == 2
+    assert outcome.body["status"] == "undecided"
+    assert words in outcome.body["message"]
+    assert len(outcome.body["eligible"]) == ROLES
+
+
+def test_the_time_is_kept(capsys: pytest.CaptureFixture[str], team: Path) -> None:
+    began = time.monotonic()
+    configure(capsys, team, "--strategy", "paper", "--seconds", "0.2")
+    assert time.monotonic() - began < 10  # some 40 s without
+
+
+def test_a_budget_that_is_enough_changes_nothing(capsys: pytest.CaptureFixture[str], team: Path) -> None:
+    plain = configure(capsys, team)
+    assert plain.code == 1
+    assert configure(capsys, team, "--steps", "1000000", "--seconds", "600").out == plain.out
+    (team / "ads" / "more.ttl").write_text(PREFIXES + ":c9 a sc:Component, :Worker .")
+    plain = configure(capsys, team)
+    assert plain.code == 0
+    assert configure(capsys, team, "--steps", "1000000", "--seconds", "600").out == plain.out
+
+
+@pytest.mark.parametrize("wrong", [("--steps", "0"), ("--steps", "few"), ("--seconds", "-1"), ("--seconds", "nan")])
+def test_a_budget_that_is_none_is_misuse(
+    capsys: pytest.CaptureFixture[str], team: Path, wrong: tuple[str, ...]
+) -> None:
+    outcome = configure(capsys, team, *wrong)
+    assert outcome.code == 2
+    assert "above zero" in outcome.err
+
+
+def test_with_a_budget_a_running_configuration_is_still_repaired(team: Path) -> None:
+    ecology = read_advertisements([team / "ads"])
+    text = PREFIXES + ":duo a sc:Template ; sc:roles ( :a :b ) . :a a sc:Role . :b a sc:Role ."
+    task = templates.read(turtle.parse(text, "duo"))
+    composer = Composer(task, steps=10_000)
+    running = composer.compose(ecology, frozenset(), None)
+    assert isinstance(running, Configuration)
+    after = composer.compose(ecology, frozenset(running.components[:1]), running)
+    assert isinstance(after, Configuration)
+    assert running.components[1] in after.components
+    hurried = Composer(task, steps=1).compose(ecology, frozenset(running.components[:1]), running)
+    assert isinstance(hurried, Undecided)
+
+
+def test_when_the_time_is_up_the_best_answer_so_far_remains(team: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ecology = read_advertisements([team / "ads"])
+    cost = "sc:cost ( [ sc:term [ sc:property :p ] ] )"
+    text = PREFIXES + f":solo a sc:Template ; sc:roles ( :a ) ; {cost} .\n:a a sc:Role ."
+    composer = Composer(templates.read(turtle.parse(text, "solo")), strategy=Strategy.BEST)
+    (proved,) = composer.answers(ecology, frozenset(), None)
+    clock = Clock(0.2)
+
+    def endless(*_: object) -> object:
+        yield proved
+        while True:
+            pass
+
+    monkeypatch.setattr(composer, "answers", endless)
+    assert composed(composer, ecology, frozenset(), None, clock) is proved
+    assert isinstance(proved, Optimum)
+    assert composed(composer, ecology, frozenset(), None, clock) == Undecided(seconds=0.2)

@@ -1,0 +1,29 @@
+"""The floors of the house: imports run downward only."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def test_the_floors_are_kept() -> None:
+    lint = Path(sys.executable).parent / "lint-imports"
+    outcome = subprocess.run([lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert outcome.returncode == 0, outcome.stdout
+
+
+def test_no_module_has_a_name_that_says_nothing() -> None:
+    nothing = {"utils", "util", "helper", "helpers", "manager", "handler", "data", "info", "misc", "common"}
+    found = [path for top in ("selfconf", "sim") for path in (ROOT / top).rglob("*.py") if path.stem in nothing]
+    assert found == []
+
+
+def test_every_module_says_what_it_is() -> None:
+    for top in ("selfconf", "sim"):
+        for path in (ROOT / top).rglob("*.py"):
+            if path.name == "__main__.py":
+                continue
+            assert path.read_text().startswith('"""'), path

@@ -1,0 +1,99 @@
+"""How programs on one machine find each other's routers."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from selfconf import rendezvous
+from selfconf.errors import NetworkError
+from selfconf.rendezvous import Meeting
+
+
+def meeting(ecology: str = "home", site: str = "a", process: int | None = None) -> Meeting:
+    """A site of this process."""
+    return Meeting(ecology, site, f"tcp/127.0.0.1:{len(site) + 7000}", os.getpid() if process is None else process)
+
+
+def dead_process() -> int:
+    """The number of a process that has just ended."""
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    process.wait()
+    return process.pid
+
+
+def test_a_site_that_has_announced_itself_is_found(runtime_folder: Path) -> None:
+    path = rendezvous.announce(meeting())
+    assert path.parent == runtime_folder
+    assert rendezvous.meetings() == [meeting()]
+    assert rendezvous.find(None, []) == ("home", [meeting().endpoint])
+    path.unlink()
+    assert rendezvous.meetings() == []
+
+
+def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:
+    for ecology, site in (("home", "a"), ("home", "bb"), ("office", "ccc")):
+        rendezvous.announce(meeting(ecology, site))
+    assert [found.site for found in rendezvous.meetings("home")] == ["a", "bb"]
+    assert rendezvous.find("office", []) == ("office", [meeting("office", "ccc").endpoint])
+
+
+def test_of_several_ecologies_one_must_be_named() -> None:
+    rendezvous.announce(meeting("home"))
+    rendezvous.announce(meeting("office"))
+    with pytest.raises(NetworkError, match="--ecology: home, office"):
+        rendezvous.find(None, [])
+
+
+def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
+    path = rendezvous.announce(meeting(process=dead_process()))
+    assert rendezvous.meetings() == []
+    assert not path.exists()
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", "7", '{"ecology": "home"}', '{"process": "x"}'])
+def test_a_file_that_is_no_meeting_is_passed_over(runtime_folder: Path, text: str) -> None:
+    (runtime_folder / "home@x.json").write_text(text)
+    rendezvous.announce(meeting())
+    assert rendezvous.meetings() == [meeting()]
+
+
+def test_where_no_site_runs_it_is_said_what_to_start() -> None:
+    with pytest.raises(NetworkError, match="selfconf site"):
+        rendezvous.find(None, [])
+    with pytest.raises(NetworkError, match="of the ecology 'home'"):
+        rendezvous.find("home", [])
+
+
+def test_endpoints_that_are_given_need_no_file() -> None:
+    assert rendezvous.find("office", ["tcp/127.0.0.1:1"]) == ("office", ["tcp/127.0.0.1:1"])
+
+
+def test_the_folder_is_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SELFCONF_RUNTIME_DIR")
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    assert rendezvous.folder() == tmp_path / "selfconf"
+    rendezvous.announce(meeting())
+    assert (tmp_path / "selfconf").stat().st_mode & 0o077 == 0
+    monkeypatch.delenv("XDG_RUNTIME_DIR")
+    assert str(os.getuid()) in rendezvous.folder().name
+
+
+def test_a_folder_of_somebody_else_is_neither_written_nor_read(
+    runtime_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rendezvous.announce(meeting())
+    monkeypatch.setattr("os.getuid", lambda: runtime_folder.stat().st_uid + 1)
+    assert rendezvous.meetings() == []
+    with pytest.raises(NetworkError, match="belongs to somebody else"):
+        rendezvous.announce(meeting())
+
+
+def test_the_file_is_plain_json(runtime_folder: Path) -> None:
+    body = json.loads(rendezvous.announce(meeting()).read_text())
+    assert body == {"ecology": "home", "site": "a", "endpoint": "tcp/127.0.0.1:7001", "process": os.getpid()}
