@@ -194,8 +194,9 @@ class Teller:
         facts = {key: self._word(value) for key, value in account.facts.items()}
         if account.act == "composed":
             outcome = account.facts["outcome"]
+            nothing = "no answer" if isinstance(outcome, Undecided) else "no configuration"
             found = isinstance(outcome, Configuration)
-            facts["roles"] = f"{len(outcome.components)} components" if found else "no configuration"
+            facts["roles"] = f"{len(outcome.components)} components" if found else nothing
             facts["milliseconds"] = account.facts["seconds"] * 1000
         complain(f"{account.time - self._began:9.3f} s  {sentence.format(**facts)}")
 

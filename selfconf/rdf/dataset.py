@@ -45,7 +45,7 @@ class Dataset:
     def add(self, name: IRI, triples: Iterable[Triple]) -> None:
         """Add triples to a named graph."""
         graph = ox.NamedNode(name)
-        self._store.extend(
+        self._store.extend(  # the types: a subject is never a literal
             ox.Quad(ox_term(s), ox.NamedNode(p), ox_term(o), graph)  # type: ignore[arg-type]
             for s, p, o in triples
         )

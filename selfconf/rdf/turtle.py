@@ -89,7 +89,7 @@ def parse(text: str | bytes, source: str, base: str | None = None) -> Document:
         return found
 
     try:
-        for quad in reader:
+        for quad in reader:  # the types: a subject is never a literal, a predicate always an IRI
             statements[read(quad.subject)].append(  # type: ignore[index]
                 (read(quad.predicate), read(quad.object))  # type: ignore[arg-type]
             )

@@ -28,7 +28,7 @@ def ox_term(value: Term) -> ox.NamedNode | ox.BlankNode | ox.Literal:
 
 
 def _ox_triples(triples: Iterable[Triple]) -> Iterator[ox.Triple]:
-    for subject, predicate, value in triples:
+    for subject, predicate, value in triples:  # the types: a subject is never a literal
         yield ox.Triple(ox_term(subject), ox.NamedNode(predicate), ox_term(value))  # type: ignore[arg-type]
 
 

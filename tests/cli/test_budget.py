@@ -15,6 +15,7 @@ from selfconf.model.refusal import Undecided
 from selfconf.rdf import templates, turtle
 from selfconf.search.best import Optimum
 from tests.cli.command import Outcome, run
+from tests.cli.processes import Home
 from tests.lab import PREFIXES
 
 ROLES = 7
@@ -90,6 +91,14 @@ def test_with_a_budget_a_running_configuration_is_still_repaired(team: Path) -> 
     assert running.components[1] in after.components
     hurried = Composer(task, steps=1).compose(ecology, frozenset(running.components[:1]), running)
     assert isinstance(hurried, Undecided)
+
+
+def test_a_run_that_is_not_decided_deploys_nothing_and_says_so(inhabited: Home) -> None:
+    run = inhabited.run("--steps", "1")
+    assert run.act("composed")["outcome"]["code"] == "undecided"
+    assert run.ended() == 2
+    assert "not decided within 1 step" in run.complaints
+    assert inhabited.active("sonar", "control", "drive") == set()
 
 
 def test_when_the_time_is_up_the_best_answer_so_far_remains(team: Path, monkeypatch: pytest.MonkeyPatch) -> None:
