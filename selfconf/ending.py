@@ -31,10 +31,11 @@ def orphaned(parent: int) -> bool:
     starter = os.environ.get(_PARENT)
     if starter is None or not starter.isdigit():
         return False
-    return os.getppid() != parent or (parent != int(starter) and not _alive(int(starter)))
+    return os.getppid() != parent or (parent != int(starter) and not alive(int(starter)))
 
 
-def _alive(process: int) -> bool:
+def alive(process: int) -> bool:
+    """Whether a process of this machine is there."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:

@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from selfconf.bus.zenoh_bus import client
+from selfconf.ending import alive
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import any_ecology, ecology_of
 
@@ -79,10 +80,10 @@ def meetings(ecology: str | None = None) -> list[Meeting]:
     for path in sorted(root.glob("*.json")):
         try:
             meeting = Meeting(**json.loads(path.read_text()))
-            alive = _alive(int(meeting.process))
+            living = alive(int(meeting.process))
         except (OSError, ValueError, TypeError):
             continue
-        if not alive:
+        if not living:
             path.unlink(missing_ok=True)
         elif ecology is None or meeting.ecology == ecology:
             found.append(meeting)
@@ -121,13 +122,3 @@ def _ecology_at(endpoints: list[str]) -> str:
     if names:
         raise NetworkError(f"several ecologies are there; say which with --ecology: {', '.join(names)}")
     raise NetworkError(f"a router answers at {', '.join(endpoints)}, but no site of any ecology")
-
-
-def _alive(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True

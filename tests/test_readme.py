@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -87,3 +88,48 @@ def test_the_examples_are_what_the_readme_shows(folder: Path) -> None:
     for name in ("clock.ttl", "display.ttl"):
         shown = (folder / name).read_text().partition("\n")[2]
         assert shown == (examples / name).read_text()
+
+
+def running(folder: Path, word: bytes) -> list[int]:
+    """The processes that run in a folder and have a word in their command line."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        with suppress(OSError):
+            if entry.name.isdigit() and (entry / "cwd").resolve() == folder.resolve():
+                found += [int(entry.name)] if word in (entry / "cmdline").read_bytes() else []
+    return found
+
+
+def test_with_wait_a_crashed_component_gets_another_chance(folder: Path) -> None:
+    arguments = next(arguments for arguments in commands() if arguments[0] == "run")
+    process = start([*arguments, "--wait"], folder)
+    assert process.stdout is not None
+    said, killed = [], False
+    for line in process.stdout:
+        said.append(line)
+        if re.fullmatch(r"\d\d:\d\d:\d\d\n", line):
+            if killed:
+                break
+            killed = True
+            for number in running(folder, b"display.py"):
+                os.kill(number, signal.SIGKILL)
+    process.send_signal(signal.SIGINT)
+    rest, _ = process.communicate(timeout=PATIENCE)
+    assert "waiting for the ecology to change" in "".join(said)
+    assert process.returncode == 0, "".join(said) + rest
+
+
+def test_a_run_whose_words_cannot_be_written_ends(folder: Path) -> None:
+    arguments = next(arguments for arguments in commands() if arguments[0] == "run")
+    environment = {**os.environ, "SELFCONF_RUNTIME_DIR": str(folder / "runtime")}
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "selfconf", *arguments],
+            cwd=folder,
+            env=environment,
+            stdout=full,
+            stderr=full,
+            timeout=PATIENCE,
+            check=False,
+        )
+    assert done.returncode == 0

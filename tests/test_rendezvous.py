@@ -97,3 +97,18 @@ def test_a_folder_of_somebody_else_is_neither_written_nor_read(
 def test_the_file_is_plain_json(runtime_folder: Path) -> None:
     body = json.loads(rendezvous.announce(meeting()).read_text())
     assert body == {"ecology": "home", "site": "a", "endpoint": "tcp/127.0.0.1:7001", "process": os.getpid()}
+
+
+def test_the_name_of_a_living_site_is_taken() -> None:
+    rendezvous.announce(meeting(process=os.getppid()))
+    with pytest.raises(NetworkError, match="runs on this machine already"):
+        rendezvous.announce(meeting())
+
+
+def test_a_site_that_leaves_takes_nobody_elses_file_with_it() -> None:
+    path = rendezvous.announce(meeting(process=os.getppid()))
+    rendezvous.leave(path)
+    assert path.is_file()
+    mine = rendezvous.announce(meeting(site="bb"))
+    rendezvous.leave(mine)
+    assert not mine.exists()

@@ -102,13 +102,13 @@ def alone(data: Graph, shapes: Graph, role: IRI, nodes: list[str]) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "path", list(cases()) if SUITE.is_dir() else [], ids=lambda path: f"{path.parent.name}-{path.stem}"
+    "path",
+    [path for path in cases() if roles(graphs(path)[1])] if SUITE.is_dir() else [],
+    ids=lambda path: f"{path.parent.name}-{path.stem}",
 )
 def test_a_role_has_the_verdicts_of_pyshacl(path: Path) -> None:
     data, shapes = graphs(path)
     wanted = roles(shapes)
-    if not wanted:
-        pytest.skip("no node shape with an IRI")
     for role in wanted:
         shapes.statements[role].append((TYPE, SC.Role))
     template = Template(IRI("urn:template"), tuple(Role(role) for role in wanted))
