@@ -183,7 +183,7 @@ class Agent:
             case SetOn():
                 self._calls.set(effect)
             case ReleaseFrom():
-                leisure = AT_LEISURE if self.state.phase is Phase.DEPLOYING else 0.0
+                leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, Phase.DEPLOYING) else 0.0
                 self.bus.later(leisure, partial(self._calls.release, effect))
             case Running():
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())

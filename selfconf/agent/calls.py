@@ -74,13 +74,13 @@ class Calls:
             self._later_answer(effect, "it is advertised, but it does not run")
             return
         inputs = self._with_promises(effect.inputs)
+        self._call(effect.component, Call.APPLY, Apply(effect.epoch, self._supervisor, inputs))
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         before = self._connections.get(effect.component, frozenset())
         for c in sorted(connections - before):
             self._tell("connecting", source=c.source, output=c.output, sink=c.sink, input=c.input)
         self._connections[effect.component] = frozenset(connections)
         self._tell("activating", component=effect.component)
-        self._call(effect.component, Call.APPLY, Apply(effect.epoch, self._supervisor, inputs))
 
     def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
         return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}

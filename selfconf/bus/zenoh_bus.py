@@ -128,7 +128,7 @@ class _Publisher:
     def put(self, payload: bytes, attachment: bytes = b"") -> None:
         """Put a sample; with the link down it is lost without an error, as Zenoh has it."""
         try:
-            self._declared.put(payload, attachment=attachment)
+            self._declared.put(payload, attachment=attachment or None)
         except zenoh.ZError:
             if self._bus._open:
                 raise

@@ -199,6 +199,7 @@ def _deploy(state: State) -> Step:
     surplus = [component for component in state.held if component not in wires]
     unheard = sorted(component for component in state.watched if component not in wires)
     changed = [component for component, inputs in wires.items() if not _as_wanted(state.held.get(component), inputs)]
+    changed.sort(key=state.held.__contains__)  # who has to begin first: others wait for its signals
     held = {component: state.held[component] for component in state.held if component in wires}
     for component in changed:
         before = held.get(component)

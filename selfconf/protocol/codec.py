@@ -11,9 +11,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-from collections.abc import Mapping
-from enum import Enum
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -40,10 +38,12 @@ LARGEST = 1 << 20
 
 def encode(message: Message) -> bytes:
     """The bytes of a message."""
-    body: dict[str, Any] = {field.name: _plain(getattr(message, field.name)) for field in dataclasses.fields(message)}
+    body: dict[str, Any] = {"kind": _kind(type(message))}
+    for name, _, _ in _FIELDS[type(message)]:
+        body[name] = getattr(message, name)
     if isinstance(message, SetParameters):
         body["values"] = {name: encode_term(value) for name, value in message.values.items()}
-    return json.dumps({"kind": _kind(type(message)), **body}, separators=(",", ":")).encode()
+    return _JSON.encode(body).encode()
 
 
 def decode(payload: bytes, expected: type[M]) -> M:
@@ -51,17 +51,17 @@ def decode(payload: bytes, expected: type[M]) -> M:
     if len(payload) > LARGEST:
         raise PeerError(f"a message of {len(payload)} bytes is too large")
     try:
-        body = json.loads(payload)
+        body = json.loads(payload.decode())  # of bytes it would guess the encoding
     except (ValueError, RecursionError) as error:
         raise PeerError(f"not a message: {error}") from None
     if not isinstance(body, dict) or body.get("kind") != _kind(expected):
         raise PeerError(f"not a message of kind {_kind(expected)!r}")
     values: dict[str, Any] = {}
-    for field in dataclasses.fields(expected):
-        if field.name in body:
-            values[field.name] = _READERS[expected, field.name](body[field.name])
-        elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
-            raise PeerError(f"a message of kind {_kind(expected)!r} lacks {field.name!r}")
+    for name, reader, required in _FIELDS[expected]:
+        if name in body:
+            values[name] = reader(body[name])
+        elif required:
+            raise PeerError(f"a message of kind {_kind(expected)!r} lacks {name!r}")
     return expected(**values)
 
 
@@ -94,22 +94,24 @@ def _kind(message: type) -> str:
     return message.__name__.lower()
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, Enum):
-        return value.value
+def _plain(value: object) -> object:
+    """What JSON has no word for."""
     if isinstance(value, Wire):
-        return [str(value.component), value.output, value.period]
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, tuple | list):
-        return [_plain(item) for item in value]
-    return value
+        return value.component, value.output, value.period
+    raise TypeError(f"no message holds a {type(value).__name__}")
+
+
+_JSON = json.JSONEncoder(separators=(",", ":"), default=_plain)
 
 
 def _text(value: object) -> str:
     """JSON can write half a surrogate pair, which no key and no file can hold: that is no text."""
-    if not isinstance(value, str) or any("\ud800" <= character <= "\udfff" for character in value):
+    if not isinstance(value, str):
         raise PeerError("a text was expected")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise PeerError("a text was expected") from None
     return value
 
 
@@ -226,3 +228,12 @@ _READERS: dict[tuple[type, str], Any] = {
     (Status, "components"): _iris,
     (Status, "lost"): _object,
 }
+
+_FIELDS: dict[type, tuple[tuple[str, Any, bool], ...]] = {
+    kind: tuple(
+        (field.name, _READERS[kind, field.name], field.default is field.default_factory is dataclasses.MISSING)
+        for field in dataclasses.fields(kind)
+    )
+    for kind in get_args(Message)
+}
+"""For each kind of message its fields: name, reader, and whether it must be there; a failover passes here often."""

@@ -24,6 +24,7 @@ import base64
 import hashlib
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from urllib.parse import quote, unquote
 
 from selfconf.errors import AuthorError, PeerError
@@ -42,6 +43,12 @@ def checked_name(name: str, what: str) -> str:
 def component_chunk(component: IRI) -> str:
     """The chunk that stands for a component."""
     return base64.b32encode(_digest(component)).decode().lower()
+
+
+@lru_cache(maxsize=1 << 12)
+def _place(component: IRI) -> str:
+    """The shard and the chunk of a component, as they stand in its keys."""
+    return f"{_digest(component)[0]:02x}/{component_chunk(component)}"
 
 
 def _digest(component: IRI) -> bytes:
@@ -79,8 +86,7 @@ class Keys:
         return self._site(site, "@ctl/wake")
 
     def _component(self, component: IRI, rest: str) -> str:
-        shard = f"{_digest(component)[0]:02x}"
-        return f"selfconf/{self.ecology}/c/{shard}/{component_chunk(component)}/{rest}"
+        return f"selfconf/{self.ecology}/c/{_place(component)}/{rest}"
 
     def life(self, component: IRI, life: str) -> str:
         return self._component(component, f"live/{life}")

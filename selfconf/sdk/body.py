@@ -52,6 +52,8 @@ log = logging.getLogger(__name__)
 
 GRACE = 1.0
 """Seconds after which a component without a living supervisor turns itself off."""
+SIGNALS_FIRST = 0.002
+"""Seconds for which what else an activation asks for stands back behind the signals that it sets free."""
 
 
 class Body:
@@ -151,14 +153,23 @@ class Body:
     # What it is told.
 
     def _call(self, request: Request) -> None:
+        call = call_of(request.key)
         try:
-            answer = self._answer(call_of(request.key), request.payload)
-            request.reply(self.keys.call(self.profile.component, call_of(request.key)), encode(answer))
+            answer = self._answer(call, request.payload)
         except PeerError as error:
             log.warning("%s: refused a call: %s", self.profile.component.short, error)
             request.refuse(str(error))
-        finally:
             request.finish()
+            return
+
+        def reply() -> None:
+            request.reply(self.keys.call(self.profile.component, call), encode(answer))
+            request.finish()
+
+        if call == "apply":
+            self.bus.later(SIGNALS_FIRST, reply)
+        else:
+            reply()
 
     def _answer(self, call: str, payload: bytes) -> Answer:
         if call == "state":
@@ -291,7 +302,7 @@ class Body:
         self._unsupervise()
         self._supervisor = supervisor
         self._worry()
-        self.bus.wake_up(lambda: self._watch(supervisor))
+        self.bus.later(SIGNALS_FIRST, lambda: self._watch(supervisor))
 
     def _watch(self, supervisor: str) -> None:
         """Watch the supervisor's life, unless this component has been turned off or taken over meanwhile."""
