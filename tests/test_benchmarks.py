@@ -7,15 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import given
 
 from benchmarks.search import families, sparql
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row, exponents, page, verdict
-from selfconf.model.configuration import Configuration
-from selfconf.search import solve
-from selfconf.search.problem import Problem
-from tests.search.worlds import agreement, problems
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -31,29 +26,6 @@ def test_the_short_run_runs() -> None:
     )
     assert done.returncode == 0, done.stderr
     assert "## Time to the proof that there is none" in done.stdout
-
-
-def expressible(problem: Problem) -> bool:
-    """Whether the query of the benchmark says all that a problem says: one component each, ports by type, no sets."""
-    return (
-        all(role.minimum == 1 for role in problem.roles)
-        and all(link.output is None and link.input is None for links in problem.links for link in links)
-        and not problem.unvalued
-        and not any(parameter.is_set for parameter in problem.task.template.parameters)
-        and all(problem.hierarchy.superclasses(p.signal) == {p.signal} for p in ports(problem))
-    )
-
-
-def ports(problem: Problem) -> list[families.Output]:
-    """Every output of a candidate."""
-    return [port for role in problem.candidates for c in role for port in c.profile.outputs]
-
-
-@given(problems())
-@agreement(0.3)
-def test_one_query_for_the_whole_template_agrees_with_the_search(problem: Problem) -> None:
-    if expressible(problem):
-        assert sparql.oxigraph(problem) == isinstance(solve.search(problem), Configuration)
 
 
 @pytest.mark.parametrize("solvable", [True, False])

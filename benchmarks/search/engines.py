@@ -7,6 +7,7 @@ may give any, which is the easier question. Building the model is part of the ti
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TypeVar
@@ -110,8 +111,8 @@ def cp_sat(problem: Problem) -> bool:
     return bool(solver.solve(model) in (cp_model.OPTIMAL, cp_model.FEASIBLE))
 
 
-def python_sat(problem: Problem) -> bool:
-    """python-sat with Glucose 4, cardinalities by its own encodings."""
+def python_sat(problem: Problem, solver: str = "glucose4") -> bool:
+    """python-sat, cardinalities by its encodings or, where the solver has them, by its own constraints."""
     from pysat.card import CardEnc, EncType
     from pysat.solvers import Solver
 
@@ -125,25 +126,28 @@ def python_sat(problem: Problem) -> bool:
     plays = [[new() for _ in candidates] for candidates in problem.candidates]
     needs = list(_needs(problem, plays))
     values = list(_values(problem, plays, new))
-    with Solver(name="glucose4") as solver:
+    with Solver(name=solver) as clauses:
         for needing, givers in needs:
             fed = new()
-            solver.add_clause([*givers, -fed])
+            clauses.add_clause([*givers, -fed])
             for literal in needing:
-                solver.add_clause([-literal, fed])
+                clauses.add_clause([-literal, fed])
         groups = [(literals, True) for literals in plays]
         groups += [(same, False) for same in _shared(problem, plays)]
         for domain, some in values:
             groups.append((domain, True))
             for literal, mask in some:
-                solver.add_clause([-literal, *(domain[k] for k in _bits(mask))])
+                clauses.add_clause([-literal, *(domain[k] for k in _bits(mask))])
         for literals, one in groups:
             if one:
-                solver.add_clause(literals)
-            encoded = CardEnc.atmost(literals, 1, top_id=top, encoding=EncType.seqcounter)
-            top = max(top, encoded.nv)
-            solver.append_formula(encoded.clauses)
-        return bool(solver.solve())
+                clauses.add_clause(literals)
+            if clauses.supports_atmost():
+                clauses.add_atmost(literals, 1)
+            else:
+                encoded = CardEnc.atmost(literals, 1, top_id=top, encoding=EncType.seqcounter)
+                top = max(top, encoded.nv)
+                clauses.append_formula(encoded.clauses)
+        return bool(clauses.solve())
 
 
 def _shared(problem: Problem, plays: list[list[L]]) -> list[list[L]]:
@@ -192,6 +196,7 @@ ENGINES: dict[str, Callable[[Problem], bool]] = {
     "clingo": clingo,
     "CP-SAT": cp_sat,
     "python-sat": python_sat,
+    "MiniCard": partial(python_sat, solver="minicard"),
     "Oxigraph": sparql.oxigraph,
     "rdflib": sparql.rdflib_graph,
     "Algorithm 1": algorithm_1,
@@ -201,7 +206,10 @@ LIBRARIES = {
     "clingo": "clingo",
     "CP-SAT": "ortools.sat.python.cp_model",
     "python-sat": "pysat.solvers",
+    "MiniCard": "pysat.solvers",
 }
+GENERAL = ("clingo", "CP-SAT", "python-sat", "MiniCard")
+"""The general solvers."""
 """What an engine imports, before its time begins."""
 SMALL = {"Oxigraph": 100, "rdflib": 10, "Algorithm 1": 10}
 """Up to which size an engine is tried that is hopeless beyond."""

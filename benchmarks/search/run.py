@@ -1,11 +1,11 @@
 """Side by side: the search, general solvers, SPARQL and the paper's algorithm, on families made from seeds.
 
-    python -m benchmarks.search.run [--full | --smoke] [--limit SECONDS] [--only FAMILY] [--write]
+    python -m benchmarks.search.run [--full | --smoke] [--limit SECONDS] [--only FAMILY] [--tuning] [--write]
 
 Every engine runs in a process of its own, with a time limit; all must agree whether there is a configuration. Ours
-answers with the first one, the others with any, which is the easier question. The thresholds of the search were chosen
-on seed 7001 and on other sizes of the families that need no seed, not on what is reported here. `--write` writes
-`docs/benchmarks/search.md` and the plot beside it.
+answers with the first one, the others with any, which is the easier question. `--tuning` tries the thresholds of the
+search on instances that are not reported (`tuning`). `--write` does both, and writes `docs/benchmarks/search.md` and
+the plot beside it.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from functools import partial
 from pathlib import Path
 
 from benchmarks.search import families as f
+from benchmarks.search import tuning
 from benchmarks.search.engines import SMALL, installed
 from benchmarks.search.families import Instance
 from benchmarks.search.measure import Measured, measure
@@ -85,10 +86,14 @@ def main() -> int:
     parser.add_argument("--limit", type=float, help="seconds for each answer (3; 20 with --full; 1 with --smoke)")
     parser.add_argument("--only", default="", help="families whose name contains this")
     parser.add_argument("--write", action="store_true", help="write the page and the plot")
+    parser.add_argument("--tuning", action="store_true", help="only try the thresholds of the search")
     options = parser.parse_args()
     limit = options.limit or (20.0 if options.full else 1.0 if options.smoke else 3.0)
     rows: list[Row] = []
     engines = installed()
+    if options.tuning:
+        print(tuning.table(tuning.tried(limit)))
+        return 0
     for instance in smoke() if options.smoke else instances(options.full):
         if options.only in instance.family:
             rows.append(measured(instance, engines, limit, 1 if options.smoke else 3))
@@ -96,7 +101,7 @@ def main() -> int:
     if not any("selfconf" in row.found for row in rows):
         print("nothing was measured", file=sys.stderr)
         return 1
-    text = page(rows, limit)
+    text = page(rows, limit, tuning.table(tuning.tried(limit)) if options.write else "")
     print(f"\n{text}")
     if options.write:
         PAGE.parent.mkdir(exist_ok=True)

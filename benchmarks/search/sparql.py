@@ -1,7 +1,9 @@
 """The whole template as one SPARQL query, over the partition as triples.
 
-A variable for each role ranges over its candidates; nobody plays two of them; no input of whoever plays has a signal
-that nobody feeding that role issues; and a free parameter has a value that nobody who is constrained forbids.
+A variable for each slot ranges over the candidates of its role; nobody fills two of them; no input of whoever plays
+goes without an output that feeds it; and a free parameter has a value that nobody who is constrained forbids. What a
+template does not use costs nothing: ports are told apart by name only where an interaction names one, and outputs are
+said to serve other signals only where the hierarchy has some.
 """
 
 from __future__ import annotations
@@ -11,7 +13,8 @@ from collections.abc import Iterator
 import pyoxigraph as ox
 import rdflib
 
-from selfconf.search.problem import Problem
+from selfconf.model.profile import Input, Output, Profile
+from selfconf.search.problem import Link, Problem
 
 Triple = tuple[str, str, str]
 BASE = "urn:bench:"
@@ -19,9 +22,13 @@ BASE = "urn:bench:"
 
 def oxigraph(problem: Problem) -> bool:
     """Oxigraph in memory."""
+    return bool(_store(problem).query(query(problem)))
+
+
+def _store(problem: Problem) -> ox.Store:
     store = ox.Store()
     store.bulk_extend(ox.Quad(*map(ox.NamedNode, triple)) for triple in triples(problem))
-    return bool(store.query(query(problem)))
+    return store
 
 
 def rdflib_graph(problem: Problem) -> bool:
@@ -32,16 +39,37 @@ def rdflib_graph(problem: Problem) -> bool:
     return bool(graph.query(query(problem)).askAnswer)
 
 
+def first(problem: Problem) -> list[tuple[int, int]] | None:
+    """The least solution as pairs of a role and the number of a candidate, slot by slot, from Oxigraph; None if none.
+
+    The answers are put in order by the numbers of the candidates, which are rows of the query.
+    """
+    slots = _slots(problem)
+    ranks = [
+        f"VALUES ( ?r{place} ?n{place} ) {{ "
+        + " ".join(f"( <{c.profile.component}> {number} )" for number, c in enumerate(problem.candidates[role]))
+        + " }"
+        for place, role in enumerate(slots)
+    ]
+    names = " ".join(f"?n{place}" for place in range(len(slots)))
+    select = f"SELECT {names or '*'} {{ {' '.join(ranks)} {_pattern(problem)} }}"
+    order = f" ORDER BY {names} LIMIT 1" if slots else " LIMIT 1"
+    found = _store(problem).query(select + order)
+    assert isinstance(found, ox.QuerySolutions)
+    answer = next(iter(found), None)
+    if answer is None:
+        return None
+    return [(role, int(str(answer[f"n{place}"].value))) for place, role in enumerate(slots)]
+
+
 def triples(problem: Problem) -> Iterator[Triple]:
     """Who could play what, with ports, and what each allows a parameter to be in a role."""
+    tell = _named(problem)
     for role, candidates in enumerate(problem.candidates):
         for candidate in candidates:
             name = str(candidate.profile.component)
             yield name, f"{BASE}plays{role}", f"{BASE}yes"
-            for wanted in candidate.profile.inputs:
-                yield name, f"{BASE}input", str(wanted.signal)
-            for output in candidate.profile.outputs:
-                yield name, f"{BASE}output", str(output.signal)
+            yield from _ports(problem, candidate.profile, tell)
             for variable, mask in enumerate(candidate.admits):
                 if mask >= 0:
                     yield name, f"{BASE}constrained{role}", f"{BASE}variable{variable}"
@@ -53,23 +81,70 @@ def triples(problem: Problem) -> Iterator[Triple]:
             yield f"{BASE}variable{variable}", f"{BASE}domain", f"{BASE}value{number}"
 
 
+def _ports(problem: Problem, profile: Profile, tell: bool) -> Iterator[Triple]:
+    name = str(profile.component)
+    for wanted in profile.inputs:
+        yield name, f"{BASE}input", _port(wanted, tell)
+        if tell:
+            yield _port(wanted, tell), f"{BASE}signal", str(wanted.signal)
+            yield _port(wanted, tell), f"{BASE}name", f"{BASE}name:{wanted.name}"
+    for output in profile.outputs:
+        for signal in problem.hierarchy.superclasses(output.signal):
+            yield name, f"{BASE}output", str(signal)
+            if tell:
+                yield name, f"{BASE}output:{output.name}", str(signal)
+
+
+def _port(wanted: Input | Output, tell: bool) -> str:
+    return f"{wanted.signal}:{wanted.name}" if tell else str(wanted.signal)
+
+
+def _named(problem: Problem) -> bool:
+    return any(link.output or link.input for links in problem.links for link in links)
+
+
+def _slots(problem: Problem) -> list[int]:
+    return [role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum)]
+
+
 def query(problem: Problem) -> str:
     """Whether there is a configuration."""
+    return f"ASK {{\n{_pattern(problem)}\n}}"
+
+
+def _pattern(problem: Problem) -> str:
+    slots, tell = _slots(problem), _named(problem)
     names = [{c.profile.component for c in candidates} for candidates in problem.candidates]
-    lines = ["ASK {"]
-    for variable in range(len(problem.variables)):
-        lines.append(f"  <{BASE}variable{variable}> <{BASE}domain> ?v{variable} .")
-    for role in range(len(problem.roles)):
-        lines.append(f"  ?r{role} <{BASE}plays{role}> <{BASE}yes> .")
-        lines += [f"  FILTER ( ?r{role} != ?r{other} )" for other in range(role) if names[role] & names[other]]
+    lines = [
+        f"  <{BASE}variable{variable}> <{BASE}domain> ?v{variable} ." for variable in range(len(problem.variables))
+    ]
+    for place, role in enumerate(slots):
+        lines.append(f"  ?r{place} <{BASE}plays{role}> <{BASE}yes> .")
+        lines += [f"  FILTER ( ?r{place} != ?r{other} )" for other in range(place) if names[role] & names[slots[other]]]
         for variable in range(len(problem.variables)):
             lines.append(
-                f"  FILTER NOT EXISTS {{ ?r{role} <{BASE}constrained{role}> <{BASE}variable{variable}> ."
-                f" FILTER NOT EXISTS {{ ?r{role} <{BASE}allows{role}.{variable}> ?v{variable} }} }}"
+                f"  FILTER NOT EXISTS {{ ?r{place} <{BASE}constrained{role}> <{BASE}variable{variable}> ."
+                f" FILTER NOT EXISTS {{ ?r{place} <{BASE}allows{role}.{variable}> ?v{variable} }} }}"
             )
         if any(candidate.profile.inputs for candidate in problem.candidates[role]):
+            links = dict.fromkeys((Link(s) for s in problem.sources[role]) if not tell else problem.links[role])
             fed = " ".join(
-                f"FILTER NOT EXISTS {{ ?r{source} <{BASE}output> ?s{role} }}" for source in problem.sources[role]
+                f"FILTER NOT EXISTS {{ {_feeds(place, source, link, tell)} }}"
+                for link in links
+                for source, feeding in enumerate(slots)
+                if feeding == link.source
             )
-            lines.append(f"  FILTER NOT EXISTS {{ ?r{role} <{BASE}input> ?s{role} . {fed} }}")
-    return "\n".join((*lines, "}"))
+            port = (
+                f"?r{place} <{BASE}input> ?p{place} . ?p{place} <{BASE}signal> ?s{place}"
+                if tell
+                else f"?r{place} <{BASE}input> ?s{place}"
+            )
+            lines.append(f"  FILTER NOT EXISTS {{ {port} . {fed} }}")
+    return "\n".join(lines)
+
+
+def _feeds(place: int, source: int, link: Link, tell: bool) -> str:
+    """That the slot `source` issues the signal of the input in question along a link."""
+    output = f"{BASE}output:{link.output}" if link.output else f"{BASE}output"
+    named = f" ?p{place} <{BASE}name> <{BASE}name:{link.input}> ." if tell and link.input else ""
+    return f"?r{source} <{output}> ?s{place} .{named}"

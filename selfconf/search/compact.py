@@ -25,9 +25,11 @@ Cost: one pass over the candidates of roles that have slots; after it only kinds
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import compress
+from operator import attrgetter, not_
 
 from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.profile import Input, Output
@@ -37,21 +39,27 @@ from selfconf.search.wiring import Need, Wiring
 
 Ports = tuple[tuple[Input, ...], tuple[Output, ...], tuple[int, ...]]
 
+ports_of: Callable[[Candidate], Ports] = attrgetter("profile.inputs", "profile.outputs", "admits")
+"""All of a candidate that its kind depends on."""
+
 
 class Kind:
     """What a candidate is to the search, in one role: numbers of needs, and masks of values."""
 
-    __slots__ = ("admits", "count", "gives", "needs", "number", "role")
+    __slots__ = ("admits", "gives", "needs", "number", "ports", "role")
 
-    def __init__(self, role: int, needs: tuple[int, ...], gives: tuple[int, ...], admits: tuple[int, ...]) -> None:
+    def __init__(
+        self,
+        role: int,
+        needs: tuple[int, ...],
+        gives: tuple[int, ...],
+        admits: tuple[int, ...],
+        number: int = -1,
+        ports: tuple[Ports, ...] = (),
+    ) -> None:
         self.role, self.needs, self.gives, self.admits = role, needs, gives, admits
-        self.number, self.count = -1, 0
-        """The number of the first candidate of this kind, and how many there are."""
-
-    def include(self, number: int, count: int) -> None:
-        """Count so many candidates more, the first of which has this number."""
-        self.number = number if self.number < 0 else min(self.number, number)
-        self.count += count
+        self.number, self.ports = number, ports
+        """The number of the first candidate of this kind, and what candidates of this kind have."""
 
 
 class Option:
@@ -91,7 +99,7 @@ class Compact:
 
     def kinds(self) -> list[Kind]:
         """The kinds that options are of, in order."""
-        return list({id(o.kind): o.kind for options in self.options for o in options}.values())
+        return list(dict.fromkeys([option.kind for options in self.options for option in options]))
 
 
 def compact(problem: Problem, apart: Collection[IRI] = (), order: Mapping[int, Sequence[int]] | None = None) -> Compact:
@@ -100,66 +108,83 @@ def compact(problem: Problem, apart: Collection[IRI] = (), order: Mapping[int, S
     `order` is another order of the candidates of each role, by number: then the first and the least are by that.
     """
     slots = tuple(role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum))
-    wiring = Wiring(problem)
     minima = Counter(slots)
-    orders = order or {role: range(len(problem.candidates[role])) for role in minima}
-    alike = {role: _alike(problem.candidates[role], orders[role], len(slots), apart) for role in minima}
-    needs = {
-        role: [tuple(dict.fromkeys([wiring.need(role, wanted) for wanted in same.ports[0]])) for same in some]
-        for role, some in alike.items()
-    }
+    wiring = Wiring(problem)
+    same: dict[int, list[tuple[int, Kind]]] = {}
+    for role in minima:
+        numbers = range(len(problem.candidates[role])) if order is None else order[role]
+        same[role] = _alike(role, problem.candidates[role], numbers, len(slots), apart, wiring)
+    for role, members in same.items():
+        for kind in {kind: None for _, kind in members}:
+            kind.gives = wiring.served(role, kind.ports[0][1])
+    names = [problem.candidates[role][number].profile.component for role in same for number, _ in same[role]]
+    unshared = len(set(names)) == len(names)
     left: dict[int, list[Option]] = {}
-    for role, some in alike.items():
-        left[role] = []
-        candidates = problem.candidates[role]
-        for same, needed in zip(some, needs[role], strict=True):
-            kind = Kind(role, needed, wiring.served(role, same.ports[1]), same.ports[2])
-            kind.include(same.numbers[0], same.count)
-            left[role] += [Option(number, candidates[number].profile.component, kind) for number in same.numbers]
-        if order is None:
-            left[role].sort(key=_number)
-        else:
-            place = {number: index for index, number in enumerate(order[role])}
-            left[role].sort(key=lambda option: place[option.number])
-    kept = kernel(left, minima)
-    options = tuple(tuple(kept.get(role, ())) for role in range(len(problem.roles)))
+    for role, members in same.items():
+        here = problem.candidates[role]
+        some = _first(members, minima[role]) if unshared else members
+        left[role] = [Option(number, here[number].profile.component, kind) for number, kind in some]
+    if not unshared:
+        left = kernel(left, minima)
+    options = tuple(tuple(left.get(role, ())) for role in range(len(problem.roles)))
     return Compact(slots, options, tuple(wiring.needs), problem.open_values)
 
 
-def _number(option: Option) -> int:
-    return option.number
+def _alike(
+    role: int,
+    candidates: Sequence[Candidate],
+    numbers: Sequence[int],
+    most: int,
+    apart: Collection[IRI],
+    wiring: Wiring,
+) -> list[tuple[int, Kind]]:
+    """The candidates that are among the first so many of their kind: their numbers, in the order given, and kinds.
 
-
-class _Alike:
-    """Candidates with the same ports: the numbers of the first ones, and how many there are."""
-
-    __slots__ = ("count", "numbers", "ports")
-
-    def __init__(self, ports: Ports) -> None:
-        self.ports, self.count = ports, 0
-        self.numbers: list[int] = []
-
-
-def _alike(candidates: Sequence[Candidate], order: Iterable[int], most: int, apart: Collection[IRI]) -> list[_Alike]:
-    """The different sets of ports among candidates.
-
-    The one loop over all candidates: ports are hashed once, and nothing is kept of one whose ports are known.
+    The one pass over all candidates: who has what enough others have is passed over without a step of Python.
     """
-    found: list[_Alike] = []
-    known: dict[tuple[Ports, IRI | None], int] = {}
-    for number in order:
-        candidate = candidates[number]
-        profile = candidate.profile
-        own = profile.component if apart and profile.component in apart else None
-        ports = profile.inputs, profile.outputs, candidate.admits
-        index = known.setdefault((ports, own), len(found))
-        if index == len(found):
-            found.append(_Alike(ports))
-        same = found[index]
-        same.count += 1
-        if same.count <= most:
-            same.numbers.append(number)
+    key: Callable[[Candidate], Hashable] = _own(apart) if apart else ports_of
+    kinds: dict[Hashable, Kind] = {}
+    met: dict[Kind, int] = {}
+    enough: set[Hashable] = set()
+    found: list[tuple[int, Kind]] = []
+    ordered = candidates if isinstance(numbers, range) else [candidates[number] for number in numbers]
+    here: Iterable[tuple[int, Candidate]] = zip(numbers, ordered, strict=True)
+    if len(ordered) > most:
+        here = compress(here, map(not_, map(enough.__contains__, map(key, ordered))))
+    for number, candidate in here:
+        same = key(candidate)
+        kind = kinds.get(same)
+        if kind is None:
+            ports = ports_of(candidate)
+            kind = kinds[same] = Kind(role, wiring.needed(role, ports[0]), (), ports[2], number, (ports,))
+            seen = met[kind] = 1
+        else:
+            seen = met[kind] = met[kind] + 1
+        found.append((number, kind))
+        if seen == most:
+            enough.add(same)
     return found
+
+
+def _first(members: list[tuple[int, Kind]], most: int) -> list[tuple[int, Kind]]:
+    """The first so many members of each kind."""
+    left = dict.fromkeys([kind for _, kind in members], most)
+    if len(left) == len(members):
+        return members
+    found = []
+    for number, kind in members:
+        if left[kind]:
+            left[kind] -= 1
+            found.append((number, kind))
+    return found
+
+
+def _own(apart: Collection[IRI]) -> Callable[[Candidate], Hashable]:
+    """What candidates are told apart by if some components are set apart."""
+    return lambda candidate: (
+        ports_of(candidate),
+        candidate.profile.component if candidate.profile.component in apart else None,
+    )
 
 
 def consistent(
@@ -191,9 +216,10 @@ def consistent(
         if not by_value:
             return gone, departures
         for departure in by_value:
-            gone.add(id(departure.kind))
-            departures.append(departure)
-            waiting += _leave(departure.kind, givers)
+            if id(departure.kind) not in gone:
+                gone.add(id(departure.kind))
+                departures.append(departure)
+                waiting += _leave(departure.kind, givers)
 
 
 def _leave(kind: Kind, givers: list[int]) -> Iterator[int]:

@@ -31,7 +31,7 @@ from selfconf.model.refusal import (
     ValueUnknown,
 )
 from selfconf.search import sat
-from selfconf.search.compact import Compact, Kind, Prepared, consistent
+from selfconf.search.compact import Compact, Kind, Prepared, consistent, ports_of
 from selfconf.search.matching import shortage
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import (
@@ -248,7 +248,8 @@ def _steps(problem: Problem, given: Compact, found: Sequence[Requirement]) -> It
         ports = [port for port in profile.inputs if port.signal == need.signal]
         port = next((port for port in ports if port.name == need.input), ports[0])
         sources = tuple(dict.fromkeys(problem.roles[source].iri for source, _ in need.sources))
-        more = sum(kind.count for kind in kinds) - 1
+        same = {ports for kind in kinds for ports in kind.ports}
+        more = sum(map(same.__contains__, map(ports_of, problem.candidates[role]))) - 1
         yield Step(problem.roles[role].iri, profile.component, more, port.name, need.signal, sources)
 
 

@@ -13,12 +13,21 @@ from selfconf.model.partition import Candidate
 from selfconf.search.problem import Problem
 from selfconf.search.walk import Budget
 
+PORTS = 4
+"""How many ports can be compared for the price of a step."""
+
+HEADROOM = 8
+"""How many slots more than it has reached it may have taken steps for."""
+
 
 class Filling:
-    """Fills the slots of a problem; a subclass may leave candidates out."""
+    """Fills the slots of a problem; a subclass may leave candidates out.
 
-    def __init__(self, problem: Problem, budget: Budget) -> None:
-        self.problem, self.budget = problem, budget
+    With a pace it uses up its budget as soon as a dead end is met after more steps than that for each slot reached.
+    """
+
+    def __init__(self, problem: Problem, budget: Budget, pace: int | None = None) -> None:
+        self.problem, self.budget, self.pace = problem, budget, pace
         self.slots = [role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum)]
         self.playing: list[list[Candidate]] = [[] for _ in problem.roles]
         self.taken: set[str] = set()
@@ -31,10 +40,12 @@ class Filling:
         due: list[list[int]] = [[] for _ in self.slots]
         work = [1 for _ in self.slots]
         for role in last:
-            place = max(last[r] for r in (role, *self.problem.sources[role]) if r in last)
+            feeding = [role, *(source for source in self.problem.sources[role] if source in last)]
+            place = max([last[r] for r in feeding])
             due[place].append(role)
-            first = self.problem.candidates[role][0].profile if self.problem.candidates[role] else None
-            work[place] += len(self.problem.links[role]) * len(first.inputs if first else ()) // 16
+            firsts = [self.problem.candidates[r][0].profile for r in feeding if self.problem.candidates[r]]
+            ports = sum([len(first.outputs) for first in firsts[1:]], len(firsts[0].inputs) if firsts else 0)
+            work[place] += ports // PORTS
         return due, work
 
     def candidates(self, role: int, start: int) -> Iterator[tuple[int, Candidate]]:
@@ -52,18 +63,23 @@ class Filling:
         slots = self.slots
         self._values = [self.problem.open_values]
         following = [0] * (len(slots) + 1)
-        place = 0
+        place = furthest = 0
+        given = self.budget.steps
         while place >= 0:
             if place < len(slots):
                 number = self._next(place, following[place])
                 if number is not None:
                     following[place] = number + 1
                     place += 1
+                    furthest = max(furthest, place)
                     same = place < len(slots) and slots[place] == slots[place - 1]
                     following[place] = number + 1 if same else 0
                     continue
-                if self.budget.steps is not None and self.budget.steps <= 0:
-                    return
+                if given is not None and self.budget.steps is not None:
+                    if self.pace is not None and given - self.budget.steps > self.pace * (furthest + HEADROOM):
+                        self.budget.steps = 0
+                    if self.budget.steps <= 0:
+                        return
             else:
                 yield self.playing
             place -= 1
@@ -73,15 +89,15 @@ class Filling:
 
     def _next(self, place: int, start: int) -> int | None:
         """Put the next candidate that fits into a slot; its number, or None if there is none or the budget ends."""
-        role = self.slots[place]
+        role, work, budget, values = self.slots[place], self._work[place], self.budget, self._values[-1]
         for number, candidate in self.candidates(role, start):
-            if self.budget.steps is not None:
-                if self.budget.steps <= 0:
+            if budget.steps is not None:
+                if budget.steps <= 0:
                     return None
-                self.budget.steps -= self._work[place]
+                budget.steps -= work
             if candidate.profile.component in self.taken:
                 continue
-            narrowed = self.problem.narrowed(self._values[-1], candidate)
+            narrowed = self.problem.narrowed(values, candidate) if values else values
             if narrowed is None:
                 continue
             self.playing[role].append(candidate)
@@ -94,4 +110,8 @@ class Filling:
 
     def _fed(self, place: int) -> bool:
         compatible, playing = self.problem.compatible, self.playing
-        return all(compatible(role, c.profile, playing) for role in self._due[place] for c in playing[role])
+        for role in self._due[place]:
+            for candidate in playing[role]:
+                if not compatible(role, candidate.profile, playing):
+                    return False
+        return True

@@ -17,8 +17,8 @@ of its inputs is matched, and the free parameters still have a value. Adding a c
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from heapq import heappop, heappush
+from typing import NamedTuple
 
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
@@ -31,8 +31,7 @@ Playing = Sequence[Sequence[Candidate]]
 """For each role, in order, the candidates that play it so far."""
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+class Link(NamedTuple):
     """An interaction seen from its sink: the index of the role that feeds it, and the ports if they are named."""
 
     source: int
@@ -103,12 +102,31 @@ class Problem:
 
     def compatible(self, role: int, profile: Profile, playing: Playing) -> bool:
         """The component mutual compatibility rule: each input of the sink is matched by an output of a source."""
-        return all(any(True for _ in self.feeders(role, wanted, playing)) for wanted in profile.inputs)
+        if not profile.inputs:
+            return True
+        lacking: dict[IRI, list[str]] = {}
+        for name, signal in profile.inputs:
+            lacking.setdefault(signal, []).append(name)
+        above = self.hierarchy.superclasses
+        for source, output, only in self.links[role]:
+            for candidate in playing[source]:
+                for name, offered, _ in candidate.profile.outputs:
+                    if output is None or output == name:
+                        for signal in above(offered):
+                            if signal not in lacking:
+                                continue
+                            if only is not None and lacking[signal] != [only]:
+                                lacking[signal] = [other for other in lacking[signal] if other != only]
+                            else:
+                                del lacking[signal]
+                if not lacking:
+                    return True
+        return False
 
     def narrowed(self, values: tuple[int, ...], candidate: Candidate) -> tuple[int, ...] | None:
         """What the variables may still be once a candidate plays too, or None if some variable has no value left."""
-        narrowed = tuple(value & allowed for value, allowed in zip(values, candidate.admits, strict=True))
-        return narrowed if all(narrowed) else None
+        narrowed = tuple([value & allowed for value, allowed in zip(values, candidate.admits, strict=True)])
+        return None if 0 in narrowed else narrowed
 
     def solved(self, playing: Playing, running: Configuration | None = None) -> Configuration:
         """The configuration that a solution stands for, extended by every further candidate that fits.

@@ -119,6 +119,7 @@ def _relaxed_kind(kind: Kind, needs: Set[int], variables: Set[int], known: dict[
     )
     found = known.get(key)
     if found is None:
-        found = known[key] = Kind(*key)
-    found.include(kind.number, kind.count)
+        found = known[key] = Kind(*key, number=kind.number)
+    found.number = min(found.number, kind.number)
+    found.ports += kind.ports
     return found

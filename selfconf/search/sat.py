@@ -1,14 +1,17 @@
 """The one door to a clause-learning solver, for the instances on which depth-first search thrashes.
 
-*Which library.* python-sat (MIT; Ignatiev, Morgado and Marques-Silva, SAT 2018), with its Glucose 4. It has only
-pre-releases on the index, which is why it is an extra (`selfconf[solvers]`) and why nothing else knows it; clingo has
-stable releases. But python-sat stops after a given number of *conflicts*, so that a budget means the same on every
-machine; it imports in a fortieth of a second and starts in well under a millisecond, an instance being a list of
-clauses and not a program to ground; and its lexicographic minimisation is exact, where clingo's priorities saturate
-at 32,767 levels. Without it everything works, and hard instances end as `Undecided` sooner.
+*Which library.* python-sat (MIT; Ignatiev, Morgado and Marques-Silva, SAT 2018), with its MiniCard (Liffiton and
+Maglalang, SAT 2012): MiniSat 2.2 with "no more than so many" as a constraint of its own, which spares the clauses
+that would count. python-sat has only pre-releases on the index, which is why it is an extra (`selfconf[solvers]`) and
+why nothing else knows it; clingo has stable releases. But python-sat stops after a given number of *conflicts*, so
+that a budget means the same on every machine; it imports in a fortieth of a second and starts in well under a
+millisecond, an instance being a list of clauses and not a program to ground; and its lexicographic minimisation is
+exact, where clingo's priorities saturate at 32,767 levels. Without it everything works, and hard instances end as
+`Undecided` sooner.
 
-*Encoding.* A literal for each option: it plays. Each role is played by exactly as many as it has slots; a component
-plays one role at most. A literal for each need: whoever has the need implies it, and it implies one of its givers.
+*Encoding.* A literal for each option: it plays; of two, the second plays iff the first does not. Each role is played
+by exactly as many as it has slots; a component plays one role at most. Whoever has a need implies one of its givers,
+by way of a literal for the need where several have it.
 A literal for each value of a variable, at most one of which holds: whoever is constrained implies one of the values.
 
 *The least solution.* Slot by slot: given the choices so far and a model, ask for one in which an earlier option is
@@ -21,6 +24,7 @@ possible.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from importlib.util import find_spec
@@ -32,6 +36,8 @@ from selfconf.search.compact import Compact, Option
 from selfconf.search.requirement import Distinct, Fed, Played, Requirement, Shared
 from selfconf.search.walk import Budget
 
+SOLVER = "Minicard"
+"""The solver, by the name of its class in python-sat."""
 SLICE = 5_000
 """Conflicts for one call of the solver, a fraction of a second."""
 
@@ -52,16 +58,17 @@ class Clauses:
     """A compact problem as clauses in an incremental solver; use it in a `with` statement."""
 
     def __init__(self, compact: Compact, guarded: bool = False, distinct: bool = True) -> None:
-        from pysat.solvers import Solver
+        from pysat import solvers
 
         self.compact = compact
-        self._solver = Solver(name="glucose4")
+        self._solver = getattr(solvers, SOLVER)()
         self._top = 0
-        self._true: set[int] = set()
+        self._model: list[int] = []
         self.guards: dict[Requirement, int] = {}
         self._guarded = guarded
+        self._asked = Counter(compact.slots)
         self.plays: tuple[tuple[int, ...], ...] = tuple(
-            tuple(self.literal() for _ in options) for options in compact.options
+            self._literals(role, len(options)) for role, options in enumerate(compact.options)
         )
         """For each role, the literals of its options."""
         self._roles()
@@ -82,6 +89,14 @@ class Clauses:
         self._top += 1
         return self._top
 
+    def _literals(self, role: int, options: int) -> tuple[int, ...]:
+        """A literal for each option; of two options of which one must play, each is what the other is not."""
+        if options == 2 and self._asked[role] == 1 and not self._guarded:
+            first = self.literal()
+            return first, -first
+        before, self._top = self._top, self._top + options
+        return tuple(range(before + 1, self._top + 1))
+
     def add(self, clause: Iterable[int]) -> None:
         """Add a clause."""
         self._solver.add_clause(list(clause))
@@ -100,13 +115,12 @@ class Clauses:
         return [-guard]
 
     def _roles(self) -> None:
-        slots: dict[int, int] = {}
-        for role in self.compact.slots:
-            slots[role] = slots.get(role, 0) + 1
-        for role, asked in slots.items():
+        for role, asked in self._asked.items():
             literals = self.plays[role]
-            self.at_most(literals, asked)
             force = self._in_force(Played(role))
+            if len(literals) == 2 and literals[0] == -literals[1]:
+                continue
+            self.at_most(literals, asked)
             if len(literals) < asked:
                 impossible = self.literal()
                 self.add([*force, impossible])
@@ -117,6 +131,9 @@ class Clauses:
                 self.at_most([-literal for literal in literals], len(literals) - asked, force)
 
     def _distinct(self) -> None:
+        names = [option.component for options in self.compact.options for option in options if option.component]
+        if len(set(names)) == len(names):
+            return
         playing: dict[str, list[int]] = {}
         for options, literals in zip(self.compact.options, self.plays, strict=True):
             for option, literal in zip(options, literals, strict=True):
@@ -131,16 +148,23 @@ class Clauses:
         needing: list[list[int]] = [[] for _ in self.compact.needs]
         for options, literals in zip(self.compact.options, self.plays, strict=True):
             for option, literal in zip(options, literals, strict=True):
-                for need in option.kind.gives:
+                kind = option.kind
+                for need in kind.gives:
                     givers[need].append(literal)
-                for need in option.kind.needs:
+                for need in kind.needs:
                     needing[need].append(literal)
+        add = self._solver.add_clause
         for need, some in enumerate(needing):
-            if some:
-                served = self.literal()
-                self.add([*self._in_force(Fed(need)), -served, *givers[need]])
-                for literal in some:
-                    self.add([-literal, served])
+            if not some:
+                continue
+            force = self._in_force(Fed(need))
+            if len(some) == 1:
+                add([*force, -some[0], *givers[need]])
+                continue
+            served = self.literal()
+            add([*force, -served, *givers[need]])
+            for literal in some:
+                add([-literal, served])
 
     def _values(self) -> None:
         for variable, open_values in enumerate(self.compact.values):
@@ -160,31 +184,18 @@ class Clauses:
                 self.add([*force, -literal, *(values[k] for k in range(width) if mask >> k & 1)])
 
     def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
-        """No more than so many of the literals hold (Sinz's sequential counter; CP 2005), under the guards given."""
+        """No more than so many of the literals hold, under the guards given."""
         if most >= len(literals):
             return
-        if most == 0:
-            for literal in literals:
-                self.add([*force, -literal])
-        elif most == 1:
-            before: int | None = None
-            for literal in literals:
-                if before is None:
-                    before = self.literal()
-                    self.add([*force, -literal, before])
-                    continue
-                self.add([*force, -before, -literal])
-                after = self.literal()
-                self.add([*force, -before, after])
-                self.add([*force, -literal, after])
-                before = after
-        else:
-            from pysat.card import CardEnc, EncType
+        if not force and self._solver.supports_atmost():
+            self._solver.add_atmost(list(literals), most)
+            return
+        from pysat.card import CardEnc, EncType
 
-            encoded = CardEnc.atmost(list(literals), most, top_id=self._top, encoding=EncType.seqcounter)
-            self._top = max(self._top, encoded.nv)
-            for clause in encoded.clauses:
-                self.add([*force, *clause])
+        encoded = CardEnc.atmost(list(literals), most, top_id=self._top, encoding=EncType.seqcounter)
+        self._top = max(self._top, encoded.nv)
+        for clause in encoded.clauses:
+            self.add([*force, *clause])
 
     def solve(self, assumed: Sequence[int], budget: Budget) -> bool | Undecided:
         """Whether the clauses can hold under assumptions."""
@@ -201,7 +212,7 @@ class Clauses:
         if found is None:
             return Undecided(self._conflicts())
         if found:
-            self._true = {literal for literal in self._solver.get_model() if literal > 0}
+            self._model = self._solver.get_model()
         return found
 
     def maximise(self, literals: Sequence[int], budget: Budget) -> bool:
@@ -253,7 +264,8 @@ class Clauses:
 
     def holds(self, literal: int) -> bool:
         """Whether a literal holds in the last model."""
-        return literal in self._true
+        place = abs(literal) - 1
+        return (place < len(self._model) and self._model[place] > 0) == (literal > 0)
 
     def core(self) -> set[int]:
         """Assumptions of the last call that cannot hold together."""

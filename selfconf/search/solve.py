@@ -16,9 +16,11 @@ first by its order (`filling`, `walk`), the clause-learning engine by asking for
 search or from a refuted set of clauses, never from a budget that ended.
 
 *Costs.* An easy instance takes a few steps for each slot, however many candidates there are; then a pass over the
-candidates and matching, slots times options; then depth first for about as many steps as writing down the clauses
-would take, so that it never costs more than it could have saved; then clause learning, exponential in the worst
-case. Without a solver library depth-first search goes on by itself.
+candidates and matching, slots times options; then depth first, for no more steps than writing down the clauses would
+take, so that it never costs more than it could have saved; then clause learning, exponential in the worst case.
+Depth-first search is left as soon as it has taken more steps than it should have for the slots it has reached: where
+it succeeds, it goes ahead steadily; where it thrashes, it is stuck early. Without a solver library it goes on by
+itself. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`).
 """
 
 from __future__ import annotations
@@ -38,9 +40,9 @@ from selfconf.search.requirement import pruned
 from selfconf.search.walk import Budget, walk
 
 FILL_STEPS = 4
-"""Steps per slot before anything is prepared; a few slots more, for the smallest problems."""
-WALK_STEPS = 100
-"""Steps of depth-first search before clauses are written, and two more per option."""
+"""Steps per slot reached before anything is prepared; a few slots more, for the smallest problems."""
+WALK_PACE = 0.6
+"""Steps of depth-first search for each option of the slots reached before clauses are written."""
 
 
 def search(problem: Problem) -> Configuration | Refusal:
@@ -70,7 +72,7 @@ def solution(given: Prepared, budget: Budget) -> list[list[Candidate]] | Undecid
     slots = sum(role.minimum for role in problem.roles)
     part = budget.part(FILL_STEPS * (slots + 8))
     steps = part.steps or 0
-    found = Filling(problem, part).first()
+    found = Filling(problem, part, FILL_STEPS).first()
     if found is not None or (part.steps or 0) > 0:
         return found
     budget.spend(steps)
@@ -99,10 +101,7 @@ def least(given: Compact, budget: Budget) -> list[Option] | Undecided | None:
         partners = Partners(part.slots, [[option.component for option in options] for options in part.options])
     if not sat.available():
         return walk(part, budget, partners=partners)
-    first = budget.part(WALK_STEPS + 2 * sum(map(len, part.options)))
-    steps = first.steps or 0
-    chosen = walk(part, first, partners=partners)
-    budget.spend(steps - (first.steps or 0))
+    chosen = walk(part, budget, partners=partners, pace=WALK_PACE)
     return sat.least(part, budget) if isinstance(chosen, Undecided) else chosen
 
 

@@ -32,11 +32,22 @@ class Budget:
             self.steps = max(0, self.steps - steps)
 
 
+HEADROOM = 32
+"""How many options more than those of the slots that it has reached it may have taken steps for."""
+
+
 def walk(
-    compact: Compact, budget: Budget, distinct: bool = True, partners: Partners | None = None
+    compact: Compact,
+    budget: Budget,
+    distinct: bool = True,
+    partners: Partners | None = None,
+    pace: float | None = None,
 ) -> list[Option] | Undecided | None:
-    """The least solution, one option per slot; None if there is none; Undecided when the steps are used up."""
-    return next(Walk(compact, distinct, partners).solutions(budget), None)
+    """The least solution, one option per slot; None if there is none; Undecided when the steps are used up.
+
+    With a pace it is undecided as soon as it has taken more steps than that for each option of the slots reached.
+    """
+    return next(Walk(compact, distinct, partners).solutions(budget, pace), None)
 
 
 class Walk:
@@ -62,9 +73,11 @@ class Walk:
             if place >= 0:
                 self.expiring[place].append(need)
 
-    def solutions(self, budget: Budget) -> Iterator[list[Option] | Undecided]:
+    def solutions(self, budget: Budget, pace: float | None = None) -> Iterator[list[Option] | Undecided]:
         """Solutions in lexicographic order; Undecided, and then no more, when the steps are used up."""
         slots, options = self.compact.slots, self.compact.options
+        reach = HEADROOM
+        furthest = 0
         cursor = [0] * (len(slots) + 1)
         place, steps = 0, 0
         limit = budget.steps
@@ -84,12 +97,19 @@ class Walk:
                 if pushed:
                     cursor[place] = index
                     place += 1
+                    if place > furthest:
+                        furthest = place
+                        reach += len(waiting)
                     cursor[place] = index if place < len(slots) and slots[place] == role else 0
                     continue
             else:
                 budget.spend(steps)
                 limit, steps = budget.steps, 0
                 yield list(self.chosen)
+            if pace is not None and steps > pace * reach:
+                budget.spend(steps)
+                yield Undecided(steps)
+                return
             place -= 1
             if place >= 0:
                 self.pop()

@@ -7,7 +7,9 @@ from itertools import product
 import pytest
 from hypothesis import given
 
+from selfconf.model.partition import Candidate, Partition, Variable
 from selfconf.model.refusal import Undecided
+from selfconf.model.template import Interaction, Role, Task, Template
 from selfconf.search import sat
 from selfconf.search.compact import Compact, Option, compact
 from selfconf.search.filling import Filling
@@ -16,7 +18,7 @@ from selfconf.search.problem import Problem
 from selfconf.search.requirement import pruned
 from selfconf.search.walk import Budget, walk
 from tests.search.oracle import World
-from tests.search.worlds import agreement, problems
+from tests.search.worlds import agreement, component, iri, problems
 
 
 def _numbers(problem: Problem) -> list[int] | None:
@@ -38,6 +40,21 @@ def test_depth_first_on_the_kernel_finds_the_least_solution(problem: Problem) ->
     expected = _numbers(problem)
     assert _chosen(walk(pruned(compact(problem)), Budget())) == expected
     assert _chosen(walk(compact(problem), Budget())) == expected
+
+
+def test_who_suits_two_parameters_not_at_all_leaves_once() -> None:
+    template = Template(
+        iri("template"), (Role(iri("camera")), Role(iri("tracker"))), (Interaction(iri("camera"), iri("tracker")),)
+    )
+    odd, even = component("odd", outputs="p:Picture"), component("even", outputs="p:Picture")
+    variables = tuple(Variable(iri(name), (iri("one"), iri("two"))) for name in ("robot", "room"))
+    partition = Partition(
+        ((Candidate(odd, (2, 2)), Candidate(even, (1, 1))), (Candidate(component("eye", "p:Picture"), (1, 1)),)),
+        variables,
+    )
+    given_ = pruned(compact(Problem(Task(template), partition)))
+    assert _chosen(walk(given_, Budget())) == [1, 0]
+    assert len(given_.departures) == 1
 
 
 @given(problems())

@@ -21,7 +21,7 @@ def _possible(problem: Problem) -> bool:
 
 
 @given(problems(roles=3, components=4))
-@agreement(0.4)
+@agreement()
 def test_every_repair_works_and_adds_as_few_as_possible(problem: Problem) -> None:
     refused = solve.search(problem)
     if not isinstance(refused, Refusal):

@@ -95,7 +95,7 @@ def _check(problem: Problem) -> None:
 
 
 @given(problems(roles=3, components=4))
-@agreement(0.6)
+@agreement()
 def test_a_reason_is_irreducible(problem: Problem) -> None:
     _check(problem)
 

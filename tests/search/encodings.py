@@ -1,0 +1,85 @@
+"""The semantics as rules of answer set programming: an oracle that enumerates nothing and shares no code.
+
+Facts are taken from the task, the partition and the hierarchy. A solution with the minima is an answer set; the
+candidates of a role are weighed one level after another, so that the one that is most has the least candidate at the
+first level where two solutions differ, which is the order of solutions slot by slot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import clingo
+
+from selfconf.search.problem import Problem
+
+RULES = """
+K { plays(R,N) : candidate(R,N,_) } K :- role(R,K).
+:- component(C), 2 { plays(R,N) : candidate(R,N,C) }.
+fed(R,N,I) :- plays(R,N), candidate(R,N,C), input(C,I,T), feeds(Q,O,R,I), issues(Q,O,T).
+issues(Q,O,U) :- plays(Q,N), candidate(Q,N,C), output(C,O,T), at_or_below(T,U).
+feeds(Q,O,R,I) :- link(Q,R), output(_,O,_), input(_,I,_).
+feeds(Q,O,R,I) :- link_from(Q,O,R), input(_,I,_).
+feeds(Q,O,R,I) :- link_to(Q,R,I), output(_,O,_).
+feeds(Q,O,R,I) :- link_between(Q,O,R,I).
+:- plays(R,N), candidate(R,N,C), input(C,I,_), not fed(R,N,I).
+1 { value(V,K) : domain(V,K) } 1 :- variable(V).
+:- plays(R,N), constrained(R,N,V), value(V,K), not allows(R,N,V,K).
+#maximize { 1@L : plays(R,N), level(R,N,L) }.
+#show plays/2.
+"""
+
+
+def first(problem: Problem) -> list[tuple[int, int]] | None:
+    """The least solution as pairs of a role and the number of a candidate, slot by slot; None if there is none."""
+    control = clingo.Control(["--warn=none"])
+    control.add("base", [], RULES + "\n".join(_facts(problem)))
+    control.ground([("base", [])])
+    found: list[tuple[int, int]] | None = None
+    with control.solve(yield_=True) as models:
+        for model in models:
+            pairs = [symbol.arguments for symbol in model.symbols(shown=True)]
+            found = sorted((role.number, number.number) for role, number in pairs)
+    return found
+
+
+def _facts(problem: Problem) -> Iterator[str]:
+    task, hierarchy = problem.task, problem.hierarchy
+    place = {role.iri: number for number, role in enumerate(task.template.roles)}
+    described: set[str] = set()
+    signals: set[str] = set()
+    level = sum(len(candidates) for candidates in problem.partition.candidates)
+    for number, role in enumerate(task.template.roles):
+        yield f"role({number},{role.minimum})."
+        for index, candidate in enumerate(problem.partition.candidates[number]):
+            profile = candidate.profile
+            name = f'"{profile.component}"'
+            yield f"candidate({number},{index},{name}). level({number},{index},{level})."
+            level -= 1
+            for variable, mask in enumerate(candidate.admits):
+                if mask >= 0:
+                    yield f"constrained({number},{index},{variable})."
+                    values = [k for k in range(mask.bit_length()) if mask >> k & 1]
+                    yield from (f"allows({number},{index},{variable},{k})." for k in values)
+            if profile.component not in described:
+                described.add(profile.component)
+                yield f"component({name})."
+                yield from (f'input({name},"{port.name}","{port.signal}").' for port in profile.inputs)
+                yield from (f'output({name},"{port.name}","{port.signal}").' for port in profile.outputs)
+                signals |= {port.signal for port in profile.outputs}
+    for signal in signals:
+        yield from (f'at_or_below("{signal}","{above}").' for above in hierarchy.superclasses(signal))
+    for interaction in task.template.interactions:
+        source, sink = place[interaction.source], place[interaction.sink]
+        output, wanted = f'"{interaction.output}"', f'"{interaction.input}"'
+        if interaction.output and interaction.input:
+            yield f"link_between({source},{output},{sink},{wanted})."
+        elif interaction.output:
+            yield f"link_from({source},{output},{sink})."
+        elif interaction.input:
+            yield f"link_to({source},{sink},{wanted})."
+        else:
+            yield f"link({source},{sink})."
+    for number, variable_ in enumerate(problem.partition.variables):
+        yield f"variable({number})."
+        yield from (f"domain({number},{k})." for k in range(len(variable_.domain)))
