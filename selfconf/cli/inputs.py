@@ -7,6 +7,7 @@ import gc
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 
 from selfconf import entailment, library
@@ -17,8 +18,9 @@ from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf import bindings, stream, templates, turtle
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.clauses import Clauses
-from selfconf.rdf.closure import hierarchy
+from selfconf.rdf.closure import HIERARCHY, hierarchy
+from selfconf.rdf.kinds import Ecology
+from selfconf.rdf.pieces import Pieces
 from selfconf.rdf.templates import TaskDocument
 from selfconf.rdf.turtle import Document
 
@@ -145,25 +147,28 @@ def read_hierarchy(given: argparse.Namespace, reasoning: Reasoning | None = None
         for path in given.ontology:
             existing(path)
         return hierarchy([], mode)
-    return hierarchy([parse_file(path) for path in (*library.ontologies(), *given.ontology)], mode, entailment.owl_rl)
+    relevant = HIERARCHY if mode is Reasoning.SUBCLASS else None
+    ontologies = [parse_file(path, relevant) for path in (*library.ontologies(), *given.ontology)]
+    return hierarchy(ontologies, mode, entailment.owl_rl)
 
 
-def read_advertisements(paths: Sequence[Path]) -> dict[IRI, Advertisement]:
+def read_advertisements(paths: Sequence[Path]) -> Ecology:
     """The advertisements in files and folders. One that does not conform is named on stderr and left out."""
     found: dict[IRI, Advertisement] = {}
-    clauses = Clauses()
+    pieces = Pieces()
     with collector_at_rest():
         for path in turtle_files(paths):
-            good, bad = stream.read(_bytes(path), str(path), path.resolve().as_uri(), clauses)
+            good, bad = stream.read(_bytes(path), str(path), _base(path), pieces)
             for malformed in bad:
                 complain(f"{path}: left out {malformed.component}: {malformed.problems[0]}")
             for advertisement in good:
                 if found.setdefault(advertisement.component, advertisement) is not advertisement:
                     other = found[advertisement.component].profile.place
                     complain(f"{path}: left out {advertisement.component}: it is advertised in {other} already")
+        ecology = Ecology(found)
     if not found:
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")
-    return found
+    return ecology
 
 
 @contextmanager
@@ -199,16 +204,33 @@ def existing(path: Path) -> Path:
     return path
 
 
-def parse_file(path: Path) -> Document:
-    """A Turtle file. Raises AuthorError for what is not there, cannot be read, or is not Turtle."""
-    return turtle.parse(_bytes(path), str(path), path.resolve().as_uri())
+def parse_file(path: Path, predicates: Iterable[IRI] | None = None) -> Document:
+    """A Turtle file, or its triples with some predicates.
+
+    Raises AuthorError for what is not there, cannot be read, or is not Turtle.
+    """
+    return turtle.parse(_bytes(path), str(path), _base(path), predicates)
+
+
+def _base(path: Path) -> str:
+    """The IRI that relative IRIs in a file are relative to."""
+    whole = _resolved(path.parent.absolute()) / path.name
+    return (whole.resolve() if whole.is_symlink() else whole).as_uri()
+
+
+@lru_cache(maxsize=64)
+def _resolved(folder: Path) -> Path:
+    """A folder without links; what a thousand files in it have in common."""
+    return folder.resolve()
 
 
 def _bytes(path: Path) -> bytes:
-    if path.is_dir():
-        raise AuthorError(f"{path} is a folder; a file is needed here")
     try:
-        octets = existing(path).read_bytes()
+        octets = path.read_bytes()
+    except IsADirectoryError:
+        raise AuthorError(f"{path} is a folder; a file is needed here") from None
+    except FileNotFoundError:
+        raise AuthorError(f"there is no file or folder {path}") from None
     except OSError as error:
         raise AuthorError(f"cannot read {path}: {error.strerror}") from None
     if b"\0" in octets:

@@ -9,7 +9,6 @@ from dataclasses import replace
 from selfconf.cli.budget import Clock
 from selfconf.cli.inputs import read_hierarchy
 from selfconf.configurator.compose import Composer
-from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Refusal, TooFewEligible
@@ -30,13 +29,9 @@ def explained(
     known = read_hierarchy(given, Reasoning.SUBCLASS) if syntactic else composer.hierarchy
     refusal = replace(refusal, near_misses=(*_by_type(composer, ecology, refusal, known), *refusal.near_misses))
     refusal = clock.within(lambda: composer.mended(ecology, refusal), refusal)
-    if syntactic and clock.within(lambda: _possible(Composer(composer.task, known), ecology), False):
+    if syntactic and clock.within(lambda: composer.possible_under(ecology, known), False):
         return replace(refusal, hint="with --reasoning subclass there is a configuration")
     return refusal
-
-
-def _possible(composer: Composer, ecology: Mapping[IRI, Advertisement]) -> bool:
-    return isinstance(composer.compose(ecology, frozenset(), None), Configuration)
 
 
 def _by_type(
@@ -48,5 +43,5 @@ def _by_type(
         miss
         for role in composer.partitioner.roles
         if role.iri in short
-        for miss in kinship.near_misses(role, ecology.values(), composer.hierarchy, known)
+        for miss in kinship.near_misses(role, composer.partitioner, composer.gathered(ecology), known)
     )

@@ -19,6 +19,7 @@ from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.kinds import Ecology
 from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.templates import TaskDocument
 from selfconf.search import best, mend, paper, repair, solve, whatif
@@ -37,6 +38,14 @@ class Strategy(str, Enum):
     FIRST = "first"
     PAPER = "paper"
     BEST = "best"
+
+
+def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
+    """Whether under a hierarchy an output of some candidate matches an input of another type."""
+    profiles = [candidate.profile for candidates in partition.candidates for candidate in candidates]
+    wanted = {port.signal for profile in profiles for port in profile.inputs}
+    offered = {port.signal for profile in profiles for port in profile.outputs}
+    return any(not wanted.isdisjoint(hierarchy.superclasses(signal) - {signal}) for signal in offered)
 
 
 class Composer:
@@ -58,14 +67,22 @@ class Composer:
             )
         self.task, self.hierarchy, self.strategy, self.steps = task, hierarchy, strategy, steps
         self.partitioner = Partitioner(task, hierarchy)
-        self._ecology: Mapping[IRI, Advertisement] | None = None
+        self._given: Mapping[IRI, Advertisement] | None = None
+        self._ecology = Ecology({})
         self._partition = Partition(())
 
     def partition(self, ecology: Mapping[IRI, Advertisement]) -> Partition:
         """F1 ... Fn of an ecology."""
-        if self._ecology is None or self._ecology != ecology:
-            self._ecology, self._partition = dict(ecology), self.partitioner.partition(list(ecology.values()))
+        self.gathered(ecology)
         return self._partition
+
+    def gathered(self, ecology: Mapping[IRI, Advertisement]) -> Ecology:
+        """The ecology by kinds, partitioned; done again only if it has changed, which an `Ecology` never does."""
+        if self._given is None or (self._given is not ecology and self._given != ecology):
+            self._ecology = Ecology.of(ecology)
+            self._given = ecology if self._ecology is ecology else dict(ecology)
+            self._partition = self.partitioner.partition(self._ecology)
+        return self._ecology
 
     def compose(
         self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
@@ -92,9 +109,8 @@ class Composer:
                 yield answer
             elif isinstance(outcome, Refusal):
                 short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
-                present = [a for component, a in ecology.items() if component not in lost]
-                misses = self.partitioner.near_misses(present)
-                yield replace(outcome, near_misses=tuple(m for m in misses if not short or m.role in short))
+                misses = self.partitioner.near_misses(self.gathered(ecology), short or None, lost)
+                yield replace(outcome, near_misses=tuple(misses))
             else:
                 yield outcome
 
@@ -127,12 +143,20 @@ class Composer:
         if isinstance(found, Undecided) and self.steps is None:
             yield self._first(problem)
 
+    def possible_under(self, ecology: Mapping[IRI, Advertisement], hierarchy: Hierarchy) -> bool:
+        """Whether there would be a configuration where there is none now, if the roles saw another hierarchy."""
+        here = self.partition(ecology)
+        there = self.partitioner.under(hierarchy).partition(self.gathered(ecology))
+        if here == there and not _matches_more(here, hierarchy):
+            return False
+        return isinstance(solve.search(Problem(self.task.task, there, hierarchy)), Configuration)
+
     def mended(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
         problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
         near = [
             (miss, Candidate(ecology[miss.component].profile, tuple(ANY_VALUE for _ in problem.variables)))
-            for miss in refusal.near_misses
+            for miss in refusal.near_misses[: mend.TRIALS]
         ]
         return mend.with_repairs(problem, refusal, near)
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
 from selfconf.rdf.turtle import Document, Node, Triple
-from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE, XSD
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
 
 NUMBERS = frozenset(
     XSD[name]
@@ -160,9 +160,15 @@ class _Reader:
             return None
         statements = self.document.statements[self.component]
         types = frozenset(o for p, o in statements if p == TYPE and isinstance(o, IRI) and allowed(p, o))
+        if any(p == TYPE and not isinstance(o, IRI) for p, o in statements):
+            self.problems.append("the type of a component is an IRI")
         if len({o for p, o in statements if p == TYPE}) < 2:
             self.problems.append("a component needs a type of its own besides sc:Component")
-        inputs = [Input(name, signal) for name, signal, _ in self._ports(SC.hasInput, SC.signalType)]
+        inputs = []
+        for name, signal, node in self._ports(SC.hasInput, SC.signalType):
+            inputs.append(Input(name, signal))
+            if self.document.values(node, SC.rate):
+                self._problem(f"only an output promises a sc:rate, and {name!r} is an input")
         outputs = [
             Output(name, signal, self._rate(node, name))
             for name, signal, node in self._ports(SC.hasOutput, SC.signalType)
@@ -227,16 +233,23 @@ class _Reader:
         value = self._one(rates[0], SC.value, "") if len(rates) == 1 else None
         unit = self._one(rates[0], SC.unit, "") if len(rates) == 1 else None
         number = _number(value) if value is not None else None
-        if number is None or number <= 0 or not isinstance(unit, IRI):
+        if number is None or number <= 0 or unit != UNIT.HZ:
             self._problem(f"the sc:rate of output {name!r} is [ sc:value NUMBER ; sc:unit unit:HZ ], above zero")
             return None
         return number
 
     def _command(self) -> str | None:
-        for grounding in self.document.values(self.component, SC.grounding):
-            command = self.document.value(grounding, SC.command)
-            if isinstance(command, Literal):
+        groundings = self.document.values(self.component, SC.grounding)
+        if not groundings:
+            return None
+        commands = self.document.values(groundings[0], SC.command)
+        if len(groundings) > 1 or isinstance(groundings[0], Literal) or len(commands) > 1:
+            self._problem('a component has at most one sc:grounding, such as [ sc:command "..." ]')
+        elif commands:
+            command = commands[0]
+            if isinstance(command, Literal) and command.datatype == STRING and command.lexical:
                 return command.lexical
+            self._problem("sc:command is a string that is not empty, without a language")
         return None
 
 

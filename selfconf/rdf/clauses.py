@@ -32,9 +32,11 @@ END, NEXT = " .\n", " ;\n\t"
 _NAME = attrgetter("name")
 _SPOKEN_FOR = IRI("urn:selfconf:component")
 _KIND = IRI("urn:selfconf:kind")
+_NOTHING = Profile(_SPOKEN_FOR)
 _BEYOND = re.compile(f"<({SC.Component}|{FIRST}|{REST})>")
 """What a blank node may not say if it is to be folded: that it is a component itself, or a cell of a list."""
 _STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
+_GROUNDING = f"<{SC.grounding}>"
 _SIMPLE = re.compile(
     r"<(?P<predicate>[^<>]*)> (?:"
     r"<(?P<iri>[^<>]*)>"
@@ -44,30 +46,42 @@ _SIMPLE = re.compile(
     r")"
 )
 _PORT = re.compile(
-    rf"<{SC.base}(?P<link>hasInput|hasOutput|hasParameter)> \["
+    rf"<{SC.base}(?P<link>hasInput|hasOutput|(?P<set>hasParameter))> \["
     rf" (?:a <{SC.base}(?:Input|Output|OperationalParameter)>{NEXT})?"
-    rf'<{SC.name}> "(?P<name>[^"\\]+)"{NEXT}<{SC.base}(?P<kind>signalType|parameterType)> <(?P<type>[^<>]*)> \]'
+    rf'<{SC.name}> "(?P<name>[^"\\]+)"{NEXT}<{SC.base}(?(set)parameterType|signalType)> <(?P<type>[^<>]*)> \]'
 )
+_TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
 
 
 class Clause:
     """A predicate with its objects, as Turtle: what one or many components say."""
 
-    __slots__ = ("part", "slot", "text", "types")
+    __slots__ = ("bracketed", "keyed", "part", "predicate", "slot", "text", "types")
 
-    def __init__(self, text: str) -> None:
-        self.text = text
+    def __init__(self, predicate: str, text: str) -> None:
+        self.predicate, self.text = predicate, text
+        self.bracketed = text.endswith("]")
+        """Whether its object is a blank node."""
         self.part: Profile | None = None
         """What it adds to a profile, once that is known."""
+        self.keyed: list[tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]] = []
+        """Its properties behind what properties are ordered by, once that is known."""
         self.types: frozenset[IRI] = frozenset()
         """The types that it gives."""
         self.slot: object = self
         """What a component can have only one of: a port of that name, a preference."""
 
+    @property
+    def properties(self) -> tuple[tuple[IRI, Term], ...]:
+        """The properties that it states."""
+        simple = _property(self.text)
+        return self.read().properties if simple is None else (simple,)
+
     def read(self) -> Profile:
         """What it adds to a profile."""
         if self.part is None:
-            self.part = _property(self.text) or self.carefully()[0]
+            port = _PORT.fullmatch(self.text)
+            self.part = _port(port) if port else self.carefully()[0]
         return self.part
 
     def carefully(self) -> tuple[Profile, bool]:
@@ -77,11 +91,8 @@ class Clause:
         return profile or Profile(_SPOKEN_FOR), bool(problems)
 
 
-def _port(text: str) -> Profile | None:
+def _port(found: re.Match[str]) -> Profile:
     """The part of a clause with one port, or one operational parameter, that says nothing but name and type."""
-    found = _PORT.fullmatch(text)
-    if found is None or (found["link"] == "hasParameter") != (found["kind"] == "parameterType"):
-        return None
     name, type_ = found["name"], IRI(found["type"])
     if found["link"] == "hasInput":
         return Profile(_SPOKEN_FOR, inputs=(Input(name, type_),))
@@ -90,21 +101,22 @@ def _port(text: str) -> Profile | None:
     return Profile(_SPOKEN_FOR, parameters=(OperationalParameter(name, type_),))
 
 
-def _property(text: str) -> Profile | None:
-    """The part of a clause with one object of a common form."""
+def _property(text: str) -> tuple[IRI, Term] | None:
+    """The property that a clause with one object of a common form states."""
     found = _SIMPLE.fullmatch(text)
     if found is None:
         return None
+    predicate, iri, lexical, datatype, language, integer, decimal = found.groups()
     value: Term
-    if found["iri"] is not None:
-        value = IRI(found["iri"])
-    elif found["lexical"] is None:
-        value = Literal(found["integer"] or found["decimal"], XSD.integer if found["integer"] else XSD.decimal)
-    elif found["language"]:
-        value = Literal(found["lexical"], RDF.langString, found["language"])
+    if iri is not None:
+        value = IRI(iri)
+    elif lexical is None:
+        value = Literal(integer, XSD.integer) if integer else Literal(decimal, XSD.decimal)
+    elif language:
+        value = Literal(lexical, RDF.langString, language)
     else:
-        value = Literal(found["lexical"], IRI(found["datatype"]) if found["datatype"] else STRING)
-    return Profile(_SPOKEN_FOR, properties=((IRI(found["predicate"]), value),))
+        value = Literal(lexical, IRI(datatype) if datatype else STRING)
+    return IRI(predicate), value
 
 
 class BeyondFoldingError(Exception):
@@ -117,34 +129,55 @@ class Clauses(dict[str, Clause]):
     def __init__(self) -> None:
         self.suspects: set[Clause] = set()
         """Clauses about which only the careful reader can tell."""
+        self._slots: dict[object, object] = {}
+        self._predicates: dict[str, str] = {}
+        self._allowed: dict[str, bool] = {}
 
     def __missing__(self, text: str) -> Clause:
         predicate, _, said = text.partition(" ")
         if said.startswith("[") and _BEYOND.search(said):
             raise BeyondFoldingError
-        clause = self[text] = Clause(text)
-        if predicate in _STRUCTURE:
+        clause = self[text] = Clause(self._predicates.setdefault(predicate, predicate), text)
+        if predicate == "a":
+            self._types(clause)
+        elif predicate in _STRUCTURE:
             self._structure(clause, predicate)
-        elif not allowed(IRI(predicate[1:-1]), _SPOKEN_FOR):
-            self.suspects.add(clause)
+        else:
+            if predicate not in self._allowed:
+                self._allowed[predicate] = allowed(IRI(predicate[1:-1]), _SPOKEN_FOR)
+            if not self._allowed[predicate]:
+                self.suspects.add(clause)
         return clause
 
-    def _structure(self, clause: Clause, predicate: str) -> None:
-        if predicate == "a":
-            types = turtle.parse(f"<{_SPOKEN_FOR}> {clause.text}{END}", "").values(_SPOKEN_FOR, TYPE)
-            clause.slot, clause.part = TYPE, Profile(_SPOKEN_FOR)
-            clause.types = frozenset(type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_))
-            faulty = len(clause.types) != len(types)
+    def typed(self, said: list[Clause]) -> None:
+        """Make one clause of all that give types to a subject, unless one of them has brackets."""
+        kinds = [clause for clause in said if clause.slot is TYPE]
+        if len(kinds) > 1 and not any("[" in clause.text for clause in kinds):
+            said[said.index(kinds[0])] = self["a " + " , ".join(clause.text[len("a ") :] for clause in kinds)]
+            said[:] = [clause for clause in said if clause not in kinds]
+
+    def _types(self, clause: Clause) -> None:
+        if _TYPES.fullmatch(clause.text):
+            types: set[Term] = {IRI(type_) for type_ in clause.text[len("a <") : -1].split("> , <")}
         else:
-            clause.part, faulty = _port(clause.text), False
-            if clause.part is None:
-                clause.part, faulty = clause.carefully()
+            types = set(turtle.parse(f"<{_SPOKEN_FOR}> {clause.text}{END}", "").values(_SPOKEN_FOR, TYPE))
+        clause.slot, clause.part = TYPE, _NOTHING
+        clause.types = frozenset([type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_)])
+        if len(clause.types) < len(types):
+            self.suspects.add(clause)
+
+    def _structure(self, clause: Clause, predicate: str) -> None:
+        port = _PORT.fullmatch(clause.text)
+        if port is not None:
+            names = [port["name"]]
+        else:
+            clause.part, faulty = clause.carefully()
             part = clause.part
             names = [*map(_NAME, part.inputs), *map(_NAME, part.outputs), *map(_NAME, part.parameters)]
-            clause.slot = (predicate, *names)
-            faulty = faulty or len(names) > 1
-        if faulty:
-            self.suspects.add(clause)
+            elsewhere = predicate == _GROUNDING and not clause.bracketed  # what it says is said of a thing with a name
+            if faulty or elsewhere or len(names) > 1:
+                self.suspects.add(clause)
+        clause.slot = self._slots.setdefault((predicate, *names), object())  # compared by identity: quicker
 
 
 def fold(text: bytes, source: str, base: str | None, clauses: Clauses) -> dict[str, list[Clause]] | None:

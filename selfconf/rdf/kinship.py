@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from difflib import SequenceMatcher
+from functools import lru_cache
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import ClassTest, CompiledRole
+from selfconf.rdf.kinds import Ecology
+from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.vocabulary import SC
 
 CLOSE = 0.8
@@ -22,26 +24,21 @@ MOST = 5
 """How many are named for one role."""
 
 
-def near_misses(
-    role: CompiledRole, advertisements: Iterable[Advertisement], seen: Hierarchy, known: Hierarchy
-) -> Iterator[NearMiss]:
-    """Those whom one class test alone keeps out, the misspelt ones first.
+def near_misses(role: CompiledRole, partitioner: Partitioner, ecology: Ecology, known: Hierarchy) -> Iterator[NearMiss]:
+    """Those whom one class test alone keeps out, the misspelt ones first, then by what was meant and by component.
 
-    `seen` is the hierarchy that the role sees, `known` the one that the ontologies have.
+    `known` is the hierarchy that the ontologies have, whatever the role sees.
     """
-    by_types: dict[frozenset[IRI], tuple[int, str] | None] = {}
-    found: list[tuple[int, IRI, str]] = []
-    for advertisement in advertisements:
-        types = advertisement.types
-        if types not in by_types:
-            by_types[types] = _kinship(role.classes, types, seen, known)
-        kinship = by_types[types]
-        if kinship is None:
-            continue
-        if len(list(role.obstacles(advertisement.profile, seen))) == 1:
-            found.append((kinship[0], advertisement.component, kinship[1]))
-    for _, component, obstacle in sorted(found)[:MOST]:
-        yield NearMiss(role.iri, component, obstacle)
+    found = {kind: _kinship(role.classes, kind, partitioner.hierarchy, known) for kind in ecology.kinds}
+    kinds = sorted((kinship, kind) for kind, kinship in found.items() if kinship is not None)
+    left = MOST
+    for (_, obstacle), kind in kinds:
+        tested = partitioner.tested(role, ecology, [kind])
+        near = sorted(a.component for _, alike, verdict in tested if len(verdict.obstacles) == 1 for a in alike)
+        yield from (NearMiss(role.iri, component, obstacle) for component in near[:left])
+        left -= len(near[:left])
+        if not left:
+            return
 
 
 def _kinship(
@@ -51,7 +48,7 @@ def _kinship(
     failed = [test.kind for test in classes if not test.admits(types, seen)]
     if len(failed) != 1:
         return None
-    wanted = failed[0]
+    (wanted,) = failed
     for offered in sorted(types - {SC.Component}):
         if _alike(offered, wanted):
             name = offered.short if offered.short != wanted.short else repr(offered)
@@ -64,5 +61,12 @@ def _kinship(
 
 
 def _alike(offered: IRI, wanted: IRI) -> bool:
-    one, other = offered.short.lower(), wanted.short.lower()
-    return one == other or SequenceMatcher(None, one, other, autojunk=False).ratio() >= CLOSE
+    matcher = _matcher(wanted)
+    matcher.set_seq1(offered.short.lower())
+    return matcher.real_quick_ratio() >= CLOSE and matcher.quick_ratio() >= CLOSE and matcher.ratio() >= CLOSE
+
+
+@lru_cache(maxsize=64)
+def _matcher(wanted: IRI) -> SequenceMatcher[str]:
+    """What compares names with a wanted one: one name with many is quicker than many pairs."""
+    return SequenceMatcher(None, "", wanted.short.lower(), autojunk=False)

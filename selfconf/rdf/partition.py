@@ -7,7 +7,8 @@ says more than the tests, pySHACL judges those who pass them, all in one call.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import rdflib
@@ -20,13 +21,15 @@ from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.bindings import free_parameters
-from selfconf.rdf.eligibility import CompiledRole, Count, ParameterTest, PropertyTest, SelfTest, Test
+from selfconf.rdf.eligibility import CompiledRole
+from selfconf.rdf.kinds import Above, Ecology, Kind, Signature
 from selfconf.rdf.roles import bound_shape, compile_role
 from selfconf.rdf.shacl import violations
 from selfconf.rdf.templates import TaskDocument, mentions
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import TYPE
 
+Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
 ANOTHER = IRI("urn:selfconf:another-value")
 """A value that no component has: what it lets pass, any value lets pass."""
 NO_VALUE = "leaves no value for a free parameter that its statements agree on"
@@ -48,6 +51,10 @@ class Verdict:
     allows: Mapping[IRI, frozenset[Term]]
 
 
+Tested = tuple[Kind, Sequence[Advertisement], Verdict]
+"""Some components that are alike, with their kind and what the tests of a role say of them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Exclusion:
     """A component that is not eligible for a role, and everything that keeps it out."""
@@ -56,38 +63,6 @@ class Exclusion:
     obstacles: tuple[str, ...]
     akin: bool
     """Whether it is of the classes that the role asks for."""
-
-
-class _Wanting(dict[frozenset[IRI], tuple[CompiledRole, ...]]):
-    """For a component's types, the roles of whose classes it is; worked out when they are first met."""
-
-    def __init__(self, roles: Iterable[CompiledRole], hierarchy: Hierarchy) -> None:
-        self._classes = [(role, role.classes) for role in roles]
-        self._hierarchy = hierarchy
-
-    def __missing__(self, types: frozenset[IRI]) -> tuple[CompiledRole, ...]:
-        self[types] = found = tuple(
-            role for role, classes in self._classes if all(test.admits(types, self._hierarchy) for test in classes)
-        )
-        return found
-
-
-class Ecology:
-    """Advertisements by the roles of whose classes their components are; most are of none, and looked at once."""
-
-    def __init__(
-        self, advertisements: Sequence[Advertisement], roles: Iterable[CompiledRole], hierarchy: Hierarchy
-    ) -> None:
-        self.advertisements = advertisements
-        self._akin: dict[IRI, list[Advertisement]] = {}
-        wanting = _Wanting(roles, hierarchy)
-        for advertisement in [a for a in advertisements if wanting[a.types]]:
-            for role in wanting[advertisement.types]:
-                self._akin.setdefault(role.iri, []).append(advertisement)
-
-    def akin(self, role: CompiledRole) -> Sequence[Advertisement]:
-        """Those of the classes that a role asks for."""
-        return self._akin.get(role.iri, ())
 
 
 class Partitioner:
@@ -100,72 +75,96 @@ class Partitioner:
             compile_role(given.document, role.iri, tuple(s.type for s in role.settings), given.task.bindings, self.free)
             for role in given.task.template.roles
         )
+        self._above = Above(hierarchy)
 
-    def partition(self, advertisements: Sequence[Advertisement]) -> Partition:
+    def under(self, hierarchy: Hierarchy) -> Partitioner:
+        """The same task for roles that see another hierarchy."""
+        other = copy(self)
+        other.hierarchy, other._above = hierarchy, Above(hierarchy)
+        return other
+
+    def partition(self, advertisements: Advertisements) -> Partition:
         """F1 ... Fn and the variables that the free parameters are. Raises TemplateError for a shape that is none."""
-        ecology = Ecology(advertisements, self.roles, self.hierarchy)
+        ecology = Ecology.of(advertisements)
         eligible = [list(self.eligible(role, ecology)) for role in self.roles]
         variables = tuple(self._variables(eligible))
         bits = [{value: 1 << number for number, value in enumerate(variable.domain)} for variable in variables]
 
         def admits(found: Eligible) -> tuple[int, ...]:
-            return tuple(_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True))
+            return tuple([_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True)])
 
         return Partition(
             tuple(ordered([Candidate(found.profile, admits(found)) for found in role]) for role in eligible), variables
         )
 
-    def near_misses(self, advertisements: Iterable[Advertisement]) -> Iterator[NearMiss]:
-        """For each role the components of its class that exactly one other test keeps out, with that obstacle."""
-        ecology = Ecology(list(advertisements), self.roles, self.hierarchy)
-        for role in self.roles:
-            for advertisement, verdict in self._tested(role, ecology.akin(role)):
-                if len(verdict.obstacles) == 1:
-                    yield NearMiss(role.iri, advertisement.component, verdict.obstacles[0])
+    def akin(self, role: CompiledRole, ecology: Ecology) -> Iterator[Kind]:
+        """The kinds that are of the classes that a role asks for."""
+        classes = {test.kind for test in role.classes}
+        return (kind for kind in ecology.kinds if classes <= self._above[kind])
 
-    def exclusions(self, role: CompiledRole, advertisements: Sequence[Advertisement]) -> list[Exclusion]:
+    def tested(self, role: CompiledRole, ecology: Ecology, kinds: Iterable[Kind]) -> Iterator[Tested]:
+        """What the tests of a role say of the components of some kinds; of those that are alike they say the same."""
+        signature = Signature(role.tests, self.hierarchy)
+        for kind in kinds:
+            for alike in ecology.alike(kind, signature):
+                profile = alike[0].profile
+                obstacles = tuple(role.obstacles(profile, self.hierarchy))
+                yield kind, alike, Verdict(obstacles, {} if obstacles else role.allows(profile, self.hierarchy))
+
+    def near_misses(
+        self, advertisements: Advertisements, roles: Container[IRI] | None = None, lost: Container[IRI] = ()
+    ) -> Iterator[NearMiss]:
+        """For each role the components of its class that exactly one other test keeps out, with that obstacle.
+
+        Of some roles only, where those are given, and without the lost components; for each role by component.
+        """
+        ecology = Ecology.of(advertisements)
+        for role in self.roles:
+            if roles is None or role.iri in roles:
+                near = [
+                    (advertisement.component, verdict.obstacles[0])
+                    for _, alike, verdict in self.tested(role, ecology, self.akin(role, ecology))
+                    if len(verdict.obstacles) == 1
+                    for advertisement in alike
+                ]
+                yield from (NearMiss(role.iri, *one) for one in sorted(near) if one[0] not in lost)
+
+    def exclusions(self, role: CompiledRole, advertisements: Advertisements) -> list[Exclusion]:
         """All that keeps each other component out of a role; first those of its class, and those with few obstacles."""
-        ecology = Ecology(advertisements, self.roles, self.hierarchy)
+        ecology = Ecology.of(advertisements)
         inside = {found.profile.component for found in self.eligible(role, ecology)}
-        akin = {advertisement.component for advertisement in ecology.akin(role)}
-        outside = [advertisement for advertisement in advertisements if advertisement.component not in inside]
-        obstacles = {a.component: verdict.obstacles for a, verdict in self._tested(role, outside)}
-        passed = [advertisement for advertisement in outside if not obstacles[advertisement.component]]
+        akin = set(self.akin(role, ecology))
+        outside = {
+            advertisement: (kind in akin, verdict.obstacles)
+            for kind, alike, verdict in self.tested(role, ecology, ecology.kinds)
+            for advertisement in alike
+            if advertisement.component not in inside
+        }
+        passed = [advertisement for advertisement, (_, obstacles) in outside.items() if not obstacles]
         if passed and not role.complete:
-            judged = self._violations(role, passed, advertisements, {})
-            obstacles |= {component: (_clause(message),) for component, message in judged.items()}
+            judged = self._violations(role, passed, list(ecology.values()), {})
+            outside |= {a: (outside[a][0], (_clause(judged[a.component]),)) for a in passed if a.component in judged}
         return sorted(
-            (Exclusion(c, reasons or (NO_VALUE,), c in akin) for c, reasons in obstacles.items()),
+            (
+                Exclusion(a.component, reasons or (NO_VALUE,), of_its_class)
+                for a, (of_its_class, reasons) in outside.items()
+            ),
             key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
         )
 
     def eligible(self, role: CompiledRole, ecology: Ecology) -> Iterator[Eligible]:
         """The components that conform to a role, unordered."""
-        passed = [pair for pair in self._tested(role, ecology.akin(role)) if not pair[1].obstacles]
+        tested = self.tested(role, ecology, self.akin(role, ecology))
+        passed = [(alike, verdict.allows) for _, alike, verdict in tested if not verdict.obstacles]
         if role.complete:
-            yield from (Eligible(a.profile, v.allows) for a, v in passed if all(v.allows.values()))
+            yield from (Eligible(a.profile, allows) for alike, allows in passed if all(allows.values()) for a in alike)
             return
-        survivors = [advertisement for advertisement, _ in passed]
+        survivors, everything = [a for alike, _ in passed for a in alike], list(ecology.values())
         if mentions(self.document, role.iri, self.free):
-            yield from self._by_value(role, survivors, ecology.advertisements)
+            yield from self._by_value(role, survivors, everything)
         else:
-            outside = self._violations(role, survivors, ecology.advertisements, {})
+            outside = self._violations(role, survivors, everything, {})
             yield from (Eligible(a.profile, {}) for a in survivors if a.component not in outside)
-
-    def _tested(
-        self, role: CompiledRole, advertisements: Iterable[Advertisement]
-    ) -> Iterator[tuple[Advertisement, Verdict]]:
-        """What the tests of a role say of some advertisements; of equal signatures they say the same."""
-        signature = _signature(role.tests, self.hierarchy)
-        known: dict[Hashable, Verdict] = {}
-        for advertisement in advertisements:
-            profile = advertisement.profile
-            key = signature(profile)
-            verdict = known.get(key)
-            if verdict is None:
-                obstacles = tuple(role.obstacles(profile, self.hierarchy))
-                verdict = known[key] = Verdict(obstacles, {} if obstacles else role.allows(profile, self.hierarchy))
-            yield advertisement, verdict
 
     def _by_value(
         self, role: CompiledRole, passed: Sequence[Advertisement], everything: Sequence[Advertisement]
@@ -239,38 +238,6 @@ class Partitioner:
             domain = {value for role in eligible for e in role for value in e.allows.get(parameter, ())}
             if domain:
                 yield Variable(parameter, tuple(sorted(domain, key=sort_key)))
-
-
-def _signature(tests: Iterable[Test], hierarchy: Hierarchy) -> Callable[[Profile], Hashable]:
-    """What some tests look at in a profile: equal signatures pass the same tests."""
-    inner = list(_flat(tests))
-    paths = {test.path for test in inner if isinstance(test, PropertyTest)}
-    parameters = any(isinstance(test, ParameterTest) for test in inner)
-    itself = any(isinstance(test, SelfTest) for test in inner)
-    seen: dict[IRI, bool] = {}
-
-    def looks_at(predicate: IRI) -> bool:
-        if predicate not in seen:
-            seen[predicate] = not paths.isdisjoint(hierarchy.superproperties(predicate))
-        return seen[predicate]
-
-    def signature(profile: Profile) -> Hashable:
-        return (
-            profile.types,
-            tuple([pair for pair in profile.properties if looks_at(pair[0])]),
-            profile.parameters if parameters else None,
-            profile.component if itself else None,
-        )
-
-    return signature
-
-
-def _flat(tests: Iterable[Test]) -> Iterator[Test]:
-    for test in tests:
-        yield test
-        if isinstance(test, Count):
-            for group in test.groups:
-                yield from _flat(group)
 
 
 def _mask(eligible: Eligible, parameter: IRI, bits: Mapping[Term, int]) -> int:

@@ -34,6 +34,8 @@ _PART_TERMS = frozenset((SC.name, SC.signalType, SC.parameterType, SC.rate, SC.v
 _PARTS = frozenset((SC.Input, SC.Output, SC.OperationalParameter, SC.Grounding))
 _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
 _SCHEMA = frozenset((OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDFS.Class, RDF.Property))
+_PLACING = frozenset((RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty))
+"""What gives its subject a place in a hierarchy."""
 TERM_POSITIONS = frozenset(
     (TYPE, SC.signalType, SC.parameterType, RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range)
 ) | {SH[name] for name in ("class", "path", "datatype", "nodeKind", "targetClass", "inversePath")}
@@ -86,6 +88,10 @@ class Screened:
     terms: set[str] = field(default_factory=set)
     """The classes and properties that the file declares."""
     object_properties: set[str] = field(default_factory=set)
+    placed: set[str] = field(default_factory=set)
+    """What the file gives a place in a hierarchy, which it may have declared or not."""
+    above: set[tuple[str, str]] = field(default_factory=set)
+    """Each class that the file places, with the one right above it; equal ones are above each other."""
     prefixes: set[tuple[str, str]] = field(default_factory=set)
 
 
@@ -151,6 +157,15 @@ def _note(found: Screened, subject: str, properties: Properties) -> None:
     if subject[:2] != "_:":
         found.subjects.add(subject)
     types = properties.get(TYPE, {})
+    if not _PLACING.isdisjoint(properties):
+        found.placed.add(subject)
+        found.above.update(
+            pair
+            for predicate in (RDFS.subClassOf, OWL.equivalentClass)
+            for value in properties.get(predicate, ())
+            if isinstance(value, str)
+            for pair in ((subject, value), *([(value, subject)] if predicate == OWL.equivalentClass else ()))
+        )
     if not _SCHEMA.isdisjoint(types):
         found.terms.add(subject)
         if OWL.ObjectProperty in types:

@@ -18,10 +18,12 @@ from selfconf.model.profile import Input, OperationalParameter, Output, Place, P
 from selfconf.model.term import IRI, BlankNode, Term
 from selfconf.rdf import advertisements, turtle
 from selfconf.rdf.advertisements import Advertisement, Malformed, about
-from selfconf.rdf.clauses import END, NEXT, Clause, Clauses, fold
+from selfconf.rdf.clauses import END, NEXT, Clause
+from selfconf.rdf.pieces import Pieces, folded
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import SC
 
+Keyed = tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]
 _NAME = attrgetter("name")
 _NONE: frozenset[IRI] = frozenset()
 
@@ -31,16 +33,14 @@ class Streamed(Advertisement):
 
     __slots__ = ("_clauses", "_origin", "_profile")
 
-    def __init__(
-        self,
-        component: IRI,
-        types: frozenset[IRI],
-        clauses: tuple[Clause, ...],
-        origin: Origin,
-        profile: Profile | None = None,
-    ) -> None:
-        self.component, self.types = component, types
-        self._clauses, self._origin, self._profile = clauses, origin, profile
+    def __init__(self, component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], origin: Origin) -> None:
+        self.component, self.types, self._clauses, self._origin = component, types, clauses, origin
+        self._profile: Profile | None = None
+
+    @property
+    def clauses(self) -> tuple[Clause, ...]:
+        """What its profile is made of; nothing where only the careful reader could make it."""
+        return self._clauses
 
     @property
     def profile(self) -> Profile:
@@ -62,34 +62,64 @@ class Streamed(Advertisement):
     __hash__ = Advertisement.__hash__
 
 
+class Judged(Streamed):
+    """A streamed advertisement about which something was unusual, with the profile that the careful reader made."""
+
+    __slots__ = ()
+
+    def __init__(self, profile: Profile, clauses: tuple[Clause, ...], origin: Origin) -> None:
+        super().__init__(profile.component, profile.types, clauses, origin)
+        self._profile = profile
+
+    @property
+    def clauses(self) -> tuple[Clause, ...]:
+        """Nothing: its profile is all that counts."""
+        return ()
+
+
 def _merged(component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], place: Place) -> Profile:
     """The profile of a component about which nothing is unusual."""
-    properties: set[tuple[IRI, Term]] = set()
+    properties: list[Keyed] = []
     inputs: list[Input] = []
     outputs: list[Output] = []
     parameters: list[OperationalParameter] = []
     preference, command = 0.0, None
     for clause in clauses:
+        if clause.slot is clause:
+            properties += clause.keyed or _keyed(clause, component)
+            continue
         part = clause.part or clause.read()
-        properties.update(part.properties)
-        inputs += part.inputs
-        outputs += part.outputs
-        parameters += part.parameters
-        preference = preference or part.preference
-        command = command if command is not None else part.command
-    if any(isinstance(value, BlankNode) for _, value in properties):
-        properties = {(p, _own(v, component) if isinstance(v, BlankNode) else v) for p, v in properties}
+        if part.inputs:
+            inputs += part.inputs
+        elif part.outputs:
+            outputs += part.outputs
+        elif part.parameters:
+            parameters += part.parameters
+        else:
+            preference = preference or part.preference
+            command = part.command if command is None else command
+    properties.sort()
     return Profile(
-        component=component,
-        types=types,
-        properties=tuple(sorted(properties, key=advertisements.property_order)),
-        inputs=tuple(sorted(inputs, key=_NAME)),
-        outputs=tuple(sorted(outputs, key=_NAME)),
-        parameters=tuple(sorted(parameters, key=_NAME)),
-        preference=preference,
-        command=command,
-        place=place,
+        component,
+        types,
+        tuple(dict.fromkeys([pair for _, pair in properties])),
+        tuple(inputs) if len(inputs) < 2 else tuple(sorted(inputs, key=_NAME)),
+        tuple(outputs) if len(outputs) < 2 else tuple(sorted(outputs, key=_NAME)),
+        tuple(parameters) if len(parameters) < 2 else tuple(sorted(parameters, key=_NAME)),
+        preference,
+        command,
+        place,
     )
+
+
+def _keyed(clause: Clause, component: IRI) -> list[Keyed]:
+    """The properties that a clause states, each behind what they are ordered by; remembered if all may share them."""
+    pairs = clause.properties
+    own = [(p, _own(v, component) if isinstance(v, BlankNode) else v) for p, v in pairs]
+    keyed = [(advertisements.property_order(pair), pair) for pair in own]
+    if not any(isinstance(value, BlankNode) for _, value in pairs):
+        clause.keyed = keyed
+    return keyed
 
 
 def _own(value: BlankNode, component: IRI) -> BlankNode:
@@ -126,29 +156,30 @@ def _written(subject: str, clauses: Iterable[Clause]) -> str:
 
 
 def read(
-    text: bytes, source: str, base: str | None = None, clauses: Clauses | None = None
+    text: bytes, source: str, base: str | None = None, pieces: Pieces | None = None
 ) -> tuple[list[Advertisement], list[Malformed]]:
-    """What `advertisements.read` makes of a document, sooner and smaller; documents may share their clauses.
+    """What `advertisements.read` makes of a document, sooner and smaller; documents may share their pieces.
 
     Raises TurtleError.
     """
-    clauses = Clauses() if clauses is None else clauses
-    subjects = fold(text, source, base, clauses)
+    pieces = Pieces() if pieces is None else pieces
+    subjects = folded(text, source, base, pieces)
     if subjects is None:
         return advertisements.read(turtle.parse(text, source, base))
+    del text  # as large as what is made of it
     origin = Origin(source)
     found: list[Advertisement | tuple[IRI, list[Clause]]] = []
-    suspects, slot, component_type = clauses.suspects, attrgetter("slot"), SC.Component
+    suspects, slot, component_type = pieces.suspects, attrgetter("slot"), SC.Component
     unusual = False
     for subject, said in subjects.items():
+        unlike = len(set(map(slot, said))) == len(said)
+        if not unlike:
+            pieces.typed(said)
+            unlike = len(set(map(slot, said))) == len(said)
         types = said[0].types or next((clause.types for clause in said if clause.types), _NONE)
-        if (
-            component_type in types
-            and len(types) > 1
-            and len(set(map(slot, said))) == len(said)
-            and (not suspects or suspects.isdisjoint(said))
-        ):
+        if component_type in types and len(types) > 1 and unlike and (not suspects or suspects.isdisjoint(said)):
             found.append(Streamed(IRI(subject[1:-1]), types, tuple(said), origin))
+            said.clear()
         elif types and any(component_type in clause.types for clause in said):
             found.append((IRI(subject[1:-1]), said))
             unusual = True
@@ -174,5 +205,5 @@ def _judged(
         if profile is None or problems:
             bad.append(Malformed(component, origin.place, problems))
         else:
-            good.append(Streamed(component, profile.types, tuple(said), origin, profile))
+            good.append(Judged(profile, tuple(said), origin))
     return good, bad

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import pyoxigraph as ox
 import rdflib
@@ -76,23 +77,23 @@ class Document:
         return members
 
 
-def parse(text: str | bytes, source: str, base: str | None = None) -> Document:
-    """Read Turtle; raises TurtleError with line and column where it is not Turtle, or not UTF-8."""
+def parse(text: str | bytes, source: str, base: str | None = None, predicates: Iterable[IRI] | None = None) -> Document:
+    """Read Turtle, or of it the triples with some predicates.
+
+    Raises TurtleError with line and column where it is not Turtle, or not UTF-8.
+    """
+    only = None if predicates is None else frozenset(map(ox.NamedNode, predicates))
     statements: dict[Node, list[tuple[IRI, Term]]] = defaultdict(list)
-    known: dict[object, Term] = {}
+    known: dict[object, Any] = {}  # a subject is never a literal, a predicate always an IRI
     reader = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base, rename_blank_nodes=True)
-
-    def read(node: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> Term:
-        found = known.get(node)
-        if found is None:
-            found = known[node] = term(node)
-        return found
-
     try:
-        for quad in reader:  # the types: a subject is never a literal, a predicate always an IRI
-            statements[read(quad.subject)].append(  # type: ignore[index]
-                (read(quad.predicate), read(quad.object))  # type: ignore[arg-type]
-            )
+        for subject, predicate, value, _ in reader:
+            if only is not None and predicate not in only:
+                continue
+            for node in (subject, predicate, value):
+                if node not in known:
+                    known[node] = term(node)
+            statements[known[subject]].append((known[predicate], known[value]))
     except SyntaxError as error:
         raise not_turtle(error, source) from None
     return Document(source, dict(statements), dict(reader.prefixes), base)

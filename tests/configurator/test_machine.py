@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from selfconf.configurator.effects import (
@@ -207,6 +209,17 @@ def test_after_a_failure_the_rest_is_kept() -> None:
     assert history.all_answer() == [Running(navigation(ODOMETRY))]
     assert not any(isinstance(effect, SetOn) for effect in effects)  # the goal is still set
     assert history.state.target == navigation(ODOMETRY)
+
+
+def test_who_has_to_begin_is_told_before_who_waits_for_its_signals() -> None:
+    first, then = (
+        replace(configuration, assignments=configuration.assignments[::-1])
+        for configuration in (navigation(), navigation(ODOMETRY))
+    )
+    history = History().running(first)
+    history.hear(Failed(TRACKER, "1", Cause.FAIL, "lost her"))
+    assert then.components.index(CONTROL) < then.components.index(ODOMETRY)
+    assert applied(history.composed(then)) == [ODOMETRY, CONTROL]
 
 
 def test_dismantling_releases_everybody_before_the_search() -> None:

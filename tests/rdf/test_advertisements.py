@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.profile import Input, OperationalParameter, Output
 from selfconf.model.term import IRI, Literal
-from selfconf.rdf import advertisements, turtle
+from selfconf.rdf import advertisements, stream, turtle
 from selfconf.rdf.advertisements import Advertisement, Malformed
 from selfconf.rdf.vocabulary import RDFS, ROB, SC
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
+BAD = Path(__file__).resolve().parents[1] / "bad"
+UNDECLARED = {"component-untyped"}
+"""Files about something that says nowhere that it is a component."""
 PORT = '[ sc:name "a" ; sc:signalType :S'
 Read = tuple[list[Advertisement], list[Malformed]]
 
@@ -148,3 +154,25 @@ def test_the_order_of_components_in_a_file_changes_no_profile(names: list[str]) 
     forward, _ = read(" ".join(ADVERTISEMENTS[name] for name in names))
     backward, _ = read(" ".join(ADVERTISEMENTS[name] for name in reversed(names)))
     assert [a.profile for a in forward] == [a.profile for a in reversed(backward)]
+
+
+def broken(path: Path) -> bool:
+    """Whether a bad file breaks the shape of an advertisement, and not another."""
+    return re.match(r"# expect: \S+ error\[SC-A", path.read_text()) is not None
+
+
+@pytest.mark.parametrize("path", sorted(filter(broken, BAD.glob("*.ttl"))), ids=lambda path: path.stem)
+def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
+    text = path.read_bytes()
+    careful, streamed = advertisements.read(turtle.parse(text, path.name)), stream.read(text, path.name)
+    if path.stem in UNDECLARED:
+        assert careful == streamed == ([], [])
+    else:
+        assert [malformed.problems for malformed in streamed[1]] == [malformed.problems for malformed in careful[1]]
+        assert careful[1]
+
+
+def test_what_a_grounding_with_a_name_says_is_read() -> None:
+    text = ':a a sc:Component, :L ; sc:grounding :g . :g sc:command "go" . :b a sc:Component, :L ; sc:grounding :g .'
+    assert [a.profile.command for a in read(text)[0]] == ["go", "go"]
+    assert [a.profile.command for a in stream.read((PREFIXES + text).encode(), "ads.ttl")[0]] == ["go", "go"]

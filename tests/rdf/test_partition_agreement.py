@@ -12,7 +12,8 @@ from selfconf.model.term import IRI
 from selfconf.rdf import advertisements, bindings, closure, templates, turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import ParameterTest
-from selfconf.rdf.partition import Ecology, Partitioner
+from selfconf.rdf.kinds import Ecology
+from selfconf.rdf.partition import Partitioner
 from tests.lab import PREFIXES
 
 ONTOLOGY = PREFIXES + (
@@ -111,10 +112,7 @@ def ecology(components: list[tuple[str, list[tuple[str, str]], bool]]) -> list[A
 def eligible(partitioner: Partitioner, ads: list[Advertisement]) -> dict[IRI, object]:
     """Who is eligible for the only role, and the values that it allows."""
     (role,) = partitioner.roles
-    return {
-        e.profile.component: dict(e.allows)
-        for e in partitioner.eligible(role, Ecology(ads, partitioner.roles, partitioner.hierarchy))
-    }
+    return {e.profile.component: dict(e.allows) for e in partitioner.eligible(role, Ecology.of(ads))}
 
 
 def by_pyshacl(partitioner: Partitioner) -> Partitioner:

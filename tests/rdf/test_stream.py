@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from selfconf.errors import TurtleError
 from selfconf.rdf import advertisements, clauses, stream, turtle
 from selfconf.rdf.advertisements import Advertisement, Malformed
+from selfconf.rdf.pieces import Pieces
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.write import ntriples
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
@@ -42,7 +43,8 @@ CLAUSES = st.one_of(
         "sc:hasParameter [ sc:name {} ; sc:parameterType {} ]".format, NAMES, st.sampled_from((":Goal", "'Goal'"))
     ),
     st.builds("sc:preference {}".format, st.sampled_from(("1", "2.5", '"high"', "1 , 1", "1 , 2"))),
-    st.builds("sc:grounding [ sc:command {} ]".format, st.sampled_from(('"go --fast"', "5"))),
+    st.builds("sc:grounding [ sc:command {} ]".format, st.sampled_from(('"go --fast"', "5", '"a", "b"'))),
+    st.sampled_from(("sc:grounding :kitchen", "sc:command 'go'", "sc:grounding 'go'")),
     st.builds("{} {}".format, st.sampled_from((":place", "rob:support", "rdfs:label", "rdfs:domain")), VALUES),
     st.builds(":near {} , {}".format, VALUES, VALUES),
     st.just(":with [ a sc:Component, :Inner ]"),
@@ -110,8 +112,8 @@ def test_a_document_longer_than_a_piece_is_read_as_one() -> None:
     assert told((good, bad)) == told(advertisements.read(turtle.parse(text, "a.ttl")))
 
 
-def test_documents_may_share_their_clauses() -> None:
-    shared = clauses.Clauses()
+def test_documents_may_share_their_pieces() -> None:
+    shared = Pieces()
     found = [stream.read((PREFIXES + text).encode(), name, None, shared)[0][0] for name, text in ADVERTISEMENTS.items()]
     assert [a.profile.place and a.profile.place.source for a in found] == list(ADVERTISEMENTS)
     assert found[2].profile.preference == 10

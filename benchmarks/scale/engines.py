@@ -1,0 +1,166 @@
+"""What reads advertisements, each measured in a process of its own: seconds of processor time, octets at the peak."""
+
+from __future__ import annotations
+
+import argparse
+import resource
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import pyoxigraph as ox
+import rdflib
+
+from benchmarks.scale.worlds import ROLES, task
+from selfconf.cli.budget import Clock
+from selfconf.cli.inputs import read_advertisements, turtle_files
+from selfconf.cli.why import explained
+from selfconf.configurator.compose import Composer
+from selfconf.model.configuration import Configuration
+from selfconf.model.hierarchy import Reasoning
+from selfconf.model.profile import Input, OperationalParameter, Output, Profile
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import STRUCTURE, Advertisement, property_order
+from selfconf.rdf.kinds import Ecology
+from selfconf.rdf.turtle import from_rdflib
+from selfconf.rdf.vocabulary import SC
+from selfconf.search import solve
+from selfconf.search.problem import Problem
+
+Result = TypeVar("Result")
+Found = dict[str, float]
+
+
+def timed(work: Callable[..., Result], *arguments: object) -> tuple[float, Result]:
+    """Seconds of processor time, and what came of it."""
+    began = time.process_time()
+    result = work(*arguments)
+    return time.process_time() - began, result
+
+
+def keep(found: Found, part: str, seconds: float) -> None:
+    """Remember the least time of a part."""
+    found[part] = min(seconds, found.get(part, seconds))
+
+
+def peak() -> float:
+    """The most memory that this process had so far, in octets."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
+
+
+def bare(path: Path) -> None:
+    """Every triple of the parser, and nothing done with it."""
+    for file in turtle_files([path]):
+        for _ in ox.parse(file.read_bytes(), format=ox.RdfFormat.TURTLE, base_iri="file:///ads.ttl"):
+            pass
+
+
+def loading(path: Path, trials: int) -> Found:
+    """From the files to advertisements, with the time of bare parsing beside it; the two in turns."""
+    before = peak()
+    number = len(read_advertisements([path]))
+    found = {"bytes": (peak() - before) / number}
+    for _ in range(trials):
+        keep(found, "parse", timed(bare, path)[0])
+        keep(found, "load", timed(read_advertisements, [path])[0])
+    return found
+
+
+def configure(path: Path, trials: int) -> Found:
+    """The parts of `configure`; each trial reads the advertisements anew, so that nobody has looked at them yet."""
+    found, before = Found(), peak()
+    given = task("robot0")
+    for trial in range(trials):
+        ads = Ecology({})  # the last trial's are given back before the next are read
+        seconds, ads = timed(read_advertisements, [path])
+        keep(found, "load", seconds)
+        if trial == 0:
+            found["bytes"] = (peak() - before) / len(ads)
+        keep(found, "parse", timed(bare, path)[0])
+        composer = Composer(given)
+        seconds, partition = timed(composer.partition, ads)
+        keep(found, "partition", seconds)
+        seconds, outcome = timed(composer.compose, ads, frozenset(), None)
+        assert isinstance(outcome, Configuration), outcome
+        keep(found, "search", seconds)
+        lost = frozenset(candidate.profile.component for candidate in partition.candidates[-1])
+        keep(found, "refusal", timed(refuse, composer, ads, lost)[0])
+        found["candidates"] = sum(map(len, partition.candidates)) / len(ROLES)
+    return found
+
+
+def refuse(composer: Composer, ads: Mapping[IRI, Advertisement], lost: frozenset[IRI]) -> None:
+    """All that a refusal costs `configure`: reasons, near misses, repairs, and whether subclass mode knows better."""
+    refusal = composer.compose(ads, lost, None)
+    assert isinstance(refusal, Refusal)
+    options = argparse.Namespace(reasoning=Reasoning.SYNTACTIC.value, ontology=[])
+    explained(composer, ads, refusal, options, Clock(None))
+
+
+def crowd(path: Path, trials: int) -> Found:
+    """The search alone, in an ecology and in the same ecology among components that no role wants."""
+    given, found = task("robot0"), Found()
+    few = read_advertisements([path])
+    many = Ecology({**few, **read_advertisements([path.with_name("unwanted.ttl")])})
+    problems = {
+        name: Problem(given.task, Composer(given).partition(ads))
+        for name, ads in {"alone": few, "in the crowd": many}.items()
+    }
+    for _ in range(200 * trials):
+        for name, problem in problems.items():
+            keep(found, name, timed(solve.search, problem)[0])
+    found["unwanted"] = len(many) - len(few)
+    return found
+
+
+def rdflib_graph(path: Path, trials: int) -> Found:
+    """Parsing into a graph of rdflib, and reading the profiles from that."""
+    before = peak()
+    seconds, graph = timed(lambda: rdflib.Graph().parse(path, format="turtle"))
+    reading, found = timed(profiles, graph)
+    return {"load": seconds, "read": reading, "bytes": (peak() - before) / len(found)}
+
+
+def profiles(graph: rdflib.Graph) -> list[Profile]:
+    """The profiles of all components in a graph, with no checks at all."""
+    sc = rdflib.Namespace(SC.base)
+
+    def ports(component: rdflib.term.Node, link: str, kind: str) -> Sequence[tuple[str, IRI]]:
+        nodes = graph.objects(component, sc[link])
+        return sorted((str(graph.value(node, sc.name)), IRI(graph.value(node, sc[kind]))) for node in nodes)
+
+    found = []
+    for component in graph.subjects(rdflib.RDF.type, sc.Component):
+        said = [(IRI(p), from_rdflib(o)) for p, o in graph.predicate_objects(component)]
+        found.append(
+            Profile(
+                component=IRI(component),
+                types=frozenset(IRI(kind) for kind in graph.objects(component, rdflib.RDF.type)),
+                properties=tuple(sorted((pair for pair in said if pair[0] not in STRUCTURE), key=property_order)),
+                inputs=tuple(Input(*port) for port in ports(component, "hasInput", "signalType")),
+                outputs=tuple(Output(*port) for port in ports(component, "hasOutput", "signalType")),
+                parameters=tuple(
+                    OperationalParameter(*one) for one in ports(component, "hasParameter", "parameterType")
+                ),
+                preference=float(str(graph.value(component, sc.preference) or 0)),
+            )
+        )
+    return found
+
+
+def oxigraph_store(path: Path, trials: int) -> Found:
+    """Bulk load into an Oxigraph store in memory; it parses in several threads."""
+    before, store = peak(), ox.Store()
+    seconds, _ = timed(lambda: store.bulk_load(path=str(path), format=ox.RdfFormat.TURTLE))
+    return {"load": seconds, "bytes": peak() - before}
+
+
+ENGINES: dict[str, Callable[[Path, int], Found]] = {
+    "configure": configure,
+    "loading": loading,
+    "rdflib": rdflib_graph,
+    "store": oxigraph_store,
+    "crowd": crowd,
+}

@@ -1,0 +1,75 @@
+"""Ecologies of any size, and the paper's template over them."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Iterator
+
+from selfconf.rdf import bindings, templates, turtle
+from selfconf.rdf.templates import TaskDocument
+
+PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+@prefix sh: <http://www.w3.org/ns/shacl#> .
+@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+@prefix : <https://example.org/scale#> .
+"""
+ROLES = {
+    "sonar": ((), ("RangeScan",)),
+    "encoder": ((), ("Odometry2D",)),
+    "position": ((), ("PlanarPose2D",)),
+    "control": (("RangeScan", "Odometry2D", "PlanarPose2D"), ("Velocity2D",)),
+    "drive": (("Velocity2D",), ()),
+}
+KINDS = 200
+ROBOTS = 5
+
+
+def ecology(size: int, seed: int = 0, wanted: bool = True) -> Iterator[str]:
+    """The advertisements; without `wanted`, of kinds that no role asks for."""
+    rng = random.Random(seed)
+    names = list(ROLES)
+    yield PREFIXES
+    for number in range(size):
+        kind = rng.randrange(KINDS) if wanted else rng.randrange(len(ROLES), KINDS)
+        kind = number if wanted and number < len(ROLES) else kind
+        inputs, outputs = ROLES[names[kind]] if kind < len(ROLES) else _ports(rng)
+        said = [f":c{'' if wanted else 'x'}{number:07} a sc:Component, :Kind{kind}"]
+        said += [f'sc:hasInput [ sc:name "in{k}" ; sc:signalType rob:{s} ]' for k, s in enumerate(inputs)]
+        said += [f'sc:hasOutput [ sc:name "out{k}" ; sc:signalType rob:{s} ]' for k, s in enumerate(outputs)]
+        said.append(f'sc:hasParameter [ sc:name "mode" ; sc:parameterType :Mode{kind % 7} ]')
+        robot = 0 if number < len(ROLES) else rng.randrange(ROBOTS)
+        said.append(f"rob:support :robot{robot} ; rob:place :room{rng.randrange(20)}")
+        said.append(f":latency {rng.random():.3f} ; :accuracy {rng.random():.2f} ; sc:preference {rng.randrange(10)}")
+        yield " ;\n    ".join(said) + " .\n"
+
+
+def _ports(rng: random.Random) -> tuple[list[str], list[str]]:
+    return [f"Signal{rng.randrange(50)}" for _ in range(2)], [f"Signal{rng.randrange(50)}" for _ in range(2)]
+
+
+def task(robot: str) -> TaskDocument:
+    """The paper's template over the generated kinds, on a robot."""
+    edges = {"sonar": "control", "encoder": "control", "position": "control", "control": "drive"}
+    roles = [
+        f":{name} a sc:Role ; sh:class :Kind{kind} ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ]"
+        + (f" ; sc:feeds :{edges[name]} ." if name in edges else " .")
+        for kind, name in enumerate(ROLES)
+    ]
+    text = f"{PREFIXES}:t a sc:Template ; sc:parameter :robot ; sc:roles ( {' '.join(f':{r}' for r in ROLES)} ) .\n"
+    text += ':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .\n' + "\n".join(roles)
+    given = templates.read(turtle.parse(text, "scale.ttl"))
+    return bindings.complete(bindings.bind(given, [("robot", f":{robot}")]))
+
+
+def labelled(text: str, number: int) -> str:
+    """The same advertisement with a label, a comment and a serial number that no other has."""
+    own = f'rdfs:label "Component {number}"@en ; rdfs:comment "Bought as number {number}" ; :serial "S-{number:09}"'
+    return f"{text[: -len(' .' + chr(10))]} ;\n    {own} .\n"
+
+
+def unlike(text: str, number: int) -> str:
+    """The same advertisement with types, signals and values that occur in no other."""
+    return re.sub(r"(:Kind|:Mode|Signal|:robot|:room)\d+", rf"\g<1>{number}x", text)

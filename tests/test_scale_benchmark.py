@@ -1,0 +1,56 @@
+"""The benchmark of large ecologies: its short run works, rdflib reads the same, and what is missed is said."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import rdflib
+
+from benchmarks.scale import engines, report, worlds
+from selfconf.rdf import stream
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def test_the_short_run_runs() -> None:
+    command = [sys.executable, "-m", "benchmarks.scale", "--smoke"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "| 200 |" in done.stdout
+    assert "each with a label" in done.stdout
+
+
+def test_rdflib_reads_the_same_profiles() -> None:
+    text = "".join(worlds.ecology(50))
+    good, bad = stream.read(text.encode(), "a.ttl")
+    found = engines.profiles(rdflib.Graph().parse(data=text, format="turtle"))
+    assert not bad
+    assert {replace(profile, properties=()) for profile in found} == {
+        replace(advertisement.profile, properties=()) for advertisement in good
+    }
+
+
+def test_other_forms_of_an_advertisement_are_advertisements() -> None:
+    head, *advertisements = worlds.ecology(20)
+    for form in (worlds.labelled, worlds.unlike):
+        text = head + "".join(form(text, number) for number, text in enumerate(advertisements))
+        good, bad = stream.read(text.encode(), "a.ttl")
+        assert (len(good), bad) == (20, [])
+
+
+def measured(load: float, refusal: float) -> engines.Found:
+    """What `configure` might have measured."""
+    parts = {"partition": 0.001, "search": 0.001, "refusal": refusal}
+    return {"parse": 1.0, "load": load, "bytes": 500, "candidates": 100, **parts}
+
+
+def test_a_goal_that_is_missed_is_said_to_be_missed() -> None:
+    graph, crowded = {"load": 60.0, "read": 9.0, "bytes": 9000.0}, {"alone": 1.0, "in the crowd": 1.0, "unwanted": 9}
+    text = "\n".join(report.judged({1000: (measured(0.7, 0.001), None, graph)}, crowded))
+    assert text.count(", met") == 4
+    assert "86 times as quick as its parsing alone, 99 with reading" in text
+    text = "\n".join(report.judged({1000: (measured(2.5, 1.0), None, graph)}, {**crowded, "in the crowd": 2.0}))
+    assert text.count("**missed**") == 4
