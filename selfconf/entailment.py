@@ -1,25 +1,27 @@
 """What an ontology entails under OWL 2 RL: computed in a process of its own, with a time limit, and remembered.
 
 The closure of an ontology takes seconds to minutes in Python, and always comes out the same. So it is kept in the
-user's cache folder under a hash of the triples and of the reasoner's version, and a computation that takes too long is
-ended. `python -m selfconf.entailment` is the process: N-Triples in, the entailed hierarchy as N-Triples out.
+user's cache folder under a hash of the triples and of the reasoners' versions, and a computation that takes too long is
+ended. `python -m selfconf.entailment` is the process: N-Triples in, the entailed hierarchy as N-Triples out. It reasons
+by `reasonable`, where that is installed and certain to find the same, and else by owlrl.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TypeVar
 
 from selfconf.errors import AuthorError
 from selfconf.model.term import BlankNode, Term
-from selfconf.rdf import closure, turtle
+from selfconf.rdf import closure, quick_owl, turtle
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.write import ntriples
 
@@ -40,7 +42,7 @@ def folder() -> Path:
 def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
     """The hierarchy that an ontology entails. Raises AuthorError if that takes longer than the limit."""
     lines = ntriples(_relabelled(triples)).splitlines(keepends=True)
-    name = hashlib.blake2s(b"".join((*lines, version("owlrl").encode())), digest_size=16).hexdigest()
+    name = hashlib.blake2s(b"".join((*lines, _reasoners().encode())), digest_size=16).hexdigest()
     kept = folder() / "owl-rl" / f"{name}.nt"
     try:
         entailed = kept.read_bytes()
@@ -48,6 +50,15 @@ def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
         entailed = _computed(b"".join(lines))
         _keep(kept, entailed)
     return turtle.parse(entailed, str(kept)).triples()
+
+
+def _reasoners() -> str:
+    """The reasoners that there are, with their versions."""
+    found = []
+    for name in ("owlrl", "reasonable"):
+        with contextlib.suppress(PackageNotFoundError):
+            found.append(f"{name} {version(name)}")
+    return ", ".join(found)
 
 
 def _relabelled(triples: Iterable[Triple]) -> Iterator[Triple]:
@@ -90,8 +101,10 @@ def _keep(path: Path, entailed: bytes) -> None:
 
 def main() -> None:
     """Close what comes in on stdin."""
-    document = turtle.parse(sys.stdin.buffer.read(), "stdin")
-    sys.stdout.buffer.write(ntriples(closure.owl_rl(document.triples())))
+    triples = list(turtle.parse(sys.stdin.buffer.read(), "stdin").triples())
+    entail = quick_owl.owl_rl if quick_owl.suits(triples) else closure.owl_rl
+    entailed = (triple for triple in entail(triples) if triple[1] in closure.HIERARCHY)
+    sys.stdout.buffer.write(ntriples(entailed))
 
 
 if __name__ == "__main__":

@@ -482,9 +482,50 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L11", "A role asks for nothing impossible.",
-        "If a property shape contradicts itself, nobody can ever play the role.",
-        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 2 ; sh:maxCount 1 ] .",
-        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 1 ; sh:maxCount 2 ] .",
+        "If what its shapes ask for cannot hold at once, or holds of no advertisement, nobody can ever play the role. "
+        "What is reported is certain; not all that is impossible can be found.",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:hasValue :kitchen ] ,\n"
+        "    [ sh:path rob:place ; sh:in ( :bedroom :hall ) ] .",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 1 ] ,\n"
+        "    [ sh:path rob:place ; sh:in ( :bedroom :hall ) ] .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L12", "A loop of roles acts on the world, or feeds a role outside.",
+        "Closed loops are what control is about, but a loop without an actuator that hands nothing on keeps only "
+        "itself busy. A role of a kind that no loaded ontology tells about may be an actuator.",
+        ":loop a sc:Template ; sc:roles ( :eye :mind ) .\n"
+        ":eye a sc:Role ; sh:class rob:Camera ; sc:feeds :mind .\n"
+        ":mind a sc:Role ; sh:class rob:Controller ; sc:feeds :eye .",
+        ":loop a sc:Template ; sc:roles ( :eye :mind :wheels ) .\n"
+        ":eye a sc:Role ; sh:class rob:Camera ; sc:feeds :mind .\n"
+        ":mind a sc:Role ; sh:class rob:Controller ; sc:feeds :eye, :wheels .\n"
+        ":wheels a sc:Role ; sh:class rob:MotorDrive .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L13", "An input that a role asks for is one that another role could feed.",
+        "A component plays a role only if each of its inputs is fed. Where the shapes of the roles that feed it name "
+        "outputs, one of them has to be of that type or below; a role whose shape names none is left alone.",
+        f"{_PAIR}\n:sink sh:property [ sh:path ( sc:hasInput sc:signalType ) ; sh:hasValue rob:Audio ] .\n"
+        ":source sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue rob:Text ] .",
+        f"{_PAIR}\n:sink sh:property [ sh:path ( sc:hasInput sc:signalType ) ; sh:hasValue rob:Audio ] .\n"
+        ":source sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue rob:Audio ] .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L14", "What a role asks its component to be stands in sh:class.",
+        "The type of a role says what the role is, a sc:Role; it asks nothing of anybody, so any component would fit.",
+        f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role, rob:Speaker .", _PAIR,
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L15", "A parameter is one of a template.",
+        "What a template does not list among its sc:parameter is not replaced by a value where it stands in a role.",
+        f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n"
+        ':room a sc:Parameter ; sc:name "room" .',
+        f'{_PAIR}\n:radio sc:parameter :room .\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n'
+        ':room a sc:Parameter ; sc:name "room" .',
         severity=Severity.WARNING,
     ),
 )  # fmt: skip

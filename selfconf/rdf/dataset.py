@@ -13,7 +13,7 @@ import pyoxigraph as ox
 from selfconf.errors import QueryError
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.queries import says
+from selfconf.rdf.queries import only_reads, says
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import PROV, RDF, RDFS, ROB, SC, SH, XSD
 from selfconf.rdf.write import ox_term
@@ -60,8 +60,7 @@ class Dataset:
 
     def query(self, text: str, prefixes: Mapping[str, str] | None = None) -> Answer:
         """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it."""
-        if says(text, "SERVICE"):
-            raise QueryError("SERVICE is not allowed: a query reads the ecology and nothing else")
+        only_reads(text)
         try:
             return self._store.query(
                 text,

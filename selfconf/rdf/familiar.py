@@ -41,15 +41,21 @@ class Familiar:
     terms: set[str] = field(default_factory=set)
     object_properties: set[str] = field(default_factory=set)
     covered: set[str] = field(default_factory=lambda: {SC.base})
+    above: set[tuple[str, str]] = field(default_factory=set)
+    """What the files say of the hierarchy of classes: a class, and one right above it."""
     _strange: dict[str, bool] = field(default_factory=dict)
 
-    def learn(self, seen: Screened, whole: bool = False) -> None:
-        """Take up what a file declares; of an ontology, `whole`, everything that it speaks of."""
-        self.terms |= seen.terms
+    def learn(self, seen: Screened) -> None:
+        """Take up what a file declares; of one that declares classes or properties, everything that it speaks of.
+
+        So it does not matter whether an ontology is given as such, or is validated beside what uses it.
+        """
         self.object_properties |= seen.object_properties
-        if whole:
-            self.terms |= seen.subjects
-            self.covered |= {namespace(term) for term in seen.terms}
+        self.above |= seen.above
+        self.terms |= seen.placed
+        if seen.terms:
+            self.terms |= seen.terms | seen.subjects
+            self.covered |= {namespace(term) for term in seen.terms} - {""}  # as of urn:x
         self._strange.clear()
 
     def strange(self, iri: str) -> bool:
@@ -65,6 +71,16 @@ class Familiar:
     def undeclared(self, signal: str) -> bool:
         """Whether a signal type is one that no loaded ontology speaks of."""
         return signal not in self.terms
+
+    def serves(self, offered: str, wanted: str) -> bool:
+        """Whether a class is another or lies below it, by what the loaded ontologies say."""
+        found, waiting = {offered}, [offered]
+        while waiting:
+            lower = waiting.pop()
+            higher = {upper for one, upper in self.above if one == lower} - found
+            found |= higher
+            waiting += higher
+        return wanted in found
 
     def confused(self, iri: str) -> str | None:
         """The known namespace that this one is easily confused with, if it is another."""
@@ -90,5 +106,5 @@ def learned(ontologies: Iterable[Screened]) -> Familiar:
     """What a run knows from its ontologies."""
     familiar = Familiar()
     for seen in ontologies:
-        familiar.learn(seen, whole=True)
+        familiar.learn(seen)
     return familiar

@@ -13,6 +13,8 @@ from rdflib import SH, Graph
 from rdflib.plugins.sparql.parser import expandUnicodeEscapes
 from rdflib.term import Node
 
+from selfconf.errors import QueryError
+
 LONGEST = 20_000
 """Characters of the query of a shape."""
 DEEPEST = 100
@@ -31,6 +33,12 @@ def says(text: str, word: str) -> bool:
     """Whether a query has a word as a keyword, not in a string, an IRI, a comment, a variable or a name."""
     bare = _STRINGS_IRIS_COMMENTS.sub(" ", text)
     return re.search(rf"(?<![\w?$:@.-]){word}(?![\w:-])", bare, re.IGNORECASE) is not None
+
+
+def only_reads(text: str) -> None:
+    """Raises QueryError for a query of a user that asks others, however that is spelt."""
+    if says(text, "SERVICE") or says(expandUnicodeEscapes(text), "SERVICE"):
+        raise QueryError("SERVICE is not allowed: a query reads the ecology and nothing else")
 
 
 def fault(text: str) -> str | None:

@@ -1,17 +1,19 @@
 """What to ask a SPARQL 1.1 endpoint that holds a large ecology: simple positive questions, the rest is finished here.
 
-Two questions: which types there are, and what the components of some types say. Nothing that a role forbids is
-asked, as there is no spelling of it that is fast on every engine. The advertisements may lie in the default graph or
-in named ones.
+A task has two questions: which types there are, and what the components of some types say. Nothing that a role forbids
+is asked, as there is no spelling of it that is fast on every engine. The advertisements may lie in the default graph or
+in named ones. A query of a user goes there as it is, with the prefixes that selfconf lends to every query.
 """
 
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterable, Sequence
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.term import IRI
+from selfconf.rdf.dataset import PREFIXES
 from selfconf.rdf.eligibility import CompiledRole
 from selfconf.rdf.vocabulary import SC
 from selfconf.rdf.write import ox_term
@@ -23,6 +25,16 @@ TYPES = f"""SELECT DISTINCT ?type WHERE {{
   {{ ?component a {_COMPONENT} , ?type }} UNION {{ GRAPH ?graph {{ ?component a {_COMPONENT} , ?type }} }}
 }}"""
 """The types that the components of an endpoint have."""
+
+ANYBODY = f"ASK {{ ?component a {_COMPONENT} }}"
+"""Whether the default graph of an endpoint has a component at all."""
+
+
+def prefaced(text: str) -> str:
+    """A query with the prefixes of selfconf that it uses and does not declare, on its first line."""
+    own = set(re.findall(r"(?i)\bprefix\s+([\w-]*)\s*:", text))
+    used = [name for name in PREFIXES if f"{name}:" in text and name not in own]
+    return "".join(f"PREFIX {name}: <{PREFIXES[name]}> " for name in used) + text
 
 
 def wanted(types: Iterable[IRI], roles: Sequence[CompiledRole], hierarchy: Hierarchy) -> list[IRI]:

@@ -11,9 +11,10 @@ from rdflib import Graph
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.deadline import TimeUp, deadline
 from selfconf.rdf.familiar import Familiar
+from selfconf.rdf.file import File
 from selfconf.rdf.findings import at
 from selfconf.rdf.judging import Shapes, judge
-from selfconf.rdf.lints import File, lint
+from selfconf.rdf.lints import lint
 from selfconf.rdf.positions import NotTurtle, Positions, parse
 from selfconf.rdf.wellformed import endless_lists, malformed_roles
 
@@ -57,5 +58,5 @@ class Scrutiny:
         violations = list(endless_lists(graph, positions))
         if not violations:  # pySHACL does not come back from a list without an end
             violations = [*judge(graph, positions, self.shapes), *malformed_roles(graph, positions)]
-        file = File(graph, positions, self.familiar, elsewhere)
+        file = File(graph, positions, self.familiar, elsewhere, self.shapes.all)
         return violations + lint(file, conforms=not violations)

@@ -2,7 +2,7 @@
 
 The shape of each role stays where it is, in the document; `selfconf.rdf.roles` compiles it. What makes a template
 readable is checked here, with one sentence per mistake; the authority is `shapes/template.ttl`, and a test holds
-the two together.
+the two together: whatever file about templates or tasks is wrong, nothing of it is read.
 """
 
 from __future__ import annotations
@@ -18,13 +18,17 @@ from selfconf.model.cost import CostLevel, CostTerm, number
 from selfconf.model.profile import Place
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.rdf.shape_terms import ONLY_WITH_A_PATH, misfit
 from selfconf.rdf.turtle import Document, Node
-from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE, XSD
+from selfconf.rdf.vocabulary import LABEL, NIL, REST, SC, SH, TYPE, XSD
 
 WHOLE = frozenset(XSD[name] for name in ("integer", "int", "long", "short", "nonNegativeInteger", "positiveInteger"))
 _WORD = re.compile(r"\S+")
 _COUNT = re.compile(r"\+?[0-9]{1,18}")
 ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount))
+_SAID_OF = {**dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount), SC.Role), SC.cost: SC.Template}
+"""What is said only of things of a kind."""
+_KINDS_OF_VALUE: dict[Term, type] = {SH.IRI: IRI, SH.Literal: Literal}
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +87,7 @@ class _Reader:
 
     def __init__(self, document: Document) -> None:
         self.document = document
+        self._variables = frozenset[Term](document.instances(SC.Parameter))
 
     def task(self, task: Node) -> Task:
         template_iri = self._only(task, SC.template, "a task names exactly one template by sc:template")
@@ -106,16 +111,22 @@ class _Reader:
             raise self._error("a template needs an IRI")
         head = self._only(template, SC.roles, "a template has exactly one list of roles, sc:roles ( ... )")
         names = self.document.items(head)
+        end: Term | None = head
+        for _ in names:
+            end = self.document.value(end, REST) if end is not None else None
+        if names and end != NIL:
+            raise self._error("the list sc:roles has no end; write it in parentheses, sc:roles ( ... )")
         if not names:
             raise self._error("the list sc:roles is empty; a template needs at least one role")
         for name, times in Counter(names).items():
             if times > 1:
                 raise self._error(f"the role {_show(name)} stands {times} times in sc:roles")
         known = frozenset(name for name in names if isinstance(name, IRI))
-        for feeder, statements in self.document.statements.items():
-            fed = {value for predicate, value in statements if predicate == SC.feeds}
-            if fed & known and (TYPE, SC.Role) not in statements:
-                raise self._error(f"{_show(feeder)} feeds a role, but is not described as a sc:Role")
+        for subject, statements in self.document.statements.items():
+            for predicate, kind in _SAID_OF.items():
+                if (TYPE, kind) not in statements and any(said == predicate for said, _ in statements):
+                    what = f"has sc:{predicate.short}, but is not described as a sc:{kind.short}"
+                    raise self._error(f"{_show(subject)} {what}")
         roles = tuple(self._role(name) for name in names)
         interactions = (*self._feeds(roles, known), *self._interactions(known))
         return Template(
@@ -132,6 +143,7 @@ class _Reader:
             raise self._error("every role needs an IRI")
         if SC.Role not in self.document.values(name, TYPE):
             raise self._error(f"{_show(name)} stands in sc:roles, but is not described as a sc:Role")
+        self._shape(name)
         minimum, maximum = self._count(name, SC.minCount), self._count(name, SC.maxCount)
         least = 1 if minimum is None else minimum
         most = 1 if minimum is None and maximum is None else maximum
@@ -146,6 +158,17 @@ class _Reader:
         )
         types = tuple(value for value in self.document.values(name, SH["class"]) if isinstance(value, IRI))
         return Role(name, least, most, settings, types, Place(self.document.source))
+
+    def _shape(self, role: IRI) -> None:
+        """Raises where the shape of a role is certainly no shape."""
+        for predicate, _ in self.document.about(role):
+            if predicate in ONLY_WITH_A_PATH:
+                raise self._error(
+                    f"the role {_show(role)} has sh:{predicate.short}, which belongs into sh:property [ sh:path ... ]"
+                )
+        wrong = misfit(self.document, shape_statements(self.document, role), self._variables)
+        if wrong is not None:
+            raise self._error(f"the shape of the role {_show(role)} is not well-formed: {wrong}")
 
     def _count(self, role: IRI, predicate: IRI) -> int | None:
         values = self.document.values(role, predicate)
@@ -242,11 +265,22 @@ class _Reader:
             if len(defaults) > 1:
                 raise self._error(f"the parameter {_show(value)} has several defaults")
             default = defaults[0] if defaults else None
+            if default is not None and not self._allows(value, default):
+                raise self._error(
+                    f"the default of the parameter {_show(value)} is not of its sh:datatype or sh:nodeKind"
+                )
             parameters.append(Parameter(value, name.lexical, default, value in in_shapes, value in is_set))
         for name_, times in Counter(parameter.name for parameter in parameters).items():
             if times > 1:
                 raise self._error(f"two parameters have the name {name_!r}")
         return tuple(sorted(parameters, key=lambda parameter: parameter.name))
+
+    def _allows(self, parameter: IRI, value: Term) -> bool:
+        """Whether a parameter can have a value, by its datatype and its kind."""
+        kinds = [_KINDS_OF_VALUE.get(kind, object) for kind in self.document.values(parameter, SH.nodeKind)]
+        datatypes = self.document.values(parameter, SH.datatype)
+        datatype = value.datatype if isinstance(value, Literal) else None
+        return all(isinstance(value, kind) for kind in kinds) and all(datatype == wanted for wanted in datatypes)
 
     def _label(self, subject: IRI) -> str | None:
         label = self.document.value(subject, LABEL)

@@ -3,8 +3,9 @@
 Two passes. The first reads every file by Oxigraph and learns which terms there are; a file in which
 nothing is suspicious has passed then. The second looks closely at the others: places by rdflib's parser,
 violations by pySHACL, malformed roles, lints. Each file is judged on its own triples. What the files of a
-run share is only the knowledge which terms exist, which can at most take away a warning, and which
-components are described twice.
+run share is only the knowledge which terms exist, which can make a warning of a term or take it away, and
+which components are described twice. An ontology is known alike whether it is among the files, given as an
+ontology, or ships with selfconf.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from selfconf.errors import TurtleError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
 from selfconf.rdf.familiar import Familiar, learned
 from selfconf.rdf.screening import Screened, screen
+from selfconf.rdf.syntax import hint, telling
 
 _NOTHING = "There is no component, template, task, configuration or ontology in this file: nothing to validate."
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -70,7 +72,7 @@ class Judge:
     def knowledge(self) -> bytes:
         """A digest of the shapes and of the terms that are known."""
         known = (self.familiar.terms, self.familiar.object_properties, self.familiar.covered)
-        words = "\n\n".join("\n".join(sorted(terms)) for terms in known)
+        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.familiar.above)))
         return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
 
     def key(self, suspect: Suspect) -> str:
@@ -155,16 +157,12 @@ def _encoding(source: Source) -> Iterator[Diagnostic]:
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
         octet = source.octets[error.start]
         message = f"This is not UTF-8: the byte 0x{octet:02X} cannot stand here."
-        hint = "Save the file in the encoding UTF-8."
-        yield Diagnostic(source.name, line, column, "SC-S02", message, hint=hint, source=source.line(line))
+        advice = "Save the file in the encoding UTF-8."
+        yield Diagnostic(source.name, line, column, "SC-S02", message, hint=advice, source=source.line(line))
 
 
 def _syntax(source: Source, screened: Screened) -> Iterator[Diagnostic]:
-    said: set[str] = set()
-    for problem in screened.problems:
-        if "has not been declared" in problem.message and problem.message in said:
-            continue  # one missing declaration is one mistake, however often the prefix is used
-        said.add(problem.message)
+    for problem in telling(screened.problems):
         message = f"This is not Turtle: {problem.message.rstrip('.')}."
         yield Diagnostic(
             source.name,
@@ -173,5 +171,6 @@ def _syntax(source: Source, screened: Screened) -> Iterator[Diagnostic]:
             "SC-S01",
             message,
             width=problem.width,
+            hint=hint(problem.message),
             source=source.line(problem.line),
         )

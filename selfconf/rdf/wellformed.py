@@ -28,6 +28,7 @@ from selfconf.rdf.findings import at
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.queries import fault
 from selfconf.rdf.shacl import aimed
+from selfconf.rdf.shape_terms import ILL_FORMED, ONLY_WITH_A_PATH, unfit
 from selfconf.rdf.vocabulary import SC
 
 _SAMPLES: dict[Node, Literal] = {
@@ -66,7 +67,8 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
         shapes.add((URIRef(role), RDF.type, SH.NodeShape))
     faults = [fault for look in (_faults, _literals) for fault in look(shapes, positions)]
     faults += [fault for look in (_patterns, _queries) for fault in look(graph, positions)]
-    yield from faults
+    plain = [fault for fault in faults if fault.message != ILL_FORMED]
+    yield from plain or faults
     for role in () if faults else roles:
         reason = _rehearse(shapes, role)
         if reason:
@@ -110,10 +112,27 @@ def _faults(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
             continue
         offsets = positions.triples.get((focus, path, value)) if path is not None and value is not None else None
         if offsets is not None and isinstance(path, URIRef):
-            word = path.removeprefix(str(SH))
-            yield at(positions, offsets.object, "SC-T13", f"This cannot be the value of sh:{word}.")
+            yield at(positions, offsets.object, "SC-T13", unfit(IRI(path)))
         else:
-            yield at(positions, positions.offset(focus) or 0, "SC-T13", "This is not a well-formed shape.")
+            offset, message = _malformed(shapes, positions, focus)
+            yield at(positions, offset, "SC-T13", message)
+
+
+def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, str]:
+    """What is wrong with a shape as a whole, and where."""
+    offset = positions.offset(focus) or 0
+    if (None, SH.property, focus) in shapes and len(set(shapes.objects(focus, SH.path))) != 1:
+        return offset, "A property shape has exactly one sh:path, the property that it is about."
+    for predicate, value in shapes.predicate_objects(focus):
+        statement = positions.triples.get((focus, predicate, value))
+        if statement and isinstance(predicate, URIRef) and IRI(predicate) in ONLY_WITH_A_PATH:
+            word = predicate.removeprefix(str(SH))
+            message = (
+                f"sh:{word} is asked of the values of a property: write sh:property [ sh:path ... ; sh:{word} ... ]"
+            )
+            instead = f"; how many play a role is sc:{word}" if word in ("minCount", "maxCount") else ""
+            return statement.predicate, f"{message}{instead}."
+    return offset, ILL_FORMED
 
 
 def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
@@ -122,8 +141,7 @@ def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
         for shape, value in shapes.subject_objects(predicate):
             offsets = positions.triples.get((shape, predicate, value))
             if isinstance(value, Literal) and offsets is not None:
-                word = predicate.removeprefix(str(SH))
-                yield at(positions, offsets.object, "SC-T13", f"This cannot be the value of sh:{word}.")
+                yield at(positions, offsets.object, "SC-T13", unfit(IRI(predicate)))
 
 
 def _patterns(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:

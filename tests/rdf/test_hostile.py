@@ -13,6 +13,7 @@ import pytest
 
 from selfconf import entailment, library
 from selfconf.cli import asking
+from selfconf.cli.endpoint import PATIENCE
 from selfconf.cli.validate import LARGEST
 from selfconf.ecology import LARGEST_ADVERTISEMENT
 from selfconf.errors import AuthorError, QueryError, TemplateError
@@ -225,6 +226,7 @@ def test_the_page_on_limits_names_the_limits_there_are() -> None:
         f"{asking.SECONDS:g} s, `--seconds`",
         f"{asking.ROWS:,}, `--rows`",
         f"{asking.MEMORY >> 30} GiB",
+        f"`configure` or `partition` | {PATIENCE:g} s",
         f"{LARGEST_ADVERTISEMENT >> 20} MiB | it is left out",
     ):
         assert words in page

@@ -58,6 +58,35 @@ def test_a_misspelt_term_of_a_loaded_ontology_is_a_warning(text: str, meant: str
     assert (found.code, found.severity, found.hint) == ("SC-L02", Severity.WARNING, f"Did you mean {meant}?")
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        (":a a sc:Component, sc:Tuner .", "rob:Tuner"),
+        (":a a sc:Component, rob:Tuner ; sc:label 'a' .", "rdfs:label"),
+        (TEMPLATE + ":r sc:class rob:Lamp .", "sh:class"),
+        (TEMPLATE + ":r rob:feeds :r .", "sc:feeds"),
+    ],
+)
+def test_a_term_with_the_prefix_of_another_vocabulary_is_found_there(text: str, meant: str) -> None:
+    assert only(text).hint == f"Did you mean {meant}?"
+
+
+def test_nothing_is_suggested_where_nothing_is_alike() -> None:
+    assert only(":a a sc:Component, rob:Tuner ; rob:location :x .").hint is None
+
+
+def test_a_literal_comes_with_an_iri_to_write_instead() -> None:
+    assert only(":a a sc:Component, rob:Tuner ; rob:place 'living room' .").hint == (
+        "Write an IRI, such as :living-room."
+    )
+
+
+def test_a_prefix_that_is_nearly_right_is_told_once_and_not_for_each_signal() -> None:
+    head = PREAMBLE.replace("selfconf/robotics#", "selfconf/robotics/")
+    text = ":a a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name 'x' ; sc:signalType rob:Audio ] ."
+    assert [each.code for each in lints(text, head)] == ["SC-L06"]
+
+
 def test_every_occurrence_of_a_misspelt_term_is_reported() -> None:
     assert [each.column for each in lints(":a a sc:Component, rob:Tuner ; sc:nme 1 ; sc:nme 2 .")] == [32, 43]
 
@@ -100,35 +129,6 @@ def test_a_literal_where_a_thing_is_wanted_is_noticed_in_every_known_ontology() 
 
 def test_a_label_is_a_literal_and_stays_one() -> None:
     assert not lints(':a a sc:Component, rob:Tuner ; rdfs:label "tuner" ; :note "x" .')
-
-
-@pytest.mark.parametrize(
-    "shape",
-    [
-        "sh:minCount 2 ; sh:maxCount 1",
-        "sh:minCount 1 ; sh:in ()",
-        "sh:minCount 3 ; sh:in ( :x :y )",
-        "sh:hasValue :z ; sh:in ( :x :y )",
-    ],
-)
-def test_a_property_shape_that_contradicts_itself_is_noticed(shape: str) -> None:
-    assert only(TEMPLATE + f":r sh:property [ sh:path rob:place ; {shape} ] .").code == "SC-L11"
-
-
-@pytest.mark.parametrize(
-    "shape", ["sh:minCount 1 ; sh:maxCount 1", "sh:minCount 2 ; sh:in ( :x :y )", "sh:hasValue :x ; sh:in ( :x )"]
-)
-def test_a_property_shape_that_can_be_kept_is_left_alone(shape: str) -> None:
-    assert not lints(TEMPLATE + f":r sh:property [ sh:path rob:place ; {shape} ] .")
-
-
-def test_a_closed_loop_of_roles_is_no_mistake() -> None:
-    text = """
-:t a sc:Template ; sc:roles ( :control :drive ) .
-:control a sc:Role ; sh:class rob:NavigationControl ; sc:feeds :drive .
-:drive a sc:Role ; sh:class rob:MotorDrive ; sc:feeds :control .
-"""
-    assert not lints(text)
 
 
 def test_what_is_wrong_with_a_template_hides_what_is_merely_strange_about_it() -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 
 from selfconf.errors import TemplateError
 from selfconf.model.template import Interaction, Setting, Task
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf import templates, turtle
-from selfconf.rdf.vocabulary import ROB
+from selfconf.rdf.vocabulary import ROB, SC
 from tests.lab import NAVIGATE, PREFIXES, iri
 
 ROLE = ":r a sc:Role ; sh:class :L ."
@@ -117,3 +120,50 @@ def test_what_cannot_be_read_is_one_sentence_that_names_the_file(text: str, sent
         read(text)
     assert str(caught.value).startswith("t.ttl: ")
     assert "\n" not in str(caught.value)
+
+
+def wrong_about_templates() -> list[Path]:
+    """The bad files whose first line promises an error about a template or a task, or a list without an end."""
+    files = sorted((Path(__file__).parents[1] / "bad").glob("*.ttl"))
+    return [file for file in files if re.search(r"error\[SC-([TK]|S06)", file.read_text("utf-8").partition("\n")[0])]
+
+
+@pytest.mark.parametrize("path", wrong_about_templates(), ids=lambda path: path.stem)
+def test_whatever_validation_refuses_in_a_template_or_task_its_reader_refuses(path: Path) -> None:
+    document = turtle.parse(path.read_bytes(), path.name)
+    with pytest.raises(TemplateError):
+        templates.read(document)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "sh:class 5",
+        "sh:minCount 1",
+        "sh:property 5",
+        "sh:property [ sh:minCount 1 ]",
+        "sh:or :x",
+        "sh:node 5",
+        "sh:property [ sh:path rob:place ; sh:minInclusive :x ]",
+        "sh:closed 'yes'",
+        "sh:sparql [ sh:select 'SELECT' ]",
+    ],
+)
+def test_a_role_that_is_no_shape_is_not_read(shape: str) -> None:
+    with pytest.raises(TemplateError, match="role"):
+        read(f":t a sc:Template ; sc:roles ( :r ) . {ROLE} :r {shape} .")
+
+
+def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
+    task = read(
+        f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :n . {ROLE} :n a sc:Parameter ; sc:name 'n' ."
+        " :r sh:property [ sh:path rob:place ; sh:minCount :n ; sh:in :n ; sh:pattern :n ; sh:minInclusive :n ] ."
+    )
+    assert [parameter.in_shape for parameter in task.template.parameters] == [True]
+
+
+@pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "examples").rglob("*.ttl")), ids=str)
+def test_every_example_that_holds_a_template_is_read(path: Path) -> None:
+    document = turtle.parse(path.read_bytes(), path.name)
+    if document.instances(SC.Template):
+        assert templates.read(document).task.template.roles

@@ -122,6 +122,30 @@ def test_a_signal_type_is_known_if_another_file_of_the_run_declares_it() -> None
     assert not check(text, ':Noise a owl:Class ; rdfs:label "noise" .').diagnostics
 
 
+@pytest.mark.parametrize(
+    "ontology",
+    [
+        ":Noise a owl:Class ; rdfs:label 'noise' .",
+        ":Noise rdfs:subClassOf rob:Audio ; rdfs:label 'noise' .",
+        ":Sound a owl:Class ; rdfs:label 'sound' . :Noise rdfs:comment 'a sound that is not liked' .",
+        ":Sound a owl:Class ; rdfs:label 'sound' .",
+        ":hears rdfs:subPropertyOf rob:support .",
+        "rdfs:comment rdfs:comment 'says nothing of noise' .",
+    ],
+)
+@pytest.mark.parametrize("signal", [":Noise", ":Noize"])
+def test_an_ontology_is_known_alike_given_as_such_or_validated_beside(ontology: str, signal: str) -> None:
+    text = f':a a sc:Component, rob:Tuner ; :volume 3 ; sc:hasOutput [ sc:name "x" ; sc:signalType {signal} ] .'
+    given = check(text, ontologies=[Source("my.ttl", (PREAMBLE + ontology).encode())])
+    beside = check(text, ontology)
+    assert [each for each in beside.diagnostics if each.file == "0.ttl"] == list(given.diagnostics)
+
+
+def test_a_class_without_a_namespace_covers_none() -> None:
+    ontology = Source("my.ttl", b"<urn:Noise> a <http://www.w3.org/2002/07/owl#Class> .")
+    assert not check(":a a sc:Component, <urn:Kind> .", ontologies=[ontology]).diagnostics
+
+
 def test_an_ontology_that_is_not_turtle_is_refused_by_name() -> None:
     with pytest.raises(TurtleError, match=r"my\.ttl:1:1: "):
         check(ADVERTISEMENT, ontologies=[Source("my.ttl", b"a .")])

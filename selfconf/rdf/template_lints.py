@@ -1,0 +1,87 @@
+"""What is well-formed in a template and probably not what was meant: roles that nobody lists, or nobody can play."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rdflib import RDF, SH, BNode, URIRef
+from rdflib.term import Node
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.contradictions import Conflict, conflicts
+from selfconf.rdf.demands import Demands
+from selfconf.rdf.file import File
+from selfconf.rdf.findings import at
+from selfconf.rdf.vocabulary import SC
+
+
+def unlisted_roles(file: File) -> Iterator[Diagnostic]:
+    """Roles that stand in no list of roles."""
+    listed = {role for roles in file.graph.objects(None, URIRef(SC.roles)) for role in file.items(roles)}
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))) - listed:
+        message = "This role stands in the list of roles of no template, so nobody will play it."
+        yield at(file.positions, file.offset(role), "SC-L09", message)
+
+
+def typed_roles(file: File) -> Iterator[Diagnostic]:
+    """Roles that are given the type that their component should have."""
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        for kind in file.graph.objects(role, RDF.type):
+            if isinstance(kind, URIRef) and file.familiar.serves(str(kind), SC.Component):
+                message = f"This says that the role is a component of the type {file.short(kind)}; it asks for none."
+                hint = f"Write sh:class {file.short(kind)}."
+                yield at(
+                    file.positions, file.positions.triples[role, RDF.type, kind].object, "SC-L14", message, hint=hint
+                )
+
+
+def unlisted_parameters(file: File) -> Iterator[Diagnostic]:
+    """Parameters that no template has."""
+    listed = set(file.graph.objects(None, URIRef(SC.parameter)))
+    for parameter in set(file.graph.subjects(RDF.type, URIRef(SC.Parameter))) - listed:
+        message = "No template has this parameter, so it stands for itself and never for a value."
+        hint = f"Say sc:parameter {file.short(str(parameter))} of its template."
+        yield at(file.positions, file.offset(parameter), "SC-L15", message, hint=hint)
+
+
+def unused_parameters(file: File) -> Iterator[Diagnostic]:
+    """Parameters that no role mentions."""
+    graph = file.graph
+    for parameter in graph.objects(None, URIRef(SC.parameter)):
+        uses = [predicate for _, predicate in graph.subject_predicates(parameter)]
+        owners = [owner for owner in graph.subjects(URIRef(SC.parameter), parameter) if not isinstance(owner, BNode)]
+        if owners and all(str(predicate) == SC.parameter for predicate in uses):
+            offset = min(file.positions.triples[owner, URIRef(SC.parameter), parameter].object for owner in owners)
+            message = f"No role mentions the parameter {file.short(str(parameter))}."
+            yield at(file.positions, offset, "SC-L10", message)
+
+
+def impossible_roles(file: File) -> Iterator[Diagnostic]:
+    """Roles whose shapes contradict themselves, or what holds of every advertisement."""
+    always = list(file.source.subjects(SH.targetClass, URIRef(SC.Component)))
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        for conflict in conflicts(Demands(file.source, (role, *always))):
+            yield _contradiction(file, role, conflict)
+
+
+def _contradiction(file: File, role: Node, conflict: Conflict) -> Diagnostic:
+    """The later of two statements, with the place of the earlier."""
+    places = {one: file.positions.triples[one].predicate for one in conflict if one in file.positions.triples}
+    later = max(places, key=lambda one: places[one], default=conflict.one)
+    earlier = conflict.other if later == conflict.one else conflict.one
+    offset = places.get(later, file.offset(role))
+    nobody = f"nobody can play the role {file.short(str(role))}"
+    hint = None
+    if later == earlier:
+        what = "No alternative of this can hold" if later[1] in (SH["or"], SH.xone) else "This cannot hold"
+        message = f"{what} beside what else is asked for, so {nobody}."
+    elif earlier in places:
+        there, here = file.positions.place(places[earlier]), file.positions.place(offset)
+        where = f"line {there.line}" if there.line != here.line else f"column {there.column}"
+        message = f"{file.said(later)} and {file.said(earlier)} ({where}) exclude each other, so {nobody}."
+    else:
+        always = next(iter(file.source.values(earlier[0], SH.message)), "All advertisements differ from this.")
+        message = f"{file.said(later)} cannot hold of any advertisement, so {nobody}. {always}"
+    if SH.closed in (later[1], earlier[1]):
+        hint = "List what else a component may say in sh:ignoredProperties, at least rdf:type."
+    return at(file.positions, offset, "SC-L11", message, hint=hint)
