@@ -1,12 +1,14 @@
-"""What users hang into their CI: the action and the hook do offline what `docs/ci.md` says."""
+"""What users hang into their CI: the lines of `docs/ci.md`, the action and the hook install selfconf and run it."""
 
 from __future__ import annotations
 
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,7 @@ ROOT = Path(__file__).parents[1]
 ACTION: dict[str, Any] = yaml.safe_load((ROOT / "action.yml").read_text())
 HOOKS: list[dict[str, Any]] = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text())
 PAGE = (ROOT / "docs" / "ci.md").read_text()
+BLOCKS: list[Any] = [yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)]
 GOOD = """\
 @prefix : <https://example.org/home#> .
 @prefix sc: <https://w3id.org/selfconf#> .
@@ -41,17 +44,64 @@ def repository(tmp_path: Path) -> Path:
     return tmp_path / "repo"
 
 
-def validate_step(repository: Path, paths: str, ontology: str = "") -> subprocess.CompletedProcess[str]:
-    """The last step of the action, as a runner would run it."""
-    step = ACTION["runs"]["steps"][-1]
-    given = {"paths": paths, "ontology": ontology}
+@pytest.fixture(scope="module")
+def offline() -> dict[str, str]:
+    """What lets pip install selfconf without a network: what it builds on and depends on is this Python's own."""
+    pytest.importorskip("hatchling", reason="hatchling, which builds the wheel, is not installed")
+    packages = sysconfig.get_path("purelib")
+    return {"PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_NO_BUILD_ISOLATION": "0", "PYTHONPATH": packages}
+
+
+def on_runner(repository: Path, script: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """A step as a runner would run it."""
+    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script]
+    env = {**os.environ, "RUNNER_TEMP": str(repository.parent / "runner"), **environment}
+    return subprocess.run(command, cwd=repository, env=env, capture_output=True, text=True, check=False)
+
+
+def action_step(
+    repository: Path, number: int, given: dict[str, str], **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """A step of the action; what is not given has its default."""
+    step = ACTION["runs"]["steps"][number]
+    inputs = {name: entry["default"] for name, entry in ACTION["inputs"].items()} | given
     filled = {
-        name: re.sub(r"\$\{\{ inputs\.(\w+) \}\}", lambda match: given[match[1]], value)
+        name: re.sub(r"\$\{\{ inputs\.(\w+) \}\}", lambda match: inputs[match[1]], value)
         for name, value in step["env"].items()
     }
-    environment = {**os.environ, **filled, "RUNNER_TEMP": str(repository.parent / "runner")}
-    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
-    return subprocess.run(command, cwd=repository, env=environment, capture_output=True, text=True, check=False)
+    return on_runner(repository, step["run"], **filled, **environment)
+
+
+def validate_step(repository: Path, paths: str, ontology: str = "") -> subprocess.CompletedProcess[str]:
+    """The last step of the action."""
+    return action_step(repository, -1, {"paths": paths, "ontology": ontology})
+
+
+def test_the_action_installs_the_checkout_it_lies_in(repository: Path, offline: dict[str, str]) -> None:
+    shutil.rmtree(repository.parent / "runner")
+    (repository / "my robots" / "tuner.ttl").write_text(WRONG)
+    done = action_step(repository, 0, {"python": sys.executable}, GITHUB_ACTION_PATH=str(ROOT), **offline)
+    assert done.returncode == 0, done.stderr
+    done = action_step(repository, -1, {}, **offline)
+    assert (done.returncode, done.stdout.partition(",")[0]) == (1, "::error file=my robots/tuner.ttl"), done
+    where = 'cd / && "$RUNNER_TEMP/selfconf/bin/python" -c "import selfconf; print(selfconf.__file__)"'
+    assert on_runner(repository, where, **offline).stdout.startswith(str(repository.parent / "runner"))
+
+
+def test_the_three_lines_need_one_thing_filled_in(repository: Path, offline: dict[str, str]) -> None:
+    shutil.rmtree(repository.parent / "runner")
+    lines, _, _ = BLOCKS
+    (repository / "robots").mkdir()
+    (repository / "robots" / "tuner.ttl").write_text(WRONG)
+    install, validate = (step["run"] for step in lines[1:])
+    assert "SELFCONF" in install
+    (program := repository.parent / "bin" / "python3").parent.mkdir()
+    program.symlink_to(sys.executable)
+    path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
+    done = on_runner(repository, install.replace("SELFCONF", shlex.quote(str(ROOT))), PATH=path, **offline)
+    assert done.returncode == 0, done.stderr
+    done = on_runner(repository, validate, **offline)
+    assert (done.returncode, done.stdout.partition(",")[0]) == (1, "::error file=robots/tuner.ttl"), done
 
 
 @pytest.mark.parametrize(("text", "code"), [(GOOD, 0), (STRANGE, 0), (WRONG, 1), ("no Turtle", 2)])
@@ -94,10 +144,13 @@ def test_the_hook_runs_validate_on_the_files_of_a_commit(repository: Path, text:
 
 
 def test_the_page_speaks_of_what_there_is() -> None:
-    blocks = [yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)]
-    (_, action), (longer,), hooks = blocks
-    assert action["with"].keys() | longer["with"].keys() <= ACTION["inputs"].keys()
-    assert hooks["repos"][0]["hooks"] == [{"id": HOOKS[0]["id"]}]
+    lines, (_, action), hooks = BLOCKS
+    assert len(lines) == 3
+    assert action["uses"].startswith("./")
+    assert action["with"].keys() <= ACTION["inputs"].keys()
+    ((local,),) = (repo["hooks"] for repo in hooks["repos"])
+    assert local.pop("additional_dependencies") == ["SELFCONF"]
+    assert [local] == [{key: value for key, value in hook.items() if key != "description"} for hook in HOOKS]
     for line in re.findall(r"^\$ selfconf (.*)$", PAGE, re.MULTILINE):
         assert parser().parse_args(shlex.split(line.partition(" >")[0])).run
     assert set(re.findall(r"--format (\w+)", PAGE)) < set(command("validate").FORMATS)

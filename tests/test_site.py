@@ -275,7 +275,7 @@ def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_told(
     [
         ("/no/such/program --really", "does not start"),
         ("'unbalanced", "does not start"),
-        ("", "does not start"),
+        ("", "has no sc:command"),
     ],
 )
 def test_a_command_that_does_not_start_is_refused_with_a_reason(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Any
 
@@ -21,21 +21,21 @@ FORMATS = ("table", "json", "csv", "tsv", "turtle")
 Cell = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple | None
 
 
-def shown(answer: Answer, form: str, names: words.Names, rows: int) -> tuple[str, bool]:
+def shown(answer: Answer | Iterator[ox.Triple], form: str, names: words.Names, rows: int) -> tuple[str, bool]:
     """The answer in a format, and whether it had more than `rows` rows or triples, which are left out.
 
     Raises AuthorError where the format does not fit the kind of query.
     """
-    if isinstance(answer, ox.QueryTriples):
-        triples = list(islice(answer, rows + 1))
-        return _triples(triples[:rows], form), len(triples) > rows
-    if form == "turtle":
+    if isinstance(answer, ox.QuerySolutions | ox.QueryBoolean) and form == "turtle":
         raise AuthorError("--format turtle is for CONSTRUCT and DESCRIBE; for this query use table, json, csv or tsv")
     if isinstance(answer, ox.QueryBoolean):
         return json.dumps({"head": {}, "boolean": bool(answer)}) if form == "json" else str(bool(answer)).lower(), False
-    variables = [variable.value for variable in answer.variables]
-    found = [[solution[name] for name in variables] for solution in islice(answer, rows + 1)]
-    return _solutions(variables, found[:rows], form, names), len(found) > rows
+    if isinstance(answer, ox.QuerySolutions):
+        variables = [variable.value for variable in answer.variables]
+        found = [[solution[name] for name in variables] for solution in islice(answer, rows + 1)]
+        return _solutions(variables, found[:rows], form, names), len(found) > rows
+    triples = list(islice(answer, rows + 1))
+    return _triples(triples[:rows], form), len(triples) > rows
 
 
 def _solutions(variables: Sequence[str], rows: Sequence[Sequence[Cell]], form: str, names: words.Names) -> str:

@@ -2,7 +2,8 @@
 
 `python -m selfconf.cli.asking` is the process: a line of JSON with the question and the dataset as N-Quads come in on
 stdin, the answer goes out on stdout. Time, rows and memory are limited; a query that brings the engine down (Oxigraph
-0.5 overflows its stack on braces nested some ten thousand deep) brings down nothing else.
+0.5 overflows its stack on braces nested some ten thousand deep) brings down nothing else. A question for an endpoint
+goes out from there as well, so that a server which never ends, or sends without end, meets the same limits.
 """
 
 from __future__ import annotations
@@ -13,13 +14,17 @@ import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
+from typing import NamedTuple
 
-from selfconf.cli import words
+import pyoxigraph as ox
+
+from selfconf.cli import endpoint, words
 from selfconf.cli.answers import shown
-from selfconf.errors import AuthorError, QueryError
-from selfconf.rdf.dataset import PREFIXES, Dataset
+from selfconf.errors import NetworkError, QueryError, SelfconfError
+from selfconf.rdf import queries, remote
+from selfconf.rdf.dataset import PREFIXES, Answer, Dataset
 
 SECONDS = 60.0
 """How long an answer may take by default, loading the dataset included."""
@@ -27,7 +32,7 @@ ROWS = 100_000
 """How many rows are shown by default."""
 MEMORY = 4 << 30
 """How many bytes of address space the process may take."""
-_REFUSED, _CUT = 2, 3
+_REFUSED, _CUT, _UNREACHED = 2, 3, 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,22 +44,36 @@ class Question:
     rows: int = ROWS
     prefixes: Mapping[str, str] | None = None
     memory: int = MEMORY
+    seconds: float = SECONDS
+    endpoint: str | None = None
+    """Who is asked; without it the dataset."""
 
 
-def answer(dataset: Dataset, question: Question, seconds: float = SECONDS) -> tuple[str, bool]:
-    """The answer as text, and whether rows were left out. Raises QueryError, also when a limit is reached."""
+class Shown(NamedTuple):
+    """An answer as text, whether rows were left out of it, and what there is to say about it."""
+
+    text: str
+    cut: bool
+    remark: str
+
+
+def answer(dataset: Dataset, question: Question) -> Shown:
+    """The answer as text. Raises QueryError, also when a limit is reached, and NetworkError."""
     command = [sys.executable, "-m", "selfconf.cli.asking"]
     given = json.dumps(asdict(question)).encode() + b"\n" + dataset.dump()
     try:
-        done = subprocess.run(command, input=given, capture_output=True, timeout=seconds, check=False)
+        done = subprocess.run(command, input=given, capture_output=True, timeout=question.seconds, check=False)
     except subprocess.TimeoutExpired:
         raise QueryError(
-            f"the query takes more than {seconds:g} s; ask for less, or give it longer by --seconds"
+            f"the query takes more than {question.seconds:g} s; ask for less, or give it longer by --seconds"
         ) from None
+    said = done.stderr.decode().strip()
     if done.returncode in (0, _CUT):
-        return done.stdout.decode(), done.returncode == _CUT
+        return Shown(done.stdout.decode(), done.returncode == _CUT, said)
     if done.returncode == _REFUSED:
-        raise QueryError(done.stderr.decode().strip())
+        raise QueryError(said)
+    if done.returncode == _UNREACHED:
+        raise NetworkError(said)
     if done.returncode == -signal.SIGSEGV:
         raise QueryError("the query is nested too deeply")
     raise QueryError(f"the query takes more than {question.memory / (1 << 30):.1f} GiB of memory; ask for less")
@@ -66,16 +85,41 @@ def main() -> int:
     with contextlib.suppress(ValueError, OSError):  # some systems have no such limit
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (question.memory, question.memory))
-    dataset = Dataset()
-    dataset.load(sys.stdin.buffer.read())
+    names = words.Names({**(question.prefixes or {}), **PREFIXES})
     try:
-        found = dataset.query(question.text, question.prefixes)
-        text, cut = shown(found, question.form, words.Names({**(question.prefixes or {}), **PREFIXES}), question.rows)
-    except AuthorError as error:
+        with _answering(question) as found:
+            text, cut = shown(found, question.form, names, question.rows)
+        sys.stderr.write(_remark(question))
+    except SelfconfError as error:
         sys.stderr.write(str(error))
-        return _REFUSED
+        return _UNREACHED if isinstance(error, NetworkError) else _REFUSED
     sys.stdout.buffer.write(text.encode())
     return _CUT if cut else 0
+
+
+@contextlib.contextmanager
+def _answering(question: Question) -> Iterator[Answer | Iterator[ox.Triple]]:
+    if question.endpoint is None:
+        dataset = Dataset()
+        dataset.load(sys.stdin.buffer.read())
+        yield dataset.query(question.text, question.prefixes)
+    else:
+        queries.only_reads(question.text)
+        with endpoint.asked(question.endpoint, remote.prefaced(question.text), patience=question.seconds) as found:
+            yield found
+
+
+def _remark(question: Question) -> str:
+    """What explains an answer that is emptier than expected: an endpoint has its own idea of the default graph."""
+    if question.endpoint is None or any(queries.says(question.text, word) for word in ("GRAPH", "FROM")):
+        return ""
+    with contextlib.suppress(NetworkError), endpoint.asked(question.endpoint, remote.ANYBODY, patience=1.0) as found:
+        if isinstance(found, ox.QueryBoolean) and not found:
+            return (
+                f"the default graph of {question.endpoint} holds no component; if each advertisement is a graph of its "
+                "own there, ask for GRAPH ?g { ... }, or give a URL that makes the default graph their union"
+            )
+    return ""
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import argparse
 import importlib
 import importlib.util
 import os
+import socket
 import sys
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from selfconf.errors import AuthorError, InstallationError
 NAME = "demo"
 HELP = "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over"
 EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2"""
+ANSWERS = 5.0
+"""Seconds within which a display on another machine must answer."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,7 +55,7 @@ def run(given: argparse.Namespace) -> int:
         raise InstallationError(
             "PyBullet is missing; it has wheels for Python 3.10 and 3.11 on Linux x86_64: pip install 'selfconf[sim]'"
         )
-    if given.gui and not os.environ.get("DISPLAY"):
+    if given.gui and not _display(os.environ.get("DISPLAY", "")):
         raise InstallationError("--gui opens a window, and there is no display; leave it out, the pictures need none")
     try:
         given.out.mkdir(parents=True, exist_ok=True)
@@ -62,6 +65,21 @@ def run(given: argparse.Namespace) -> int:
         sys.path.insert(0, str(root))
     code: int = importlib.import_module("sim.demo").run(given)
     return code
+
+
+def _display(name: str) -> bool:
+    """Whether an X server answers under the name; PyBullet would end the process that asks for it in vain."""
+    host, _, number = name.rpartition(":")
+    try:
+        screen = int(number.partition(".")[0])
+        if host in ("", "unix"):
+            with socket.socket(socket.AF_UNIX) as line:
+                line.connect(f"/tmp/.X11-unix/X{screen}")
+        else:
+            socket.create_connection((host, 6000 + screen), ANSWERS).close()
+    except (OSError, ValueError):
+        return False
+    return True
 
 
 def _speed(text: str) -> float:

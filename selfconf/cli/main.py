@@ -14,6 +14,7 @@ import traceback
 from collections.abc import Sequence
 from types import ModuleType
 
+from selfconf.cli.terminal import guard
 from selfconf.errors import SelfconfError
 
 COMMANDS = ("new", "validate", "partition", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
@@ -59,6 +60,7 @@ def parser(names: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
+    guard()
     typed = sys.argv[1:] if arguments is None else arguments
     given = parser([name for name in typed[:1] if name in COMMANDS] or COMMANDS).parse_args(typed)
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)

@@ -1,4 +1,4 @@
-"""`query`: SPARQL over advertisements in files, or over the discovered ecology and what is deployed in it."""
+"""`query`: SPARQL over files, at an endpoint, or over the discovered ecology and what is deployed in it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 
 from selfconf.cli.answers import FORMATS
 from selfconf.cli.asking import ROWS, SECONDS, Question, answer
+from selfconf.cli.endpoint import add_endpoint_argument
 from selfconf.cli.inputs import (
     add_ads_argument,
     add_ontology_argument,
@@ -18,14 +19,16 @@ from selfconf.cli.inputs import (
     read_advertisements,
 )
 from selfconf.cli.live import add_connection_arguments, ask, connected, discover
+from selfconf.cli.sources import one_ecology
 from selfconf.errors import AuthorError, TurtleError
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.dataset import PREFIXES, Dataset
 
 NAME = "query"
-HELP = "ask the ecology something in SPARQL, over files or over everything that is alive"
-EXAMPLE = """  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --ads examples/peis-home"""
+HELP = "ask the ecology something in SPARQL, over files, at an endpoint, or over everything that is alive"
+EXAMPLE = """  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --ads examples/peis-home
+  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --endpoint http://127.0.0.1:7878/query"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "sparql", metavar="SPARQL|-|FILE.rq", nargs="?", help="a query, a file that holds one, or - for stdin"
     )
     add_ads_argument(parser)
+    add_endpoint_argument(parser)
     add_ontology_argument(parser)
     parser.add_argument(
         "--format",
@@ -59,6 +63,12 @@ def run(given: argparse.Namespace) -> int:
     text = _text(str(leading(given, "sparql")))
     if given.rows < 1 or given.seconds <= 0:
         raise AuthorError("--rows and --seconds take numbers greater than 0")
+    if given.endpoint is not None:
+        one_ecology(given)
+        if given.ontology:
+            raise AuthorError("an endpoint holds what it holds; --ontology is for files and the living ecology")
+        question = Question(text, given.format, given.rows, seconds=given.seconds, endpoint=given.endpoint)
+        return _told(Dataset(), question)
     dataset = Dataset()
     prefixes: dict[str, str] = {}
     if given.ads is not None:
@@ -70,10 +80,16 @@ def run(given: argparse.Namespace) -> int:
         prefixes |= document.prefixes
         dataset.add(IRI(path.resolve().as_uri()), document.triples())
     prefixes = {name: base for name, base in prefixes.items() if name and name not in PREFIXES}
-    shown, cut = answer(dataset, Question(text, given.format, given.rows, prefixes), given.seconds)
-    print(shown)
-    if cut:
-        complain(f"there are more than {given.rows} rows; ask for less, or for more by --rows")
+    return _told(dataset, Question(text, given.format, given.rows, prefixes, seconds=given.seconds))
+
+
+def _told(dataset: Dataset, question: Question) -> int:
+    shown = answer(dataset, question)
+    print(shown.text)
+    if shown.cut:
+        complain(f"there are more than {question.rows} rows; ask for less, or for more by --rows")
+    if shown.remark:
+        complain(shown.remark)
     return 0
 
 

@@ -11,20 +11,31 @@ import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache, partial
 from typing import Any
 
 from selfconf import rendezvous
 from selfconf.agent import Account, Agent, Order
 from selfconf.bus.zenoh_bus import client
 from selfconf.cli import budget, words
-from selfconf.cli.inputs import add_task_arguments, complain, existing, read_hierarchy, read_task
+from selfconf.cli.inputs import (
+    add_task_arguments,
+    complain,
+    existing,
+    read_advertisements,
+    read_hierarchy,
+    read_task,
+)
 from selfconf.cli.live import add_connection_arguments
+from selfconf.cli.places import Places
+from selfconf.cli.why import explained
 from selfconf.configurator.compose import Composer, Strategy
 from selfconf.configurator.machine import Policy
 from selfconf.ending import Ending, environment
-from selfconf.errors import NetworkError
+from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.template import Template
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.search.best import Optimum
@@ -58,10 +69,12 @@ def run(given: argparse.Namespace) -> int:
     task = read_task(given)
     composer = Composer(task, read_hierarchy(given), Strategy(given.strategy), given.steps)
     names = words.Names(task.document.prefixes)
-    tell = _tell_json if given.format == "json" else Teller(names)
+    where = _places(given, task.task.template)
+    tell = partial(_tell_json, where) if given.format == "json" else Teller(names, where)
     with _ecology(given) as (ecology, endpoints):
         bus = client(endpoints)
         ended: list[Refusal | Undecided | None] = []
+        alive: dict[IRI, Advertisement] = {}
 
         def told(account: Account) -> None:
             try:
@@ -73,6 +86,9 @@ def run(given: argparse.Namespace) -> int:
 
         def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
             answer = budget.composed(composer, found, lost, running, budget.Clock(given.seconds))
+            if isinstance(answer, Refusal):
+                alive.clear()
+                alive.update((component, one) for component, one in found.items() if component not in lost)
             return answer.configuration if isinstance(answer, Optimum) else answer
 
         order = Order(
@@ -98,12 +114,27 @@ def run(given: argparse.Namespace) -> int:
         complain(words.undecided_text(refusal, task.task.template.iri, names))
         return 2
     if refusal is not None and given.format == "text":
-        complain(words.refusal_text(refusal, names))
+        # Everything is down, so there is time to find out what else can be told.
+        refusal = explained(composer, alive, refusal, given, budget.Clock(given.seconds))
+        complain(words.refusal_text(refusal, names, where))
         for component, loss in agent.state.lost.items():
             complain(f"  {names(component)} was lost: {loss.cause.value}, {loss.detail}")
         if agent.state.lost:
             complain("start it again and run again, or run with --wait, which goes on when it is back")
     return 1 if refusal is not None else 0
+
+
+def _places(given: argparse.Namespace, template: Template) -> words.Where:
+    """Where the roles are described, and the components if their files are given; read at the first refusal."""
+
+    @cache
+    def places() -> Places:
+        try:
+            return Places(template, {} if given.ads is None else read_advertisements(given.ads))
+        except AuthorError:
+            return Places(template, {})  # the files have gone since
+
+    return lambda named: places()(named)
 
 
 @contextmanager
@@ -175,8 +206,8 @@ class Teller:
         "complaint": "       {detail}",
     }
 
-    def __init__(self, names: words.Names) -> None:
-        self._names = names
+    def __init__(self, names: words.Names, where: words.Where) -> None:
+        self._names, self._where = names, where
         self._began: float | None = None
 
     def __call__(self, account: Account) -> None:
@@ -185,7 +216,7 @@ class Teller:
         if account.act == "waiting":
             refusal = account.facts["refusal"]
             undecided = isinstance(refusal, Undecided)
-            complain(f"  {refusal}" if undecided else words.refusal_text(refusal, self._names))
+            complain(f"  {refusal}" if undecided else words.refusal_text(refusal, self._names, self._where))
             sentence = "       waiting for the ecology to change"
         if account.act == "composed":
             sentence = "act 3  {roles} in {milliseconds:.1f} ms"
@@ -208,14 +239,14 @@ class Teller:
         return value
 
 
-def _tell_json(account: Account) -> None:
-    """One JSON object per line on stdout: act, time, facts."""
+def _tell_json(where: words.Where, account: Account) -> None:
+    """One JSON object per line on stdout: act, time, facts. Places are looked up when nobody waits for act 4."""
     facts: dict[str, Any] = {}
     for key, value in account.facts.items():
         if isinstance(value, Configuration):
             facts[key] = words.configuration_body(value)
         elif isinstance(value, Refusal):
-            facts[key] = words.refusal_body(value)
+            facts[key] = words.refusal_body(value, words.nowhere if account.act == "composed" else where)
         elif isinstance(value, Undecided):
             facts[key] = words.undecided_body(value)
         else:

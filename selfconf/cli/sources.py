@@ -15,10 +15,15 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.partition import Partitioner
 
 
-def read_ecology(given: argparse.Namespace, partitioner: Partitioner) -> Mapping[IRI, Advertisement]:
-    """The advertisements among which a task looks for components."""
+def one_ecology(given: argparse.Namespace) -> None:
+    """Raises AuthorError where the arguments name two."""
     if given.ads is not None and given.endpoint is not None:
         raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
+
+
+def read_ecology(given: argparse.Namespace, partitioner: Partitioner) -> Mapping[IRI, Advertisement]:
+    """The advertisements among which a task looks for components."""
+    one_ecology(given)
     if given.ads is not None:
         return read_advertisements(given.ads)
     if given.endpoint is not None:

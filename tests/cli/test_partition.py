@@ -4,14 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-import socket
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
-from urllib.error import URLError
-from urllib.request import Request, urlopen
 
 import pyoxigraph as ox
 import pyshacl
@@ -21,9 +15,9 @@ from rdflib import Graph, URIRef
 from selfconf.cli.main import main
 from selfconf.rdf import stream
 from selfconf.rdf.dataset import Dataset
-from tests.lab import NAVIGATE, PREFIXES, iri, write_advertisements
+from tests.cli.endpoints import oxigraph
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
-PATIENCE = 20.0
 RICH = PREFIXES + (
     ":rich a sc:Template ; sc:roles ( :fine :other ) ."
     ":fine a sc:Role ; sh:or ( [ sh:class rob:PositionSensor ] [ sh:class rob:MotorDrive ] ) ;"
@@ -160,38 +154,10 @@ def test_a_role_beyond_sparql_says_so(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 @pytest.fixture(scope="module")
-def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """An Oxigraph server with the paper's ecology and the rich one, each advertisement in a graph of its own."""
-    program = Path(sys.executable).with_name("oxigraph")
-    if not program.is_file():
-        pytest.skip("the oxigraph package is not installed")
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        address = f"127.0.0.1:{probe.getsockname()[1]}"
-    server = subprocess.Popen(
-        [program, "serve", "--bind", address], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    try:
-        folder = write_advertisements(tmp_path_factory.mktemp("served"))
-        posted = False
-        deadline = time.monotonic() + PATIENCE
-        while not posted and time.monotonic() < deadline:
-            try:
-                _post(address, "default", RICH_ADS)
-                posted = True
-            except URLError:
-                assert server.poll() is None, "the server has ended"
-        for path in folder.glob("*.ttl"):
-            _post(address, f"graph=urn:{path.stem}", path.read_text())
-        yield f"http://{address}/query"
-    finally:
-        server.terminate()
-        server.wait(PATIENCE)
-
-
-def _post(address: str, graph: str, text: str) -> None:
-    request = Request(f"http://{address}/store?{graph}", text.encode(), {"Content-Type": "text/turtle"})
-    urlopen(request, timeout=PATIENCE).close()
+def endpoint() -> Iterator[str]:
+    """A server with the paper's ecology, each advertisement in a graph of its own, and the rich one."""
+    with oxigraph(RICH_ADS, {f"urn:{name}": PREFIXES + text for name, text in ADVERTISEMENTS.items()}) as url:
+        yield url
 
 
 def test_an_ecology_behind_an_endpoint_gives_the_same_partition(

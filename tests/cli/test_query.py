@@ -28,7 +28,7 @@ def dataset() -> Dataset:
 
 
 def ask(dataset: Dataset, text: str, form: str = "table", rows: int = 100) -> str:
-    return answer(dataset, Question(text, form, rows), 30)[0]
+    return answer(dataset, Question(text, form, rows, seconds=30)).text
 
 
 def test_json_is_that_of_sparql(dataset: Dataset) -> None:
@@ -63,8 +63,8 @@ def test_a_format_that_does_not_fit_the_query_is_refused(dataset: Dataset) -> No
 
 @pytest.mark.parametrize("text", [EVERYTHING, "CONSTRUCT WHERE { ?s ?p ?o }"])
 def test_rows_beyond_the_limit_are_left_out_and_said_to_be(dataset: Dataset, text: str) -> None:
-    assert answer(dataset, Question(text, "json", 2))[1]
-    assert not answer(dataset, Question(text, "json", 100))[1]
+    assert answer(dataset, Question(text, "json", 2)).cut
+    assert not answer(dataset, Question(text, "json", 100)).cut
     assert len(json.loads(ask(dataset, EVERYTHING, "json", 2))["results"]["bindings"]) == 2
 
 
@@ -73,13 +73,13 @@ JOIN = " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(30))
 
 def test_a_query_without_end_is_ended(dataset: Dataset) -> None:
     with pytest.raises(QueryError, match=r"more than 0\.5 s"):
-        answer(dataset, Question(f"SELECT (COUNT(*) AS ?n) WHERE {{ {JOIN} }}"), 0.5)
+        answer(dataset, Question(f"SELECT (COUNT(*) AS ?n) WHERE {{ {JOIN} }}", seconds=0.5))
 
 
 def test_a_query_that_takes_all_memory_is_ended(dataset: Dataset) -> None:
     text = f"SELECT * WHERE {{ {JOIN} }} ORDER BY ?a1"
     with pytest.raises(QueryError, match="GiB of memory"):
-        answer(dataset, Question(text, memory=400 << 20), 30)
+        answer(dataset, Question(text, memory=400 << 20))
 
 
 def test_a_query_that_nests_too_deeply_ends_nothing_but_itself(dataset: Dataset) -> None:

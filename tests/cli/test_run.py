@@ -150,11 +150,27 @@ def test_no_peer_is_one_sentence_and_exit_code_2(home: Home) -> None:
     assert "no site of the ecology" in run.complaints
 
 
-def test_a_refused_task_is_exit_code_1_with_the_reasons(home: Home) -> None:
+def test_a_refused_task_is_exit_code_1_with_the_reasons_and_their_places(home: Home) -> None:
     home.site("peis-home", "ads/tracker.ttl")
     run = home.selfconf("run", "navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x")
     assert run.ended() == 1
-    assert "no component is eligible for the role sonar" in run.complaints
+    line = NAVIGATE.splitlines().index(next(one for one in NAVIGATE.splitlines() if one.startswith(":sonar a"))) + 1
+    assert f"no component is eligible for the role sonar  [navigate.ttl:{line}]" in run.complaints
+
+
+def test_a_refusal_points_to_the_advertisements_that_were_given_and_says_what_would_mend_it(home: Home) -> None:
+    control = home.folder / "ads" / "control.ttl"
+    control.write_text(control.read_text().replace("rob:NavigationControl", "rob:NavigationContro"))
+    arguments = ("run", "navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x", "--ads", "ads")
+    spoken = home.selfconf(*arguments)
+    assert spoken.ended() == 1
+    place = f"[ads/control.ttl:{PREFIXES.count(chr(10)) + 1}]"
+    assert f"but it is no NavigationControl (did you mean NavigationContro?)  {place}" in spoken.complaints
+    assert "what would mend it" in spoken.complaints
+    written = home.selfconf(*arguments, "--format", "json")
+    (reason,) = written.act("refused")["refusal"]["reasons"]
+    assert reason["place"].startswith("navigate.ttl:")
+    assert written.ended() == 1
 
 
 def test_a_shape_that_cannot_be_judged_is_one_sentence_and_exit_code_2(inhabited: Home, tmp_path: Path) -> None:

@@ -8,7 +8,8 @@ import re
 from pathlib import Path
 
 import pytest
-from rdflib import DCTERMS, OWL, RDF, SKOS, Graph, URIRef
+from rdflib import DCTERMS, OWL, PROV, RDF, RDFS, SKOS, SOSA, SSN, Graph, URIRef
+from rdflib.namespace import DefinedNamespace
 
 from docs import ontology, released
 from selfconf import library
@@ -20,6 +21,8 @@ from selfconf.rdf.closure import HIERARCHY, hierarchy
 OURS = "https://w3id.org/selfconf"
 GRAPHS = {path.stem: Graph().parse(path) for path in library.ontologies()}
 APACHE = URIRef("https://www.apache.org/licenses/LICENSE-2.0")
+PROCESS = {"Input", "Output", "Parameter", "CompositeProcess", "hasInput", "hasOutput", "parameterType"}
+OWL_S = "http://www.daml.org/services/owl-s/"
 THEIRS = {
     "http://www.w3.org/ns/sosa/": {"Sensor", "Actuator", "Platform", "isHostedBy"},
     "http://www.w3.org/ns/ssn/": {"System", "Input", "Output"},
@@ -29,18 +32,18 @@ THEIRS = {
     },
     "http://purl.org/ieee1872-owl/cora-bare#": {"Robot"},
     **{
-        f"http://www.daml.org/services/owl-s/{version}/{file}.owl#": terms
-        for version in ("1.1", "1.2")
+        f"{OWL_S}{version}/{file}.owl#": terms
+        for version, process in (("1.1", PROCESS), ("1.2", PROCESS | {"Binding"}))
         for file, terms in {
             "Service": {"Service", "ServiceGrounding"},
             "Profile": {"hasInput", "hasOutput"},
-            "Process": {
-                "Input", "Output", "Parameter", "Binding", "CompositeProcess", "hasInput", "hasOutput", "parameterType",
-            },
+            "Process": process,
         }.items()
     },
 }  # fmt: skip
 """The terms of other vocabularies, copied by hand from the documents that define them."""
+DISJOINT = [{PROV.Entity, PROV.Activity}, {PROV.Entity, PROV.InstantaneousEvent}, {PROV.Agent, PROV.InstantaneousEvent}]
+"""What PROV-O says that nothing is both of, as far as it matters here; SOSA and SSN say no such thing."""
 
 
 def test_no_released_term_is_removed_or_redefined() -> None:
@@ -77,6 +80,21 @@ def test_alignments_import_nothing_and_lead_from_our_terms_to_terms_there_are() 
         assert str(predicate) in (*HIERARCHY[::2], str(SKOS.closeMatch), str(SKOS.relatedMatch))
         base = str(value)[: max(str(value).rfind("#"), str(value).rfind("/")) + 1]
         assert str(value)[len(base) :] in THEIRS[base], value
+
+
+@pytest.mark.parametrize("namespace", [SOSA, SSN, PROV])
+def test_what_rdflib_knows_of_other_vocabularies_has_every_term(namespace: type[DefinedNamespace]) -> None:
+    terms = THEIRS[str(namespace)]
+    assert terms
+    assert all(term in namespace for term in terms)
+    assert "Nonsense" not in namespace
+
+
+def test_no_class_of_ours_lies_below_two_that_share_nothing() -> None:
+    known = sum(GRAPHS.values(), Graph()) + Graph().parse(data=f"<{PROV.Plan}> <{RDFS.subClassOf}> <{PROV.Entity}> .")
+    for term in set(known.subjects(RDFS.subClassOf)):
+        above = set(known.transitive_objects(term, RDFS.subClassOf))
+        assert not [pair for pair in DISJOINT if pair <= above], term
 
 
 @pytest.mark.parametrize("mode", [Reasoning.SUBCLASS, Reasoning.OWL_RL])

@@ -329,6 +329,19 @@ def test_what_is_emitted_arrives_with_its_source_number_and_time() -> None:
     assert arrived[1].time > 1e9
 
 
+def test_the_signals_that_an_activation_sets_free_go_before_its_answer() -> None:
+    class Eager(Recorder):
+        def started(self) -> None:
+            self.emit("velocity", 1)
+
+    stage = Stage(Eager())
+    order: list[str] = []
+    stage.caller.subscribe(KEYS.output(CAP, "velocity"), lambda _: order.append("signal"))
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(Apply(1, US)), 1.0, lambda _: order.append("answer"))
+    stage.let_pass(0.1)
+    assert order == ["signal", "answer"]
+
+
 def test_nothing_is_emitted_while_a_component_is_not_active() -> None:
     stage = Stage()
     heard: list[Sample] = []

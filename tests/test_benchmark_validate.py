@@ -1,0 +1,22 @@
+"""The benchmark of `validate`: its short run works, and it notices verdicts that differ."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from benchmarks import validate
+
+
+def test_the_short_run_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    assert validate.main(["--smoke"]) == 0
+    assert capsys.readouterr().out.count("\n| 20 |") == 4
+
+
+def test_verdicts_that_differ_are_noticed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    real = validate.run
+    monkeypatch.setattr(validate, "SAMPLE", 2)
+    monkeypatch.setattr(validate, "run", lambda words, cache: (0, "") if "pyshacl" in words else real(words, cache))
+    with pytest.raises(AssertionError):
+        validate.measure(10, 1, tmp_path)
