@@ -6,9 +6,12 @@ passed over, and removed.
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -42,23 +45,45 @@ def folder() -> Path:
     return Path(tempfile.gettempdir()) / f"selfconf-{os.getuid()}"
 
 
-def announce(meeting: Meeting) -> Path:
-    """Write the file of a site; whoever wrote it removes it by `leave`. Raises NetworkError where that cannot be."""
+@contextmanager
+def _writing() -> Iterator[Path]:
+    """The folder, to write in. Raises NetworkError where that cannot be."""
     root = folder()
-    path = root / f"{meeting.ecology}@{meeting.site}.json"
-    if any(other.site == meeting.site and other.process != os.getpid() for other in meetings(meeting.ecology)):
-        raise NetworkError(f"a site {meeting.site!r} of ecology {meeting.ecology!r} runs on this machine already")
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
         if root.stat().st_uid != os.getuid():
             raise NetworkError(f"{root} belongs to somebody else; set SELFCONF_RUNTIME_DIR to a folder of your own")
-        temporary = path.with_suffix(f".{os.getpid()}")
-        temporary.write_text(json.dumps(asdict(meeting)))
-        temporary.replace(path)
+        yield root
     except OSError as error:
         raise NetworkError(
             f"cannot write in {root} ({error.strerror}); set SELFCONF_RUNTIME_DIR to a folder of your own"
         ) from None
+
+
+@contextmanager
+def turn() -> Iterator[None]:
+    """The time in which one site, and no other, looks who is there, opens its router, and announces itself.
+
+    Else two that start at once would miss each other, and each stay alone.
+    """
+    with _writing() as root:
+        descriptor = os.open(root, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def announce(meeting: Meeting) -> Path:
+    """Write the file of a site; whoever wrote it removes it by `leave`. Raises NetworkError where that cannot be."""
+    if any(other.site == meeting.site and other.process != os.getpid() for other in meetings(meeting.ecology)):
+        raise NetworkError(f"a site {meeting.site!r} of ecology {meeting.ecology!r} runs on this machine already")
+    with _writing() as root:
+        path = root / f"{meeting.ecology}@{meeting.site}.json"
+        temporary = path.with_suffix(f".{os.getpid()}")
+        temporary.write_text(json.dumps(asdict(meeting)))
+        temporary.replace(path)
     return path
 
 

@@ -153,9 +153,10 @@ class Lab:
         task = bindings.complete(bindings.bind(document, bound))
         composer = Composer(task)
         order = Order(
-            template=task.task.template.iri,
+            task=task.task,
             compose=composer.compose,
             standby=composer.standby,
+            passed_over=composer.passed_over,
             policy=policy,
             patient=patient,
             tell=self.accounts.append,

@@ -79,7 +79,7 @@ class Agent:
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._tell)
         self._lives = Lives(self.ecology, self._now, self._step, self._tell, self._calls)
-        self._record = Record(bus, self.keys, self.name, self.status, self.stop)
+        self._record = Record(bus, self.keys, self.name, order, self.status, self.stop)
         self._watched: set[IRI] = set()
         self._events: deque[Event] = deque()
         self._stepping = False
@@ -241,7 +241,7 @@ class Agent:
         return Status(
             configurator=self.name,
             phase="waiting" if self.state.phase is Phase.REFUSED else self.state.phase.value,
-            template=self.order.template,
+            template=self.order.task.template.iri,
             epoch=self.state.epoch,
             since=self.since,
             host=socket.gethostname(),

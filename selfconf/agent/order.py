@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from selfconf.configurator.machine import Policy
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.template import Task
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
@@ -33,12 +34,14 @@ class Account:
 class Order:
     """What an agent is to do: how to compose, how to mend, and who wants to know."""
 
-    template: IRI
+    task: Task
     compose: Composer
     policy: Policy = Policy.REPAIR
     patient: bool = False
     standby: Callable[[Configuration, frozenset[IRI]], Standby] = lambda configuration, lost: {}
     """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
+    passed_over: Callable[[Configuration], Mapping[IRI, Sequence[IRI]]] = lambda configuration: {}
+    """For each role of a configuration, the candidates that came before the chosen ones."""
     tell: Callable[[Account], None] = lambda account: None
     settle: Callable[[Refusal | Undecided | None], None] = lambda refusal: None
     """Hears once when the task has ended; with the refusal if that is why."""

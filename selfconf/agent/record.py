@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from selfconf.agent.order import Order
 from selfconf.bus.port import Bus, Request
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
@@ -16,8 +17,11 @@ from selfconf.rdf import write
 class Record:
     """Keeps the record of one task and answers questions about it."""
 
-    def __init__(self, bus: Bus, keys: Keys, name: str, status: Callable[[], Status], stop: Callable[[], None]) -> None:
-        self.bus, self._keys, self._name, self._status, self._stop = bus, keys, name, status, stop
+    def __init__(
+        self, bus: Bus, keys: Keys, name: str, order: Order, status: Callable[[], Status], stop: Callable[[], None]
+    ) -> None:
+        self.bus, self._keys, self._name, self._order = bus, keys, name, order
+        self._status, self._stop = status, stop
         self._deployed: list[tuple[IRI, Configuration, int, float]] = []
         self._failures: list[tuple[IRI, str, str, float]] = []
         bus.serve(keys.configuration(name), self._serve_configuration)
@@ -42,15 +46,17 @@ class Record:
     def turtle(self) -> str:
         """What is deployed, as Turtle with its provenance."""
         name, configuration, epoch, generated = self._deployed[-1]
-        revises = self._deployed[-2][0] if len(self._deployed) > 1 else None
+        revises = self._deployed[-2][:2] if len(self._deployed) > 1 else None
         triples = write.configuration_triples(
             configuration,
             name,
+            self._order.task,
             epoch=epoch,
             generated=generated,
             revises=revises,
             configurator=self._name,
             failures=self._failures,
+            passed_over=self._order.passed_over(configuration),
         )
         return write.turtle(triples)
 

@@ -11,12 +11,12 @@ from typing import Any
 
 from selfconf.cli import budget, words
 from selfconf.cli.endpoint import add_endpoint_argument
-from selfconf.cli.inputs import add_task_arguments, complain, read_hierarchy, read_task
+from selfconf.cli.inputs import add_task_arguments, complain, composer_of, read_task
 from selfconf.cli.live import add_connection_arguments
 from selfconf.cli.places import Places
 from selfconf.cli.sources import read_ecology
 from selfconf.cli.why import explained
-from selfconf.configurator.compose import Composer, Strategy
+from selfconf.configurator.compose import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.cost import number
 from selfconf.model.refusal import Outcome, Refusal, Undecided
@@ -52,7 +52,7 @@ def run(given: argparse.Namespace) -> int:
     task = read_task(given)
     seconds: dict[str, float] = {}
     began = time.perf_counter()
-    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy), given.steps)
+    composer = composer_of(given, task)
     ecology = read_ecology(given, composer.partitioner)
     seconds["load"] = time.perf_counter() - began
     began = time.perf_counter()
@@ -126,7 +126,8 @@ class Report:
         found = answer.configuration if isinstance(answer, Optimum) else answer
         if form == "turtle":
             name = write.configuration_iri(found, 0)
-            return write.turtle(write.configuration_triples(found, name), self.task.document.prefixes).rstrip()
+            triples = write.configuration_triples(found, name, self.task.task)
+            return write.turtle(triples, self.task.document.prefixes).rstrip()
         if form == "mermaid":
             return words.mermaid(found, names)
         parts = [words.configuration_text(found, names)]

@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from selfconf import entailment, library
-from selfconf.configurator.compose import Strategy
+from selfconf.configurator.compose import Composer, Strategy
 from selfconf.errors import AuthorError, BindingError, TemplateError, TurtleError
 from selfconf.model.diagnostic import Severity
 from selfconf.model.hierarchy import Hierarchy, Reasoning
@@ -150,6 +150,16 @@ def read_hierarchy(given: argparse.Namespace, reasoning: Reasoning | None = None
     relevant = HIERARCHY if mode is Reasoning.SUBCLASS else None
     ontologies = [parse_file(path, relevant) for path in (*library.ontologies(), *given.ontology)]
     return hierarchy(ontologies, mode, entailment.owl_rl)
+
+
+def composer_of(given: argparse.Namespace, task: TaskDocument) -> Composer:
+    """Who composes a task, as the options ask for it."""
+    if given.strategy == Strategy.BEST.value and not task.task.template.cost:
+        complain(
+            f"the template {task.task.template.iri!r} states no sc:cost: every configuration costs the same, "
+            "and best is the one that first finds"
+        )
+    return Composer(task, read_hierarchy(given), Strategy(given.strategy), given.steps)
 
 
 def read_advertisements(paths: Sequence[Path]) -> Ecology:

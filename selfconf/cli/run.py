@@ -21,15 +21,14 @@ from selfconf.cli import budget, words
 from selfconf.cli.inputs import (
     add_task_arguments,
     complain,
+    composer_of,
     existing,
     read_advertisements,
-    read_hierarchy,
     read_task,
 )
 from selfconf.cli.live import add_connection_arguments
 from selfconf.cli.places import Places
 from selfconf.cli.why import explained
-from selfconf.configurator.compose import Composer, Strategy
 from selfconf.configurator.machine import Policy
 from selfconf.ending import Ending, environment
 from selfconf.errors import AuthorError, NetworkError
@@ -67,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 when it was taken down as wanted; 1 when there is no configuration (any more); 2 when that was not decided."""
     task = read_task(given)
-    composer = Composer(task, read_hierarchy(given), Strategy(given.strategy), given.steps)
+    composer = composer_of(given, task)
     names = words.Names(task.document.prefixes)
     where = _places(given, task.task.template)
     tell = partial(_tell_json, where) if given.format == "json" else Teller(names, where)
@@ -92,9 +91,10 @@ def run(given: argparse.Namespace) -> int:
             return answer.configuration if isinstance(answer, Optimum) else answer
 
         order = Order(
-            template=task.task.template.iri,
+            task=task.task,
             compose=compose,
             standby=composer.standby,
+            passed_over=composer.passed_over,
             policy=Policy(given.policy),
             patient=given.wait,
             tell=told,

@@ -53,12 +53,14 @@ def run(given: argparse.Namespace) -> int:
         existing(path)
     checked_name(given.ecology, "an ecology")
     name = checked_name(given.name or f"s{secrets.token_hex(3)}", "a site")
-    others = [meeting.endpoint for meeting in rendezvous.meetings(given.ecology)]
-    bus = router(given.listen, list(dict.fromkeys([*given.connect, *others])))
-    ending = Ending(bus)
-    environment = {"SELFCONF_ECOLOGY": given.ecology, "SELFCONF_CONNECT": bus.endpoint}
-    site = Site(bus, given.ecology, name, Shelf(given.paths, complain), environment)
-    meeting = rendezvous.announce(Meeting(given.ecology, name, bus.endpoint, os.getpid()))
+    shelf = Shelf(given.paths, complain)
+    with rendezvous.turn():
+        others = [meeting.endpoint for meeting in rendezvous.meetings(given.ecology)]
+        bus = router(given.listen, list(dict.fromkeys([*given.connect, *others])))
+        ending = Ending(bus)
+        environment = {"SELFCONF_ECOLOGY": given.ecology, "SELFCONF_CONNECT": bus.endpoint}
+        site = Site(bus, given.ecology, name, shelf, environment)
+        meeting = rendezvous.announce(Meeting(given.ecology, name, bus.endpoint, os.getpid()))
     count = len(site.shelf.advertisements)
     complain(f"site {name} of ecology {given.ecology} serves {words.count(count, 'advertisement')} on {bus.endpoint}")
     try:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from enum import Enum
 
 from selfconf import certificate
-from selfconf.errors import ProgrammerError, TemplateError
+from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition
@@ -58,13 +58,9 @@ class Composer:
         strategy: Strategy = Strategy.FIRST,
         steps: int | None = None,
     ) -> None:
-        """`steps` limits each search. Raises TemplateError where `best` is asked for and no cost is stated."""
+        """`steps` limits each search. Where no cost is stated, every answer is `best`: the first is taken."""
         if strategy is Strategy.BEST and not task.task.template.cost:
-            name = task.task.template.iri
-            raise TemplateError(
-                f"the template {name!r} states no sc:cost, and the strategy best needs one; add it, or use first",
-                file=task.document.source,
-            )
+            strategy = Strategy.FIRST
         self.task, self.hierarchy, self.strategy, self.steps = task, hierarchy, strategy, steps
         self.partitioner = Partitioner(task, hierarchy)
         self._given: Mapping[IRI, Advertisement] | None = None
@@ -159,6 +155,15 @@ class Composer:
             for miss in refusal.near_misses[: mend.TRIALS]
         ]
         return mend.with_repairs(problem, refusal, near)
+
+    def passed_over(self, configuration: Configuration) -> dict[IRI, list[IRI]]:
+        """For each role of a configuration, the eligible components that come before the last one it chose."""
+        passed: dict[IRI, list[IRI]] = {}
+        for assignment, candidates in zip(configuration.assignments, self._partition.candidates, strict=True):
+            order = [candidate.profile.component for candidate in candidates]
+            chosen = [order.index(component) for component in assignment.components if component in order]
+            passed[assignment.role] = [c for c in order[: max(chosen, default=0)] if c not in assignment.components]
+        return passed
 
     def what_if(self, ecology: Mapping[IRI, Advertisement], configuration: Configuration) -> list[whatif.Loss]:
         """For each component of a configuration, what would come instead of it if it failed."""

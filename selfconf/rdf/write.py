@@ -5,10 +5,12 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import datetime, timezone
+from types import MappingProxyType
 
 import pyoxigraph as ox
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.template import Task
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import PROV, ROB, SC, TYPE, XSD
@@ -57,14 +59,20 @@ def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
 def configuration_triples(
     configuration: Configuration,
     name: IRI,
+    task: Task,
     *,
     epoch: int | None = None,
     generated: float | None = None,
-    revises: IRI | None = None,
+    revises: tuple[IRI, Configuration] | None = None,
     configurator: str | None = None,
     failures: Iterable[tuple[IRI, str, str, float]] = (),
+    passed_over: Mapping[IRI, Iterable[IRI]] = MappingProxyType({}),
 ) -> Iterator[Triple]:
-    """A configuration as the ontology describes it; `failures` are (component, cause, detail, seconds) behind it."""
+    """A configuration as the ontology describes it: what it is, which task it answers, and how it came about.
+
+    `revises` is the one before it with its name, `failures` are (component, cause, detail, seconds), `passed_over` are
+    by role the candidates that came before the chosen ones.
+    """
     yield name, TYPE, SC.Configuration
     yield name, TYPE, PROV.Entity
     yield name, SC.template, configuration.template
@@ -75,13 +83,32 @@ def configuration_triples(
         counter += 1
         return BlankNode(f"_:n{counter}")
 
+    asked = blank() if task.iri is None else task.iri
+    yield name, SC.task, asked
+    yield asked, TYPE, SC.Task
+    yield asked, SC.template, task.template.iri
+    for parameter in task.template.parameters:
+        if parameter.name in configuration.bindings:
+            node = blank()
+            yield asked, SC.binding, node
+            yield node, TYPE, SC.Binding
+            yield node, SC.parameter, parameter.iri
+            yield node, SC.value, configuration.bindings[parameter.name]
+    before = {} if revises is None else {a.role: a.components for a in revises[1].assignments}
     for assignment in configuration.assignments:
+        gone = [c for c in before.get(assignment.role, ()) if c not in assignment.components]
+        come = [c for c in assignment.components if c not in before.get(assignment.role, ())]
+        replaced = dict(zip(come, gone, strict=False))
         for component in assignment.components:
             node = blank()
             yield name, SC.assignment, node
             yield node, TYPE, SC.Assignment
             yield node, SC.role, assignment.role
             yield node, SC.component, component
+            if component in replaced:
+                yield node, SC.replaces, replaced[component]
+            for other in passed_over.get(assignment.role, ()):
+                yield node, SC.passedOver, other
     for connection in configuration.connections:
         node = blank()
         yield name, SC.connection, node
@@ -106,7 +133,7 @@ def configuration_triples(
         yield name, PROV.wasAttributedTo, agent
         yield agent, TYPE, PROV.SoftwareAgent
     if revises is not None:
-        yield name, PROV.wasRevisionOf, revises
+        yield name, PROV.wasRevisionOf, revises[0]
     for component, cause, detail, seconds in failures:
         node = blank()
         yield name, PROV.wasInfluencedBy, node

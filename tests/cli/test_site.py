@@ -36,6 +36,21 @@ def test_sites_of_one_ecology_on_one_machine_find_each_other(home: Home, capsys:
         }
 
 
+def test_sites_that_start_at_the_same_moment_do_not_miss_each_other(
+    home: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, path in (("a", "ads/tracker.ttl"), ("b", "ads/drive.ttl"), ("c", "ads/pippi.ttl")):
+        home.selfconf("site", path, "--ecology", home.ecology, "--name", name)
+    assert home.until(lambda: len(list(home.runtime.glob("*.json"))) == 3)
+
+    def sites(name: str) -> list[str]:
+        arguments = "--ecology", home.ecology, "--connect", home.endpoint(name)
+        sites: list[str] = run(capsys, "discover", "--format", "json", *arguments).body["sites"]
+        return sites
+
+    assert home.until(lambda: all(sites(name) == ["a", "b", "c"] for name in "abc"), 5.0)
+
+
 def test_a_file_that_is_added_while_it_runs_is_served(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
     home.site("a", "ads")
 

@@ -24,7 +24,7 @@ NAMED_IN_THE_MANUAL = re.findall(
     Component Input Output Template Role Interaction Parameter Task Configuration Connection Failure hasInput
     hasOutput hasParameter name signalType parameterType preference grounding parameter roles feeds from to output
     input sets value minCount maxCount Port OperationalParameter Setting Grounding Binding Assignment rate unit
-    command template binding task assignment connection setting role component epoch cause detail replaces
+    command template binding task assignment connection setting role component epoch cause detail replaces passedOver
     cost term property weight otherwise ofRole
     """,
 )

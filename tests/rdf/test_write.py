@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hypothesis import given
 
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.template import Parameter, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf import advertisements, turtle, write
 from selfconf.rdf.vocabulary import PROV, SC, XSD
@@ -18,7 +21,8 @@ CONFIGURATION = Configuration(
     (ParameterSetting(iri("c"), "goal", Literal("(AT BEDROOM)")),),
     {"goal": Literal("(AT BEDROOM)")},
 )
-NAME = IRI("urn:selfconf:configuration:x")
+NAME, BEFORE = IRI("urn:selfconf:configuration:x"), IRI("urn:selfconf:configuration:before")
+TASK = Task(Template(iri("t"), (), parameters=(Parameter(iri("goal"), "goal"), Parameter(iri("robot"), "robot"))))
 
 
 def test_an_advertisement_on_the_wire_is_read_as_it_was() -> None:
@@ -38,7 +42,7 @@ def test_every_literal_survives_the_wire(value: Literal) -> None:
 
 
 def test_a_configuration_says_who_plays_what_and_what_is_connected_and_set() -> None:
-    text = write.turtle(write.configuration_triples(CONFIGURATION, NAME))
+    text = write.turtle(write.configuration_triples(CONFIGURATION, NAME, TASK))
     document = turtle.parse(text, "configuration")
     assert document.instances(SC.Configuration) == [NAME]
     played = {
@@ -55,21 +59,41 @@ def test_a_configuration_says_who_plays_what_and_what_is_connected_and_set() -> 
     assert document.value(setting, SC.value) == Literal("(AT BEDROOM)")
 
 
+def test_a_configuration_says_which_task_it_answers_with_which_values() -> None:
+    document = turtle.parse(write.turtle(write.configuration_triples(CONFIGURATION, NAME, TASK)), "configuration")
+    task = document.value(NAME, SC.task)
+    assert document.value(task, SC.template) == iri("t")
+    (binding,) = document.values(task, SC.binding)
+    assert document.value(binding, SC.parameter) == iri("goal")
+    assert document.value(binding, SC.value) == Literal("(AT BEDROOM)")
+    named = turtle.parse(
+        write.turtle(write.configuration_triples(CONFIGURATION, NAME, replace(TASK, iri=iri("fetch")))), "configuration"
+    )
+    assert named.value(NAME, SC.task) == iri("fetch")
+
+
 def test_a_deployed_configuration_says_when_by_whom_and_after_which_failures() -> None:
     text = write.turtle(
         write.configuration_triples(
             CONFIGURATION,
             NAME,
+            TASK,
             epoch=7,
             generated=0.0,
-            revises=IRI("urn:selfconf:configuration:before"),
+            revises=(BEFORE, replace(CONFIGURATION, assignments=(Assignment(iri("r"), (iri("a"), iri("x"))),))),
             configurator="c1",
             failures=[(iri("x"), "fail", "lost her", 1.5), (iri("y"), "crash", "", 2.0)],
+            passed_over={iri("s"): [iri("z")]},
         )
     )
     document = turtle.parse(text, "configuration")
     assert document.value(NAME, SC.epoch) == Literal("7", XSD.integer)
-    assert document.value(NAME, PROV.wasRevisionOf) == IRI("urn:selfconf:configuration:before")
+    assert document.value(NAME, PROV.wasRevisionOf) == BEFORE
+    nodes = document.values(NAME, SC.assignment)
+    replaced = {document.value(node, SC.component): document.value(node, SC.replaces) for node in nodes}
+    assert replaced == {iri("a"): None, iri("b"): iri("x"), iri("c"): None}
+    passed_over = {document.value(node, SC.role): document.value(node, SC.passedOver) for node in nodes}
+    assert passed_over == {iri("r"): None, iri("s"): iri("z")}
     assert document.value(NAME, PROV.generatedAtTime) == Literal("1970-01-01T00:00:00.000+00:00", XSD.dateTime)
     causes = {
         (document.value(node, SC.component), document.value(node, SC.cause))
