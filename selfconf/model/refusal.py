@@ -90,12 +90,21 @@ class Step:
     input: str
     signal: IRI
     sources: tuple[IRI, ...]
+    optional: tuple[IRI, ...] = ()
+    """Those of the sources that are asked for nobody (`sc:minCount 0`), so that their candidates do not count."""
 
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
-        roles = listed(source.short for source in self.sources)
-        lack = f"nobody left in {roles} issues a {self.signal.short}" if self.sources else "no role feeds it"
+        nobody = f"nobody left in {{}} issues a {self.signal.short}"
+        lack = _lack(self.sources, self.optional, nobody, "no role feeds it")
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
+
+
+def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], nobody: str, no_role: str) -> str:
+    """Why nobody feeds an input: `nobody` is said of the sources that are asked for somebody."""
+    asked = [source.short for source in sources if source not in optional]
+    said = [nobody.format(listed(asked))] if asked else [] if optional else [no_role]
+    return ", and ".join([*said, *(f"{role.short} is asked for nobody (sc:minCount 0)" for role in optional)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,15 +120,14 @@ class InputUnfed:
     requirements: tuple[Requirement, ...] = ()
     consequences: tuple[Step, ...] = ()
     """What follows from it, up to the role that nobody is left to play."""
+    optional: tuple[IRI, ...] = ()
+    """Those of the sources that are asked for nobody (`sc:minCount 0`), so that their candidates do not count."""
 
     def __str__(self) -> str:
         name = f"the input {self.input!r} ({self.signal.short}) of {self.component.short}"
-        if not self.sources:
-            words = f"{name} cannot be fed: no role feeds the role {self.role.short}"
-        else:
-            roles = listed(source.short for source in self.sources)
-            words = f"{name} cannot be fed: no candidate of {roles} issues a {self.signal.short} for it"
-        return "; so ".join([words, *map(str, self.consequences)])
+        nobody = f"no candidate of {{}} issues a {self.signal.short} for it"
+        lack = _lack(self.sources, self.optional, nobody, f"no role feeds the role {self.role.short}")
+        return "; so ".join([f"{name} cannot be fed: {lack}", *map(str, self.consequences)])
 
 
 @dataclass(frozen=True, slots=True)

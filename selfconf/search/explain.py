@@ -225,7 +225,14 @@ def _worded(problem: Problem, given: Compact, found: Sequence[Requirement]) -> R
         if steps:
             first = steps[0]
             return InputUnfed(
-                first.role, first.component, first.input, first.signal, first.sources, told, tuple(steps[1:])
+                first.role,
+                first.component,
+                first.input,
+                first.signal,
+                first.sources,
+                told,
+                tuple(steps[1:]),
+                first.optional,
             )
     return Conflict(roles or tuple(role.iri for role in problem.roles), _parameters(told), told)
 
@@ -247,10 +254,12 @@ def _steps(problem: Problem, given: Compact, found: Sequence[Requirement]) -> It
         profile = problem.candidates[role][min(kind.number for kind in kinds)].profile
         ports = [port for port in profile.inputs if port.signal == need.signal]
         port = next((port for port in ports if port.name == need.input), ports[0])
-        sources = tuple(dict.fromkeys(problem.roles[source].iri for source, _ in need.sources))
+        feeding = [problem.roles[source] for source in dict.fromkeys(source for source, _ in need.sources)]
+        sources = tuple(feeder.iri for feeder in feeding)
+        optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
         same = {ports for kind in kinds for ports in kind.ports}
         more = sum(map(same.__contains__, map(ports_of, problem.candidates[role]))) - 1
-        yield Step(problem.roles[role].iri, profile.component, more, port.name, need.signal, sources)
+        yield Step(problem.roles[role].iri, profile.component, more, port.name, need.signal, sources, optional)
 
 
 def _told(problem: Problem, given: Compact, requirement: Requirement) -> model.Requirement:

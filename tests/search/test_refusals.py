@@ -120,3 +120,18 @@ def test_the_cause_comes_first_and_then_what_follows_from_it() -> None:
     (reason,) = solve.search(given_).reasons
     assert reason.code == "input-unfed"
     assert str(reason).startswith("the input 'scan' (RangeScan) of cap cannot be fed: no candidate of sonar issues")
+
+
+def test_a_source_that_is_asked_for_nobody_is_not_said_to_issue_nothing() -> None:
+    given_ = problem(
+        {
+            "sonar": [component("ring", outputs="scan:RangeScan")],
+            "bumper": [component("skirt", outputs="o:Bump")],
+            "control": [component("cap", "scan:RangeScan", "v:Velocity")],
+        },
+        "sonar>control bumper>control",
+        {"sonar": (0, 1)},
+    )
+    (reason,) = solve.search(given_).reasons
+    cause = "no candidate of bumper issues a RangeScan for it, and sonar is asked for nobody (sc:minCount 0)"
+    assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"
