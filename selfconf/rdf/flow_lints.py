@@ -17,6 +17,7 @@ from rdflib import RDF, SH, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.wording import listed
 from selfconf.rdf.demands import Demands, Statement
 from selfconf.rdf.file import File
 from selfconf.rdf.findings import at
@@ -52,7 +53,7 @@ def idle_loops(file: File) -> Iterator[Diagnostic]:
         for loop in loops:
             inside = [link for link in links if link.source in loop]
             if all(link.sink in loop for link in inside) and not any(_acts(file, role) for role in loop):
-                names = _listed([file.short(str(role)) for role in roles if role in loop])
+                names = listed([file.short(str(role)) for role in roles if role in loop])
                 who = (
                     f"The role {names} feeds only itself"
                     if len(loop) == 1
@@ -74,7 +75,7 @@ def starving_inputs(file: File) -> Iterator[Diagnostic]:
                 if any(_could(file, demands[link.source], link, asked) for link in feeding):
                     continue
                 what = " ".join(["an input", *_described(file, asked)])
-                feeders = _listed(sorted({file.short(str(link.source)) for link in feeding}))
+                feeders = listed(sorted({file.short(str(link.source)) for link in feeding}))
                 if feeders:
                     message = f"This asks for {what}, which nothing that {feeders} is asked for could feed."
                     hint = (
@@ -181,7 +182,3 @@ def _described(file: File, asked: Ask) -> Iterator[str]:
 def _place(file: File, statement: Statement) -> int:
     places = file.positions.triples.get(statement)
     return places.object if places else file.offset(statement[0])
-
-
-def _listed(names: list[str]) -> str:
-    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

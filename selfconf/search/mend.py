@@ -22,7 +22,7 @@ from dataclasses import replace
 
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition
 from selfconf.model.profile import Output, Profile
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.repair import AcceptNearMiss, AddComponents, AddInteraction, Addition, AskForFewer, Repair
 from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.template import Interaction, Role
@@ -85,13 +85,12 @@ def mended(problem: Problem, repair: Repair) -> Problem:
     return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
 
 
-def _solution(problem: Problem) -> list[list[Candidate]] | None:
-    found = solve.solution(Prepared(problem), Budget(STEPS))
-    return found if isinstance(found, list) else None
+def _solution(problem: Problem) -> list[list[Candidate]] | Undecided | None:
+    return solve.solution(Prepared(problem), Budget(STEPS + sum(map(len, problem.candidates))))
 
 
 def _possible(problem: Problem) -> bool:
-    return _solution(problem) is not None
+    return isinstance(_solution(problem), list)
 
 
 def _kernel(problem: Problem) -> Problem:
@@ -130,8 +129,10 @@ def _additions(problem: Problem) -> AddComponents | None:
         here = waiting[trial]
         changed = mended(problem, _added(problem, here, outputs))
         playing = _solution(changed) if here else None
-        if playing is not None:
+        if isinstance(playing, list):
             return _trimmed(problem, here, outputs, playing)
+        if playing is not None:
+            return None
         for number in _helpful(changed):
             further = here + Counter({number: 1})
             if frozenset(further.items()) not in seen:

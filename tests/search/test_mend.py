@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from itertools import combinations_with_replacement
 
+import pytest
 from hypothesis import given
 
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
 from selfconf.model.repair import AcceptNearMiss, AddComponents, Addition
-from selfconf.search import solve
+from selfconf.search import mend, solve
 from selfconf.search.mend import mended, wanted_of, with_repairs
 from selfconf.search.problem import Problem
 from tests.search.oracle import World
@@ -56,7 +57,7 @@ def test_what_is_lacking_is_asked_for_by_signal() -> None:
 
 def test_a_near_miss_that_would_do_is_offered_first() -> None:
     given_ = problem({"position": [], "control": [component("cap", "p:Pose")]}, "position>control")
-    near = NearMiss(iri("position"), iri("tracker"), "its support is Pippi, not Astrid")
+    near = NearMiss(iri("position"), iri("tracker"), "support is Pippi, not Astrid")
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
     candidate = Candidate(component("tracker", outputs="p:Pose"))
@@ -83,3 +84,11 @@ def test_a_link_that_is_missing_is_found() -> None:
     assert "let the role eye feed the role mind (sc:feeds)" in [
         str(repair) for repair in with_repairs(given_, refused).repairs
     ]
+
+
+def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mend, "STEPS", 100)
+    given_ = problem({f"r{number}": [component(f"c{other}") for other in range(59)] for number in range(60)})
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    assert str(next(mend.repairs(given_, refused))) == "add one more component for the role r0"
