@@ -14,6 +14,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Iterable, Iterator
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -40,7 +41,7 @@ def folder() -> Path:
 
 
 def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
-    """The hierarchy that an ontology entails. Raises AuthorError if that takes longer than the limit."""
+    """The hierarchy that an ontology entails. Raises AuthorError if it takes longer than the limit."""
     lines = ntriples(_relabelled(triples)).splitlines(keepends=True)
     name = hashlib.blake2s(b"".join((*lines, _reasoners().encode())), digest_size=16).hexdigest()
     kept = folder() / "owl-rl" / f"{name}.nt"
@@ -72,14 +73,26 @@ def _relabelled(triples: Iterable[Triple]) -> Iterator[Triple]:
         yield label(subject), predicate, label(value)
 
 
+def _limit() -> float:
+    """The seconds that a closure may take. Raises AuthorError for what is no number of them."""
+    given = os.environ.get("SELFCONF_OWL_RL_SECONDS", str(LIMIT))
+    try:
+        seconds = float(given)
+    except ValueError:
+        seconds = 0.0
+    if not 0 < seconds < threading.TIMEOUT_MAX:
+        raise AuthorError(f"SELFCONF_OWL_RL_SECONDS is a number of seconds above zero, not {given!r}")
+    return seconds
+
+
 def _computed(lines: bytes) -> bytes:
-    seconds = float(os.environ.get("SELFCONF_OWL_RL_SECONDS", LIMIT))
+    seconds = _limit()
     command = [sys.executable, "-m", "selfconf.entailment"]
     try:
         done = subprocess.run(command, input=lines, capture_output=True, timeout=seconds, check=True)
     except subprocess.TimeoutExpired:
         raise AuthorError(
-            f"the OWL RL closure of the ontologies takes more than {seconds:.0f} s; "
+            f"the OWL RL closure of the ontologies takes more than {seconds:g} s; "
             "use --reasoning subclass, or give it longer by SELFCONF_OWL_RL_SECONDS"
         ) from None
     except subprocess.CalledProcessError as error:

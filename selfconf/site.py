@@ -35,6 +35,8 @@ ENDING = 3.0
 """How long, in seconds, a process that this site has started may take to end before it is killed."""
 FOLLOW = 0.2
 """How often, in seconds, it is looked whether a started process still runs."""
+STDERR = 2
+"""Where components print: stdout is for the results of the command that started them."""
 Complaint = Callable[[str], None]
 
 
@@ -182,7 +184,9 @@ class Site:
         environment = {**os.environ, **self._environment, **ending.environment(), "PATH": _path()}
         try:
             words = shlex.split(command) or [""]
-            self._processes[component] = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL)
+            self._processes[component] = subprocess.Popen(
+                words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=STDERR
+            )
         except (OSError, ValueError) as error:
             raise PeerError(f"the command of {component} does not start: {error}") from None
         log.info("started %s: %s", component, command)

@@ -48,7 +48,7 @@ def test_a_closure_is_computed_once(cache: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_a_closure_that_takes_too_long_is_ended_with_advice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", "0.01")
-    with pytest.raises(AuthorError, match="use --reasoning subclass"):
+    with pytest.raises(AuthorError, match=r"takes more than 0\.01 s; use --reasoning subclass"):
         closed()
 
 
@@ -57,3 +57,10 @@ def test_a_cache_that_cannot_be_written_is_done_without(cache: Path, monkeypatch
     blocked.write_text("not a folder")
     monkeypatch.setenv("SELFCONF_CACHE_DIR", str(blocked))
     assert ("Tracker", "Sensor") in closed()
+
+
+@pytest.mark.parametrize("given", ["abc", "0", "-1", "nan", "inf", ""])
+def test_a_limit_that_is_no_time_is_a_sentence(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", given)
+    with pytest.raises(AuthorError, match=f"SECONDS is a number of seconds above zero, not '{given}'"):
+        closed()

@@ -15,6 +15,7 @@ from selfconf.cli.inputs import add_task_arguments, complain, composer_of, read_
 from selfconf.cli.live import add_connection_arguments
 from selfconf.cli.places import Places
 from selfconf.cli.sources import read_ecology
+from selfconf.cli.terminal import show
 from selfconf.cli.why import explained
 from selfconf.configurator.compose import Composer
 from selfconf.model.configuration import Configuration
@@ -79,9 +80,9 @@ def run(given: argparse.Namespace) -> int:
     }
     report = Report(task, composer, ecology, eligible, seconds, losses)
     if isinstance(answer, Undecided) or given.format == "json":
-        print(json.dumps(report.body(answer), indent=2, ensure_ascii=False))
+        show(json.dumps(report.body(answer), indent=2, ensure_ascii=False))
     else:
-        print(report.text(answer, given.format))
+        show(report.text(answer, given.format))
     return 1 if isinstance(answer, Refusal) else 2 if isinstance(answer, Undecided) else 0
 
 

@@ -11,6 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from selfconf import entailment, library
+from selfconf.cli.terminal import show
 from selfconf.configurator.compose import Composer, Strategy
 from selfconf.errors import AuthorError, BindingError, TemplateError, TurtleError
 from selfconf.model.diagnostic import Severity
@@ -25,17 +26,23 @@ from selfconf.rdf.templates import TaskDocument
 from selfconf.rdf.turtle import Document
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+STDIN = Path("-")
+"""What stands for standard input where a file can be given."""
 
 
 def complain(sentence: str) -> None:
     """Say something on stderr that is not a result."""
-    print(sentence, file=sys.stderr, flush=True)
+    show(sentence, sys.stderr)
 
 
 def add_task_arguments(parser: argparse.ArgumentParser) -> None:
     """The options by which a task is given: template, bindings, reasoning, strategy."""
     parser.add_argument(
-        "template", metavar="TEMPLATE", type=Path, nargs="?", help="a Turtle file with a template or a task"
+        "template",
+        metavar="TEMPLATE",
+        type=Path,
+        nargs="?",
+        help="a Turtle file with a template or a task, or - for stdin",
     )
     parser.add_argument(
         "--template",
@@ -74,7 +81,7 @@ def add_ads_argument(parser: argparse.ArgumentParser) -> None:
         type=Path,
         nargs="+",
         action="extend",
-        help="advertisements: files, or folders with all *.ttl below them; repeatable",
+        help="advertisements: files, folders with all *.ttl below them, or - for stdin; repeatable",
     )
 
 
@@ -105,6 +112,7 @@ def add_ontology_argument(parser: argparse.ArgumentParser) -> None:
 def read_task(given: argparse.Namespace) -> TaskDocument:
     """The task that the arguments describe, complete and checked. Raises AuthorError."""
     path = leading(given, "template")
+    one_stdin(path, *(given.ads or ()), *given.ontology)
     document = parse_file(path)
     wanted = None
     if given.wanted is not None:
@@ -119,11 +127,17 @@ def read_task(given: argparse.Namespace) -> TaskDocument:
     return bindings.complete(bindings.bind(task, pairs(given.bind)))
 
 
+def one_stdin(*paths: Path) -> None:
+    """Raises AuthorError where standard input, which can be read once, is to be more than one thing."""
+    if paths.count(STDIN) > 1:
+        raise AuthorError("- is standard input, which can be only one of these; give files for the others")
+
+
 def located(path: Path, error: TemplateError) -> TemplateError:
     """The error with the line and column of what is wrong, as `validate` would tell it."""
     from selfconf.cli.validate import check
 
-    for problem in check([str(path)]).diagnostics:
+    for problem in () if path == STDIN else check([str(path)]).diagnostics:
         if problem.severity is Severity.ERROR:
             return TemplateError(error.message, file=problem.file, line=problem.line, column=problem.column)
     return error
@@ -136,6 +150,8 @@ def pairs(bound: Iterable[str]) -> list[tuple[str, str]]:
         name, equals, term = text.partition("=")
         if not equals or not name:
             raise BindingError(f"--bind takes NAME=TERM, not {text!r}; for example --bind robot=:Astrid")
+        if term.startswith("_:"):
+            raise BindingError(f"{term} is a blank node, which has a name in its own file alone; bind {name} to an IRI")
         found.append((name.strip(), term))
     return found
 
@@ -163,18 +179,21 @@ def composer_of(given: argparse.Namespace, task: TaskDocument) -> Composer:
 
 
 def read_advertisements(paths: Sequence[Path]) -> Ecology:
-    """The advertisements in files and folders. One that does not conform is named on stderr and left out."""
+    """The advertisements in files and folders, whatever the order in which they are given.
+
+    One that does not conform is named on stderr and left out, and so is a second one of the same component.
+    """
     found: dict[IRI, Advertisement] = {}
     pieces = Pieces()
     with collector_at_rest():
         for path in turtle_files(paths):
-            good, bad = stream.read(_bytes(path), str(path), _base(path), pieces)
+            good, bad = stream.read(_bytes(path), _name(path), _base(path), pieces)
             for malformed in bad:
-                complain(f"{path}: left out {malformed.component}: {malformed.problems[0]}")
+                complain(f"{_name(path)}: left out {malformed.component}: {malformed.problems[0]}")
             for advertisement in good:
                 if found.setdefault(advertisement.component, advertisement) is not advertisement:
                     other = found[advertisement.component].profile.place
-                    complain(f"{path}: left out {advertisement.component}: it is advertised in {other} already")
+                    complain(f"{_name(path)}: left out {advertisement.component}: it is advertised in {other} already")
         ecology = Ecology(found)
     if not found:
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")
@@ -199,12 +218,12 @@ def collector_at_rest() -> Iterator[None]:
 
 def turtle_files(paths: Sequence[Path]) -> list[Path]:
     """The files, and all *.ttl below the folders, each once, sorted. Raises AuthorError for what is not there."""
-    found: dict[Path, None] = {}
+    found: set[Path] = set()
     for path in paths:
-        existing(path)
-        for file in sorted(path.rglob("*.ttl")) if path.is_dir() else [path]:
-            found[file] = None
-    return list(found)
+        if path != STDIN:
+            existing(path)
+        found.update(path.rglob("*.ttl") if path.is_dir() else [path])
+    return sorted(found, key=Path.absolute)
 
 
 def existing(path: Path) -> Path:
@@ -219,7 +238,12 @@ def parse_file(path: Path, predicates: Iterable[IRI] | None = None) -> Document:
 
     Raises AuthorError for what is not there, cannot be read, or is not Turtle.
     """
-    return turtle.parse(_bytes(path), str(path), _base(path), predicates)
+    return turtle.parse(_bytes(path), _name(path), _base(path), predicates)
+
+
+def _name(path: Path) -> str:
+    """How a file is spoken of."""
+    return "<stdin>" if path == STDIN else str(path)
 
 
 def _base(path: Path) -> str:
@@ -236,7 +260,7 @@ def _resolved(folder: Path) -> Path:
 
 def _bytes(path: Path) -> bytes:
     try:
-        octets = path.read_bytes()
+        octets = sys.stdin.buffer.read() if path == STDIN else path.read_bytes()
     except IsADirectoryError:
         raise AuthorError(f"{path} is a folder; a file is needed here") from None
     except FileNotFoundError:
@@ -244,5 +268,5 @@ def _bytes(path: Path) -> bytes:
     except OSError as error:
         raise AuthorError(f"cannot read {path}: {error.strerror}") from None
     if b"\0" in octets:
-        raise TurtleError("not Turtle: this is a binary file", file=str(path))
+        raise TurtleError("not Turtle: this is a binary file", file=_name(path))
     return octets.removeprefix(BYTE_ORDER_MARK)

@@ -8,17 +8,25 @@ from __future__ import annotations
 import argparse
 import importlib
 import logging
-import os
 import sys
 import traceback
 from collections.abc import Sequence
 from types import ModuleType
+from typing import NoReturn
 
-from selfconf.cli.terminal import guard
+from selfconf.cli.terminal import guard, show, silence
 from selfconf.errors import SelfconfError
 
 COMMANDS = ("new", "validate", "partition", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
 INTERRUPTED = 130
+
+
+class Parser(argparse.ArgumentParser):
+    """Says in one sentence what is wrong with the arguments; the usage is a question of its own."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with exit code 2."""
+        self.exit(2, f"{self.prog}: {message}; see `{self.prog} --help`\n")
 
 
 def command(name: str) -> ModuleType:
@@ -26,7 +34,7 @@ def command(name: str) -> ModuleType:
     return importlib.import_module(f"selfconf.cli.{name}")
 
 
-def parser_of(name: str, module: ModuleType, subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def parser_of(name: str, module: ModuleType, subparsers: argparse._SubParsersAction[Parser]) -> None:
     """Add the parser of one command."""
     parser = subparsers.add_parser(
         name,
@@ -38,12 +46,12 @@ def parser_of(name: str, module: ModuleType, subparsers: argparse._SubParsersAct
     )
     module.add_arguments(parser)
     parser.add_argument("--debug", action="store_true", help="show tracebacks and what happens inside")
-    parser.set_defaults(run=module.run)
+    parser.set_defaults(run=module.run, misused=parser.error)
 
 
-def parser(names: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
+def parser(names: Sequence[str] = COMMANDS) -> Parser:
     """The parser of the command line, or of some commands of it: those that are not asked for are not loaded."""
-    top = argparse.ArgumentParser(
+    top = Parser(
         prog="selfconf",
         description="Robots, sensors and home devices that wire themselves.",
         epilog="example:\n  selfconf configure examples/navigate.ttl --ads examples/peis-home"
@@ -62,28 +70,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
     guard()
     typed = sys.argv[1:] if arguments is None else arguments
-    given = parser([name for name in typed[:1] if name in COMMANDS] or COMMANDS).parse_args(typed)
+    given, unknown = parser([name for name in typed[:1] if name in COMMANDS] or COMMANDS).parse_known_args(typed)
+    if unknown:
+        given.misused(f"unrecognized arguments: {' '.join(unknown)}")
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)
+    code: int = 0
     try:
-        code: int = given.run(given)
+        code = given.run(given)
         sys.stdout.flush()
         return code
     except SelfconfError as error:
         if given.debug:
             traceback.print_exc()
-        print(f"selfconf {given.command}: {error}", file=sys.stderr)
+        show(f"selfconf {given.command}: {error}", sys.stderr)
         return 2
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        silence(sys.stdout)
+        return code
     except OSError as error:
         if given.debug:
             traceback.print_exc()
-        print(f"selfconf {given.command}: {error}", file=sys.stderr)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        show(f"selfconf {given.command}: {error}", sys.stderr)
+        silence(sys.stdout)
         return 2
     except KeyboardInterrupt:
-        print(f"selfconf {given.command}: interrupted", file=sys.stderr)
+        show(f"selfconf {given.command}: interrupted", sys.stderr)
         return INTERRUPTED
 
 

@@ -13,6 +13,7 @@ from selfconf.cli.endpoint import add_endpoint_argument
 from selfconf.cli.inputs import add_task_arguments, read_hierarchy, read_task
 from selfconf.cli.live import add_connection_arguments
 from selfconf.cli.sources import read_ecology
+from selfconf.cli.terminal import show
 from selfconf.model.partition import Candidate
 from selfconf.model.template import Role
 from selfconf.rdf import spelling
@@ -50,7 +51,7 @@ def run(given: argparse.Namespace) -> int:
     seconds["load"] = time.perf_counter() - began
     roles = task.task.template.roles
     if given.show:
-        print(_spelt(task, partitioner, ecology, given.show))
+        show(_spelt(task, partitioner, ecology, given.show))
         return 0
     began = time.perf_counter()
     partition = partitioner.partition(ecology)
@@ -60,10 +61,10 @@ def run(given: argparse.Namespace) -> int:
         for role, compiled, candidates in zip(roles, partitioner.roles, partition.candidates, strict=True)
     ]
     if given.format == "json":
-        print(json.dumps(_body(task, rows, seconds), indent=2, ensure_ascii=False))
+        show(json.dumps(_body(task, rows, seconds), indent=2, ensure_ascii=False))
     else:
         names = words.Names(task.document.prefixes)
-        print("\n".join(line for row in rows for line in _lines(*row, names)))
+        show("\n".join(line for row in rows for line in _lines(*row, names)))
     return 0 if all(len(candidates) >= role.minimum for role, candidates, _ in rows) else 1
 
 

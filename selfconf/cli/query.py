@@ -15,6 +15,7 @@ from selfconf.cli.inputs import (
     complain,
     existing,
     leading,
+    one_stdin,
     parse_file,
     read_advertisements,
 )
@@ -60,7 +61,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 with an answer, be it empty."""
-    text = _text(str(leading(given, "sparql")))
+    asked = str(leading(given, "sparql"))
+    one_stdin(Path(asked), *(given.ads or ()), *given.ontology)
+    text = _text(asked)
     if given.rows < 1 or given.seconds <= 0:
         raise AuthorError("--rows and --seconds take numbers greater than 0")
     if given.endpoint is not None:
@@ -96,12 +99,12 @@ def _told(dataset: Dataset, question: Question) -> int:
 def _text(given: str) -> str:
     if given == "-":
         try:
-            return sys.stdin.read()
+            return sys.stdin.read().removeprefix("\ufeff")
         except UnicodeDecodeError as error:
             raise AuthorError(f"cannot read stdin: {error}") from None
     if given.endswith(".rq") or (len(given) < 255 and "\n" not in given and Path(given).is_file()):
         try:
-            return existing(Path(given)).read_text(encoding="utf-8")
+            return existing(Path(given)).read_text(encoding="utf-8-sig")
         except (OSError, UnicodeDecodeError) as error:
             raise AuthorError(f"cannot read {given}: {error}") from None
     return given

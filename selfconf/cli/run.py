@@ -19,6 +19,7 @@ from selfconf.agent import Account, Agent, Order
 from selfconf.bus.zenoh_bus import client
 from selfconf.cli import budget, words
 from selfconf.cli.inputs import (
+    STDIN,
     add_task_arguments,
     complain,
     composer_of,
@@ -28,6 +29,7 @@ from selfconf.cli.inputs import (
 )
 from selfconf.cli.live import add_connection_arguments
 from selfconf.cli.places import Places
+from selfconf.cli.terminal import silence
 from selfconf.cli.why import explained
 from selfconf.configurator.machine import Policy
 from selfconf.ending import Ending, environment
@@ -80,7 +82,7 @@ def run(given: argparse.Namespace) -> int:
                 tell(account)
             except OSError:  # whoever read the accounts is gone, or the disk is full: end rather than run unseen
                 for stream in (sys.stdout, sys.stderr):
-                    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+                    silence(stream)
                 bus.wake_up(agent.stop)
 
         def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
@@ -143,6 +145,8 @@ def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
     if given.ads is None:
         yield rendezvous.find(given.ecology, given.connect)
         return
+    if STDIN in given.ads:
+        raise AuthorError("a site watches the files of its advertisements, so give files to --ads, not -")
     for path in given.ads:
         existing(path)
     name = given.ecology or f"run-{secrets.token_hex(3)}"
@@ -160,8 +164,13 @@ def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
     ]
     for endpoint in given.connect:
         command += ["--connect", endpoint]
+    # What the site and the components that it starts print is for people: stdout holds the account alone.
     process = subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, start_new_session=True, env={**os.environ, **environment()}
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=sys.stderr,
+        start_new_session=True,
+        env={**os.environ, **environment()},
     )
     try:
         yield name, [_listening(process, name, site), *given.connect]
@@ -216,7 +225,7 @@ class Teller:
         if account.act == "waiting":
             refusal = account.facts["refusal"]
             undecided = isinstance(refusal, Undecided)
-            complain(f"  {refusal}" if undecided else words.refusal_text(refusal, self._names, self._where))
+            _say(f"  {refusal}" if undecided else words.refusal_text(refusal, self._names, self._where))
             sentence = "       waiting for the ecology to change"
         if account.act == "composed":
             sentence = "act 3  {roles} in {milliseconds:.1f} ms"
@@ -229,7 +238,7 @@ class Teller:
             found = isinstance(outcome, Configuration)
             facts["roles"] = f"{len(outcome.components)} components" if found else nothing
             facts["milliseconds"] = account.facts["seconds"] * 1000
-        complain(f"{account.time - self._began:9.3f} s  {sentence.format(**facts)}")
+        _say(f"{account.time - self._began:9.3f} s  {sentence.format(**facts)}")
 
     def _word(self, value: Any) -> Any:
         if isinstance(value, IRI):
@@ -237,6 +246,11 @@ class Teller:
         if isinstance(value, tuple):
             return ", ".join(map(str, value)) or "no site"
         return value
+
+
+def _say(sentence: str) -> None:
+    """A line of the account on stderr. Raises OSError if nobody reads it, which ends the run."""
+    print(sentence, file=sys.stderr, flush=True)
 
 
 def _tell_json(where: words.Where, account: Account) -> None:

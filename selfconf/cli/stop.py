@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 
 from selfconf.cli.live import add_connection_arguments, ask, connected, wait
 from selfconf.cli.status import statuses
@@ -20,6 +21,7 @@ TAKING_DOWN = 15.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("--configurator", metavar="NAME", help="only this one; by default all of the ecology")
+    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_connection_arguments(parser)
 
 
@@ -32,6 +34,9 @@ def run(given: argparse.Namespace) -> int:
         for name in found:
             ask(ecology, ecology.keys.configurator_call(name, "stop"))
         _gone(ecology, set(found))
+    if given.format == "json":
+        print(json.dumps({"ecology": ecology.keys.ecology, "stopped": found}, indent=2))
+        return 0
     where = f"in ecology {ecology.keys.ecology}"
     print(f"took down {', '.join(found)} {where}" if found else f"nothing is deployed {where}")
     return 0

@@ -2,11 +2,14 @@
 
 Names, labels, file names and the words of a failure come from whoever is on the network. A file or a program that
 reads the output gets it unchanged; only a terminal obeys `ESC [ 2 J`.
+
+Nor does what a command comes to depend on its readers: one may have seen enough, or never have been there.
 """
 
 from __future__ import annotations
 
 import io
+import os
 import re
 import sys
 from typing import TextIO
@@ -45,8 +48,33 @@ class Terminal(io.TextIOBase):
 
 
 def guard() -> None:
-    """From now on write to standard output and error as a `Terminal`, where they are one."""
+    """From now on standard output and error can be written to, whatever they are.
+
+    A terminal becomes a `Terminal`, and nowhere takes the place of a stream that is closed. What the encoding does not
+    have, such as the bytes of a file name that is not UTF-8, becomes an escape.
+    """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
-        if stream is not None and stream.isatty() and not isinstance(stream, Terminal):
-            setattr(sys, name, Terminal(stream))
+        if stream is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
+        elif not isinstance(stream, Terminal):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="backslashreplace")
+            if stream.isatty():
+                setattr(sys, name, Terminal(stream))
+
+
+def show(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
+    """Print a result, or what else there is to say, to a reader who may have seen enough."""
+    stream = stream or sys.stdout
+    try:
+        print(text, end=end, file=stream, flush=True)
+    except BrokenPipeError:
+        silence(stream)
+
+
+def silence(stream: TextIO) -> None:
+    """Let what is still to be written to a stream come to nothing."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)

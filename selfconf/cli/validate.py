@@ -12,6 +12,7 @@ from pathlib import Path
 from selfconf import library
 from selfconf.cli.close_looks import Remembered, shared
 from selfconf.cli.reports import FORMATS, text
+from selfconf.cli.terminal import show
 from selfconf.errors import AuthorError
 from selfconf.model.codes import BY_CODE, CODES, Code
 from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
@@ -66,12 +67,11 @@ def run(arguments: argparse.Namespace) -> int:
         raise AuthorError("there is nothing to validate; name a Turtle file or a folder")
     result = check(arguments.paths, arguments.ontology, _remembered(arguments.paths) if arguments.cache else shared)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
-    sys.stdout.write(text.illustrate(result) if illustrated else FORMATS[arguments.format](result))
-    sys.stdout.flush()
-    print(text.summary(result), file=sys.stderr)
+    show(text.illustrate(result) if illustrated else FORMATS[arguments.format](result), end="")
+    show(text.summary(result), sys.stderr)
     if result.unreadable:
         names = ", ".join(sorted(result.unreadable))
-        print(f"selfconf validate: cannot read {names}; correct the path or the syntax.", file=sys.stderr)
+        show(f"selfconf validate: cannot read {names}; correct the path or the syntax.", sys.stderr)
         return 2
     return 0 if result.conforms else 1
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
@@ -12,13 +14,20 @@ from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Place
 from selfconf.model.refusal import InputUnfed, Reason, Refusal, Undecided
 from selfconf.model.repair import AcceptNearMiss, Repair
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, STRING, XSD, Literal, Term
 from selfconf.search.best import Optimum
 from selfconf.search.whatif import Loss
 
 Where = Callable[[IRI], Place | None]
 """Where a role or component is spoken of, if that is known."""
 _LOCAL = re.compile(r"[A-Za-z0-9_][\w.-]*")
+_BARE = {
+    XSD + "integer": re.compile(r"[+-]?\d+"),
+    XSD + "decimal": re.compile(r"[+-]?\d*\.\d+"),
+    XSD + "double": re.compile(r"[+-]?(\d+\.?\d*|\.\d+)[eE][+-]?\d+"),
+    XSD + "boolean": re.compile("true|false"),
+}
+"""What Turtle takes for a literal of a datatype as it stands."""
 
 
 class Names:
@@ -28,13 +37,21 @@ class Names:
         self._prefixes = sorted(prefixes.items(), key=lambda item: -len(item[1]))
 
     def __call__(self, term: Term) -> str:
-        """A CURIE where a prefix fits, else the term in full."""
+        """As Turtle writes it: a CURIE where a prefix fits, a number as such, a string in quotes."""
         if isinstance(term, Literal):
-            return f'"{term.lexical}"'
+            return self._literal(term)
         for prefix, base in self._prefixes:
             if term.startswith(base) and _LOCAL.fullmatch(term[len(base) :]):
                 return f"{prefix}:{term[len(base) :]}"
         return f"<{term}>" if isinstance(term, IRI) else str(term)
+
+    def _literal(self, term: Literal) -> str:
+        if term.datatype in _BARE and _BARE[term.datatype].fullmatch(term.lexical):
+            return term.lexical
+        quoted = json.dumps(term.lexical, ensure_ascii=False)  # its escapes are Turtle's too
+        if term.language:
+            return f"{quoted}@{term.language}"
+        return quoted if term.datatype == STRING else f"{quoted}^^{self(term.datatype)}"
 
 
 def configuration_text(configuration: Configuration, names: Names) -> str:
@@ -200,9 +217,7 @@ def refusal_text(refusal: Refusal, names: Names, where: Where = nowhere, most: i
 
 
 def _missed(miss: NearMiss, names: Names) -> str:
-    whose = "it" if miss.obstacle.startswith(("has ", "is ", "declares ")) else "its"
-    but = f"{whose} {miss.obstacle}"
-    return f"{miss.role.short}: {names(miss.component)} would fit, but {but}"
+    return f"{miss.role.short}: {names(miss.component)} would fit, but {miss}"
 
 
 def refusal_body(refusal: Refusal, where: Where = nowhere) -> dict[str, Any]:
@@ -233,14 +248,15 @@ def refusal_body(refusal: Refusal, where: Where = nowhere) -> dict[str, Any]:
 
 
 def plain(value: Term) -> Any:
-    """A term in JSON: IRIs and strings as text, numbers and truth values as such."""
+    """A term in JSON: IRIs and strings as text, numbers and truth values as such; JSON has no INF and no NaN."""
     if isinstance(value, Literal):
         kind = value.datatype.rpartition("#")[2]
         try:
             if kind in ("integer", "int", "long"):
                 return int(value.lexical)
             if kind in ("decimal", "double", "float"):
-                return float(value.lexical)
+                number = float(value.lexical)
+                return number if math.isfinite(number) else value.lexical
         except ValueError:
             return value.lexical
         if kind == "boolean":

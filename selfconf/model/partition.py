@@ -45,6 +45,10 @@ class NearMiss:
     component: IRI
     obstacle: str
 
+    def __str__(self) -> str:
+        whose = "it" if self.obstacle.startswith(("has ", "is ", "declares ")) else "its"
+        return f"{whose} {self.obstacle}"
+
 
 @dataclass(frozen=True, slots=True)
 class Partition:

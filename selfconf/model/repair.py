@@ -86,7 +86,7 @@ class AcceptNearMiss:
         return self.near.role
 
     def __str__(self) -> str:
-        return f"let {self.near.component.short} play {self.near.role.short}, although {self.near.obstacle}"
+        return f"let {self.near.component.short} play {self.near.role.short}, although {self.near}"
 
 
 Repair = AddComponents | AskForFewer | AddInteraction | AcceptNearMiss

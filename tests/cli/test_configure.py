@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import io
+import json
+import shlex
+import subprocess
+import sys
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -9,6 +14,9 @@ from typing import Any
 import pytest
 
 from selfconf.bus.zenoh_bus import client
+from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.profile import Profile
+from selfconf.model.repair import AcceptNearMiss
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.vocabulary import SC
@@ -470,3 +478,85 @@ def test_an_empty_folder_is_an_honest_no(desk: Desk) -> None:
     outcome = desk.configure(*BOUND, "--ads", str(empty), "--format", "json", ads=False)
     assert outcome.code == 1
     assert len(outcome.body["reasons"]) >= 1
+
+
+# What the shell does with the streams.
+
+
+@pytest.mark.parametrize(
+    ("task", "redirected", "code"),
+    [
+        ("robot=:Pippi", "| true", 1),
+        ("robot=:Pippi", "2>&1 | true", 1),
+        ("nobody=:Pippi", "2>&1 | true", 2),
+        ("robot=:Astrid", ">&-", 0),
+        ("robot=:Pippi", ">&- 2>&-", 1),
+    ],
+)
+def test_the_exit_code_does_not_depend_on_who_reads(desk: Desk, task: str, redirected: str, code: int) -> None:
+    words = ("-m", "selfconf", "configure", desk.template, "--ads", desk.ads, "--bind", "goal=x", "--bind", task)
+    command = shlex.join(map(str, (sys.executable, *words)))
+    script = f"({command}; echo $? >code) {redirected}"
+    done = subprocess.run(["bash", "-c", script], cwd=desk.folder, capture_output=True, text=True, check=False)
+    assert "Traceback" not in done.stderr
+    assert (desk.folder / "code").read_text() == f"{code}\n"
+
+
+def test_template_or_advertisements_come_in_on_stdin_but_not_both(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    answer = desk.configured(*BOUND)["roles"]
+
+    def piped(text: str, *arguments: str) -> Outcome:
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+        return run(desk.capsys, "configure", *arguments, *BOUND, "--format", "json")
+
+    assert piped(NAVIGATE, "-", "--ads", str(desk.ads)).body["roles"] == answer
+    everything = "".join(path.read_text() for path in sorted(desk.ads.glob("*.ttl")))
+    assert piped(everything, str(desk.template), "--ads", "-").body["roles"] == answer
+    assert piped(NAVIGATE, "-", "--ads", "-").is_one_sentence("- is standard input")
+    assert piped("garbage", "-", "--ads", str(desk.ads)).is_one_sentence("<stdin>:1:")
+
+
+def test_of_two_descriptions_the_first_by_path_counts_in_whatever_order_they_are_given(desk: Desk) -> None:
+    for name, text in (("a", ":lamp a sc:Component, :A ."), ("b", ":lamp a sc:Component, :B .")):
+        (desk.folder / f"{name}.ttl").write_text(PREFIXES + text)
+    desk.template.write_text(PREFIXES + ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :A .")
+    files = [str(desk.folder / f"{name}.ttl") for name in "ab"]
+    for order in (files, files[::-1]):
+        outcome = desk.configure("--ads", *order, ads=False)
+        assert outcome.code == 0
+        assert outcome.err == f"{files[1]}: left out {iri('lamp')}: it is advertised in {files[0]} already\n"
+
+
+# Terms in words.
+
+
+@pytest.mark.parametrize(
+    ("literal", "text", "value"),
+    [
+        ("5", "5", 5),
+        ('"5"', '"5"', "5"),
+        ("1.50", "1.50", 1.5),
+        ("true", "true", True),
+        ('"hello"@en', '"hello"@en', "hello"),
+        ('"say \\"x\\"\\n"', '"say \\"x\\"\\n"', 'say "x"\n'),
+        ('"INF"^^xsd:double', '"INF"^^xsd:double', "INF"),
+        ('"NaN"^^xsd:double', '"NaN"^^xsd:double', "NaN"),
+        ('"2026-01-01"^^xsd:date', '"2026-01-01"^^xsd:date', "2026-01-01"),
+    ],
+)
+def test_a_value_is_shown_as_turtle_and_written_as_json(desk: Desk, literal: str, text: str, value: Any) -> None:
+    desk.template.write_text(NAVIGATE.replace(" ; sh:datatype xsd:string", ""))
+    bound = ("--bind", "robot=:Astrid", "--bind", f"goal={literal}")
+    assert f"\n  goal = {text}\n" in desk.configure(*bound).out
+    body = json.loads(desk.configure(*bound, "--format", "json").out, parse_constant=pytest.fail)
+    assert [body["bindings"]["goal"], body["parameters"][0]["value"]] == [value, value]
+
+
+def test_a_blank_node_is_no_value_from_outside(desk: Desk) -> None:
+    outcome = desk.configure("--bind", "robot=_:b", "--bind", "goal=x")
+    assert outcome.is_one_sentence("_:b is a blank node", "bind robot to an IRI")
+
+
+def test_a_repair_by_type_says_what_the_component_is_not() -> None:
+    near = NearMiss(iri("r0"), iri("c1"), "is no A1")
+    assert str(AcceptNearMiss(near, Candidate(Profile(iri("c1"))))) == "let c1 play r0, although it is no A1"

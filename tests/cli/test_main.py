@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.cli.main import COMMANDS, main
+from tests.cli.command import run
 
 LOADED = """
 import sys
@@ -49,3 +50,18 @@ def test_a_command_that_there_is_not_is_misuse(capsys: pytest.CaptureFixture[str
         main(["validat"])
     assert ended.value.code == 2
     assert "validate" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["validat"], "'validate'"),
+        ([], "COMMAND"),
+        (["validate", "--formt"], "see `selfconf validate --help`"),
+        (["configure", "t.ttl", "--strategy", "worst"], "'worst'"),
+    ],
+)
+def test_misuse_is_one_sentence_that_points_to_the_help(
+    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(capsys, *arguments).is_one_sentence(words, "--help`")

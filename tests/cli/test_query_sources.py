@@ -119,3 +119,11 @@ def test_what_is_deployed_lies_in_the_dataset(inhabited: Home, capsys: pytest.Ca
     assert program.end() == 0
     outcome = run(capsys, "query", text, "--format", "csv", *inhabited.arguments())
     assert outcome.out.split() == ["c"]
+
+
+def test_a_byte_order_mark_before_a_query_is_no_part_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.ttl").write_text("<urn:a> a <https://w3id.org/selfconf#Component> , <urn:Kind> .")
+    (tmp_path / "b.rq").write_bytes(b"\xef\xbb\xbfASK { ?s a <urn:Kind> }")
+    outcome = run(capsys, "query", str(tmp_path / "b.rq"), "--ads", str(tmp_path))
+    assert (outcome.code, outcome.out) == (0, "true\n")
+    assert run(capsys, "query", "-", "--ads", "-").is_one_sentence("- is standard input")

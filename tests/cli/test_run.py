@@ -131,16 +131,18 @@ def test_a_dormant_component_behind_a_shell_is_started_too(home: Home) -> None:
 
 
 def test_a_run_with_advertisements_brings_a_site_of_its_own_and_takes_it_away_again(home: Home) -> None:
+    (home.folder / "start.sh").write_text('echo "here is $1"\nexec python "$(dirname "$0")/components.py" "$1"\n')
     for name in ("sonar", "encoder", "tracker", "control", "drive"):
         path = home.folder / "ads" / f"{name}.ttl"
-        command = f"python {home.folder}/components.py {name}"
+        command = f"sh {home.folder}/start.sh {name}"
         text = PREFIXES + ADVERTISEMENTS[name].rstrip(" .") + f' ; sc:grounding [ sc:command "{command}" ] .\n'
         path.write_text(text)
     run = home.run("--ads", "ads")
-    run.act("running")
+    run.act("running")  # every line until then is JSON
     assert home.active("tracker", "control", "drive") == {"tracker", "control", "drive"}
     assert run.end(signal.SIGINT) == 0
     assert list(home.runtime.glob("*.json")) == []
+    assert all(f"here is {name}\n" in run.complaints for name in ("sonar", "encoder", "tracker", "control", "drive"))
 
 
 def test_no_peer_is_one_sentence_and_exit_code_2(home: Home) -> None:

@@ -8,7 +8,7 @@ from io import StringIO
 
 import pytest
 
-from selfconf.cli.terminal import Terminal, guard, plain
+from selfconf.cli.terminal import Terminal, guard, plain, show
 
 
 def test_what_steers_is_spelt_out_and_what_does_not_stays() -> None:
@@ -28,3 +28,18 @@ def test_only_a_terminal_is_guarded_and_only_once(monkeypatch: pytest.MonkeyPatc
         assert sys.stdout.fileno() == terminal.fileno()
         print("red \x1b[31m", flush=True)
         assert screen.read(100) == b"red \\x1b[31m\r\n"
+
+
+def test_what_nobody_reads_ends_nothing_and_what_cannot_be_encoded_is_escaped(monkeypatch: pytest.MonkeyPatch) -> None:
+    ours, theirs = os.pipe()
+    with os.fdopen(theirs, "w", encoding="utf-8", errors="strict") as pipe:
+        monkeypatch.setattr(sys, "stdout", pipe)
+        monkeypatch.setattr(sys, "stderr", None)
+        guard()
+        show("file \udcff")
+        assert os.read(ours, 100) == b"file \\udcff\n"
+        os.close(ours)
+        show("more than is read")
+        show("and yet more")
+        with sys.stderr as nowhere:
+            show("nothing", nowhere)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import re
 import subprocess
 import sys
@@ -236,3 +237,23 @@ def test_good_advertisements_pass_without_rdflib(folder: Path) -> None:
 
 def test_severities_are_words() -> None:
     assert [severity.value for severity in Severity] == ["error", "warning"]
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_a_file_name_that_is_not_utf8_is_escaped(folder: Path, form: str) -> None:
+    (folder / "latin").mkdir()
+    (folder / "latin" / os.fsdecode(b"\xff.ttl")).write_text("bad")
+    for locale in ("C", "C.UTF-8"):
+        command = (sys.executable, "-m", "selfconf", "validate", "latin", "--format", form)
+        done = subprocess.run(command, capture_output=True, env={**os.environ, "LC_ALL": locale}, check=False)
+        assert (done.returncode, b"Traceback" in done.stderr) == (2, False)
+        shown = {"sarif": "%FF.ttl", "junit": "\N{REPLACEMENT CHARACTER}.ttl"}.get(form, "\\udcff.ttl")
+        assert shown in done.stdout.decode("utf-8")
+
+
+def test_a_warning_about_an_empty_folder_counts_no_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "empty").mkdir()
+    main(["validate", "empty"])
+    assert capsys.readouterr().err == "1 warning; 0 files conform.\n"
+    main(["validate", "empty", "good.ttl"])
+    assert capsys.readouterr().err == "1 warning; 1 file conforms.\n"

@@ -30,10 +30,14 @@ def summary(report: Report) -> str:
     number = len(report.files)
     files = f"{number} file{'s' * (number != 1)}"
     if not report.diagnostics:
-        return f"{files} conform{'s' * (number == 1)}."
-    counted = [_counted(report.errors, "error"), _counted(report.warnings, "warning")]
-    concerned = len({found.file for found in report.diagnostics})
-    return f"{' and '.join(filter(None, counted))} in {concerned} of {files}."
+        return f"{_conforming(files, number)}."
+    counted = " and ".join(filter(None, (_counted(report.errors, "error"), _counted(report.warnings, "warning"))))
+    concerned = len({found.file for found in report.diagnostics}.intersection(report.files))
+    return f"{counted} in {concerned} of {files}." if concerned else f"{counted}; {_conforming(files, number)}."
+
+
+def _conforming(files: str, number: int) -> str:
+    return f"{files} conform{'s' * (number == 1)}"
 
 
 def _counted(number: int, noun: str) -> str:
