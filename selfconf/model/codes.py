@@ -49,6 +49,10 @@ _TEMPLATE = ":radio a sc:Template ; sc:roles ( :source :sink ) ."
 _SOURCE = ":source a sc:Role ; sh:class rob:Tuner ; sc:feeds :sink ."
 _SINK = ":sink a sc:Role ; sh:class rob:Speaker ."
 _PAIR = f"{_TEMPLATE}\n{_SOURCE}\n{_SINK}"
+_BOUND = (
+    f"{_PAIR}\n:radio sc:parameter :room .\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n"
+    ':room a sc:Parameter ; sc:name "room" .\n'
+)
 _CAST = (
     "sc:assignment [ a sc:Assignment ; sc:role :source ; sc:component :tuner ] ,\n"
     "                  [ a sc:Assignment ; sc:role :sink ; sc:component :speaker ]"
@@ -294,22 +298,22 @@ CODES: tuple[Code, ...] = (
     Code(
         "SC-K01", "A task has exactly one template, given by its IRI.",
         "A task is a template with bindings.",
-        ":music a sc:Task .", ":music a sc:Task ; sc:template :radio .",
+        ":music a sc:Task .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
         ("TaskTyped", "TaskTemplateOnce", "TaskTemplateIri"),
     ),
     Code(
         "SC-K02", "A binding has exactly one parameter and exactly one value.",
         "To leave a parameter free, leave out its binding.",
-        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ] .",
-        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
+        f"{_BOUND}:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ] .",
+        f"{_BOUND}:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
         ("BindingNode", "BindingParameterOnce", "BindingParameterIri", "BindingValueOnce"),
     ),
     Code(
         "SC-K03", "A task binds each parameter at most once.",
         "A parameter has one value for all roles that mention it.",
-        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] ,\n"
+        f"{_BOUND}:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] ,\n"
         "    [ sc:parameter :room ; sc:value :bedroom ] .",
-        ":music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
+        f"{_BOUND}:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
         ("BindingsDistinct",),
     ),
     Code(
@@ -318,6 +322,13 @@ CODES: tuple[Code, ...] = (
         f"{_PAIR}\n:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
         f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
         ("BindingKnown",),
+    ),
+    Code(
+        "SC-K05", "A task stands in one file with its template.",
+        "A task is configured from one file; a task whose template is elsewhere is not found there.",
+        ":music a sc:Task ; sc:template :radio .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
+        ("TaskTemplateHere",),
+        Severity.WARNING,
     ),
     Code(
         "SC-C01", "A configuration has exactly one template, and at most one task, epoch and time.",

@@ -13,7 +13,8 @@ from selfconf.model.template import Parameter, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import violations
-from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf.shape_terms import LITERAL
+from selfconf.rdf.templates import TaskDocument, shape_statements
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SH, TYPE
 
@@ -78,9 +79,23 @@ def complete(given: TaskDocument) -> TaskDocument:
                 raise BindingError(
                     f"the parameter {parameter.name!r} needs a value; give it with --bind {parameter.name}=..."
                 )
+            elif place := _rigid(given, parameter):
+                raise BindingError(
+                    f"the parameter {parameter.name!r} cannot be left free, for it stands in sh:{place.short}; "
+                    f"give it a value with --bind {parameter.name}=..."
+                )
         if parameter.iri in bindings:
             _check(parameter, bindings[parameter.iri], document)
     return TaskDocument(Task(task.template, bindings, task.iri), document)
+
+
+def _rigid(given: TaskDocument, parameter: Parameter) -> IRI | None:
+    """The property of a shape in which a parameter stands and which asks for a literal: no search finds a limit."""
+    for role in given.task.template.roles:
+        for predicate, value in shape_statements(given.document, role.iri):
+            if value == parameter.iri and predicate in LITERAL:
+                return predicate
+    return None
 
 
 def _check(parameter: Parameter, value: Term, document: Document) -> None:

@@ -10,7 +10,7 @@ the other; whether signals match is seen in the widest sense, that of the loaded
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from rdflib import RDF, SH, Literal, URIRef
@@ -48,7 +48,10 @@ class Ask(NamedTuple):
 def idle_loops(file: File) -> Iterator[Diagnostic]:
     """Loops of roles that feed only each other, with no actuator among them."""
     for roles, links in _templates(file):
-        after = {role: _reached(role, links) for role in roles}
+        feeds: dict[Node, set[Node]] = {}
+        for link in links:
+            feeds.setdefault(link.source, set()).add(link.sink)
+        after = {role: _reached(role, feeds) for role in roles}
         loops = {frozenset(two for two in after[one] if one in after[two]) for one in roles if one in after[one]}
         for loop in loops:
             inside = [link for link in links if link.source in loop]
@@ -106,13 +109,13 @@ def _templates(file: File) -> Iterator[tuple[list[Node], list[Link]]]:
         yield roles, links
 
 
-def _reached(role: Node, links: Iterable[Link]) -> set[Node]:
+def _reached(role: Node, feeds: Mapping[Node, set[Node]]) -> set[Node]:
     """The roles that a role feeds, also by way of others."""
     found: set[Node] = set()
     waiting = [role]
     while waiting:
         source = waiting.pop()
-        fed = {link.sink for link in links if link.source == source} - found
+        fed = feeds.get(source, set()) - found
         found |= fed
         waiting += fed
     return found

@@ -57,11 +57,13 @@ class Violation:
 
 _NAMING = (SHAPES.PortNamesDistinct, SHAPES.OperationalNamesDistinct)
 """Shapes whose queries only find what `_names_repeat` sees first."""
+_LISTING = (SHAPES.RolesList, SHAPES.RolesDistinct, SHAPES.FedRoleListed)
+"""Shapes whose queries only find what `_lists_stray` sees first; rdflib goes down a list by recursion."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shapes:
-    """The shapes, and what is left of them for a file in which no component repeats a name.
+    """The shapes, and what is left of them for a file in which no component repeats a name and no list of roles strays.
 
     pySHACL parses the query of a SPARQL constraint for each focus node, which takes longer than all else.
     """
@@ -74,13 +76,13 @@ class Shapes:
         """Set aside what is not always needed."""
         simple = Graph()
         for triple in shapes:
-            if triple[0] not in _NAMING:
+            if triple[0] not in (*_NAMING, *_LISTING):
                 simple.add(triple)
         return cls(shapes, simple)
 
     def needed(self, graph: Graph) -> Graph:
         """The shapes that a file may violate."""
-        return self.all if _names_repeat(graph) else self.simple
+        return self.all if _names_repeat(graph) or _lists_stray(graph) else self.simple
 
 
 def _names_repeat(graph: Graph) -> bool:
@@ -89,6 +91,24 @@ def _names_repeat(graph: Graph) -> bool:
             names = [name for node in graph.objects(component, link) for name in graph.objects(node, SC.name)]
             if len(names) != len(set(names)):
                 return True
+    return False
+
+
+def _lists_stray(graph: Graph) -> bool:
+    """Whether a list of roles has no end or two, repeats a role, or holds one that feeds what is not in it."""
+    for template in set(graph.subjects(SC.roles)):
+        roles: list[Node] = []
+        passed: set[Node] = set()
+        cells = list(graph.objects(template, SC.roles))
+        while len(cells) == 1 and cells[0] != RDF.nil and cells[0] not in passed:
+            passed.add(cells[0])
+            roles += graph.objects(cells[0], RDF.first)
+            cells = list(graph.objects(cells[0], RDF.rest))
+        known = set(roles)
+        if cells != [RDF.nil] or len(known) != len(roles):
+            return True
+        if any(fed not in known for role in known for fed in graph.objects(role, SC.feeds)):
+            return True
     return False
 
 

@@ -7,12 +7,19 @@ rdflib with literal normalisation off for the whole process, and any other store
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterable, Sequence
 
 import rdflib
 from pyparsing import ParseException
 from pyshacl import validate
-from pyshacl.errors import ConstraintLoadError, ReportableRuntimeError, ShapeLoadError, ValidationFailure
+from pyshacl.errors import (
+    ConstraintLoadError,
+    ReportableRuntimeError,
+    ShapeLoadError,
+    ShapeRecursionWarning,
+    ValidationFailure,
+)
 
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
@@ -22,6 +29,10 @@ from selfconf.rdf.queries import faults
 SECONDS = 30.0
 """How long one shape may be judged: what a pattern or query of it is matched against is untrusted."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
+_MESSAGE = _SH.resultMessage
+_ASKING = rdflib.URIRef("urn:selfconf:asking")
+_DEEPEST = 16
+"""How many shapes within shapes pySHACL follows: its 15, and the one that asks."""
 _TARGETS = frozenset(
     (_SH.targetClass, _SH.targetNode, _SH.targetSubjectsOf, _SH.targetObjectsOf, _SH.target, _SH.targetWhere)
 )
@@ -57,9 +68,7 @@ def violations(
         raise TemplateError(f"the shape {shape!r} is not evaluated: {reason}", file=source)
     try:
         with deadline(SECONDS):
-            _, report, text = validate(
-                subjects, shacl_graph=aimed(shapes, shape, focus), inference="none", advanced=False
-            )
+            report, text = judged(subjects, aimed(shapes, (shape,), focus))
     except TimeUp:
         raise TemplateError(
             f"judging {len(focus)} components by the shape {shape!r} takes more than {SECONDS:g} s; "
@@ -67,38 +76,57 @@ def violations(
             file=source,
         ) from None
     except _ILL_FORMED as error:
-        raise TemplateError(
-            f"the shape {shape!r} is not well-formed: {_first_line(str(error))}", file=source
-        ) from error
+        raise TemplateError(f"the shape {shape!r} is not well-formed: {reason_of(error)}", file=source) from error
     if isinstance(report, ValidationFailure) or not isinstance(report, rdflib.Graph):
-        raise TemplateError(f"the shape {shape!r} cannot be judged: {_first_line(text)}", file=source)
-    wanted = set(focus)
+        raise TemplateError(f"the shape {shape!r} cannot be judged: {first_line(text)}", file=source)
     found: dict[IRI, str] = {}
     for result in report.objects(predicate=_SH.result):
-        node = IRI(str(report.value(result, _SH.focusNode)))
-        if node in wanted:
-            message = str(report.value(result, _SH.resultMessage) or "does not conform")
-            found[node] = min(message, found.get(node, message))
+        messages = [str(said) for one in report.objects(result, _SH.detail) for said in report.objects(one, _MESSAGE)]
+        found[IRI(str(report.value(result, _SH.focusNode)))] = min(messages, default="does not conform")
     return found
 
 
-def aimed(shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI]) -> rdflib.Graph:
-    """The shapes with one target: `focus`, for `shape`.
+def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
+    """The report of pySHACL and its text.
 
-    Not `focus_nodes` and `use_shapes`: under the latter pySHACL 0.40 takes every other shape that has an IRI for
-    absent, so that `sh:property :named` asks for nothing.
+    That a shape comes back to itself, it would tell on stderr; SHACL leaves open what such a shape means (3.4.3), and
+    pySHACL takes it to hold where it comes back.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ShapeRecursionWarning)
+        _, report, text = validate(
+            subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST
+        )
+    return report, text
+
+
+def aimed(shapes: rdflib.Graph, wanted: Iterable[IRI], focus: Sequence[IRI]) -> rdflib.Graph:
+    """The shapes with one target: each node of `focus`, for a shape that asks by `sh:node` for those that are wanted.
+
+    So each result is about a node that does not conform to one of them, what it lacks being details. Their own results
+    would not tell: those of a property shape within a property shape name the value as their focus node. And not
+    `focus_nodes` and `use_shapes`: under the latter pySHACL 0.40 takes every other shape that has an IRI for absent, so
+    that `sh:property :named` asks for nothing.
     """
     found = rdflib.Graph()
     for subject, predicate, value in shapes:
         if predicate not in _TARGETS and not (predicate == rdflib.RDF.type and value in _CLASSES):
             found.add((subject, predicate, value))
-    aim = rdflib.URIRef(shape)
-    found.add((aim, rdflib.RDF.type, _SH.NodeShape))
+    found.add((_ASKING, rdflib.RDF.type, _SH.NodeShape))
+    found.add((_ASKING, _SH.message, rdflib.Literal("does not conform")))  # else each result lists all that are wanted
+    for aim in map(rdflib.URIRef, wanted):
+        found.add((aim, rdflib.RDF.type, _SH.NodeShape))
+        found.add((_ASKING, _SH.node, aim))
     for node in focus:
-        found.add((aim, _SH.targetNode, rdflib.URIRef(node)))
+        found.add((_ASKING, _SH.targetNode, rdflib.URIRef(node)))
     return found
 
 
-def _first_line(text: str) -> str:
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return lines[0] if lines else "no reason given"
+def reason_of(error: Exception) -> str:
+    """What an error says, or at least what kind of error it is."""
+    return first_line(str(error)) or f"pySHACL meets a {type(error).__name__}"
+
+
+def first_line(text: str) -> str:
+    """The first line of a text that is not blank, or nothing."""
+    return next((line.strip() for line in text.splitlines() if line.strip()), "")

@@ -26,6 +26,8 @@ SWITCHES = _terms("closed", "deactivated", "uniqueLang", "qualifiedValueShapesDi
 LISTS = _terms("in", "languageIn", "and", "or", "xone", "ignoredProperties")
 NAMES = _terms("class", "datatype", "equals", "disjoint", "lessThan", "lessThanOrEquals")
 LIMITS = _terms("minInclusive", "maxInclusive", "minExclusive", "maxExclusive")
+LITERAL = COUNTS | SWITCHES | LIMITS | _terms("pattern", "flags")
+"""What has a literal as its value."""
 NODES = _terms("node", "not", "property", "qualifiedValueShape", "sparql")
 KINDS = _terms("IRI", "BlankNode", "Literal", "BlankNodeOrIRI", "BlankNodeOrLiteral", "IRIOrLiteral")
 ONLY_WITH_A_PATH = _terms("minCount", "maxCount", "uniqueLang", "lessThan", "lessThanOrEquals", "qualifiedValueShape")

@@ -159,6 +159,11 @@ def _encoding(source: Source) -> Iterator[Diagnostic]:
         message = f"This is not UTF-8: the byte 0x{octet:02X} cannot stand here."
         advice = "Save the file in the encoding UTF-8."
         yield Diagnostic(source.name, line, column, "SC-S02", message, hint=advice, source=source.line(line))
+        return
+    before, nul, _ = source.octets.decode("utf-8").removeprefix("\ufeff").partition("\0")
+    if nul:
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        yield Diagnostic(source.name, line, column, "SC-S01", "This is not Turtle: it holds a NUL, as binary files do.")
 
 
 def _syntax(source: Source, screened: Screened) -> Iterator[Diagnostic]:

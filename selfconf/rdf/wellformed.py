@@ -27,7 +27,7 @@ from selfconf.model.term import IRI
 from selfconf.rdf.findings import at
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.queries import fault
-from selfconf.rdf.shacl import aimed
+from selfconf.rdf.shacl import aimed, first_line, judged, reason_of
 from selfconf.rdf.shape_terms import ILL_FORMED, ONLY_WITH_A_PATH, unfit
 from selfconf.rdf.vocabulary import SC
 
@@ -69,7 +69,7 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     faults += [fault for look in (_patterns, _queries) for fault in look(graph, positions)]
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
-    for role in () if faults else roles:
+    for role in () if faults or _rehearse(shapes, *roles) is None else roles:
         reason = _rehearse(shapes, role)
         if reason:
             message = f"The shape of this role cannot be evaluated: {reason}"
@@ -178,19 +178,16 @@ def _declared(graph: Graph, constraint: Node) -> Iterator[tuple[str, str]]:
                 yield str(prefix), str(namespace)
 
 
-def _rehearse(shapes: Graph, role: str) -> str | None:
-    """Why a role cannot be evaluated, or None if it can."""
+def _rehearse(shapes: Graph, *roles: str) -> str | None:
+    """Why some roles cannot be evaluated, or None if they can."""
     stage = Graph()
     stage.add((_NOBODY, RDF.type, URIRef(SC.Component)))
     try:
-        _, report, text = pyshacl.validate(
-            stage, shacl_graph=aimed(shapes, IRI(role), [IRI(_NOBODY)]), inference="none"
-        )
+        report, text = judged(stage, aimed(shapes, map(IRI, roles), [IRI(_NOBODY)]))
     except (ReportableRuntimeError, AssertionError, ValueError, TypeError, KeyError) as error:
-        return _first_sentence(str(error))
-    return _first_sentence(text) if isinstance(report, ValidationFailure) else None
+        return _sentence(reason_of(error))
+    return _sentence(first_line(text)) if isinstance(report, ValidationFailure) else None
 
 
-def _first_sentence(text: str) -> str:
-    line = next((line.strip() for line in text.splitlines() if line.strip()), "no reason given")
-    return line if line.endswith(".") else f"{line}."
+def _sentence(text: str) -> str:
+    return text if text.endswith(".") else f"{text}."

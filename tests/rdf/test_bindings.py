@@ -99,3 +99,16 @@ def test_a_task_binds_for_itself_and_may_not_be_contradicted() -> None:
     assert bindings.complete(task).task.by_name()["goal"] == Literal("y")
     with pytest.raises(BindingError, match="bound twice"):
         bindings.bind(task, [("goal", "z")])
+
+
+@pytest.mark.parametrize("place", ["minInclusive", "maxExclusive", "minCount", "pattern"])
+def test_a_limit_cannot_be_left_free(place: str) -> None:
+    text = (
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
+        " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ."
+        f" :r a sc:Role ; sh:property [ sh:path :n ; sh:{place} :x ] ."
+    )
+    task = templates.read(turtle.parse(text, "t.ttl"))
+    with pytest.raises(BindingError, match=rf"'x' cannot be left free, for it stands in sh:{place}; .*--bind x="):
+        bindings.complete(task)
+    assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings

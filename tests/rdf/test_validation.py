@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -204,3 +205,18 @@ def test_a_misspelt_term_comes_with_what_was_probably_meant() -> None:
 
 def test_two_diagnostics_are_equal_whatever_line_they_show() -> None:
     assert Diagnostic("a", 1, 1, "SC-S01", "x", source="y") == Diagnostic("a", 1, 1, "SC-S01", "x")
+
+
+def test_a_file_with_a_nul_is_no_turtle_at_the_place_of_the_nul() -> None:
+    text = b'# a note\n<urn:x:a> <urn:x:p> "a\x00b" .\n'
+    report = validate([Source("nul.ttl", text)], SHAPES, ONTOLOGIES)
+    assert [(found.line, found.column, found.code) for found in report.diagnostics] == [(2, 23, "SC-S01")]
+    assert report.unreadable == {"nul.ttl"}
+
+
+def test_a_chain_of_two_thousand_roles_conforms() -> None:
+    names = [f":r{number}" for number in range(2_000)]
+    chain = "".join(f"{one} sc:feeds {after} .\n" for one, after in pairwise(names))
+    roles = "".join(f"{one} a sc:Role ; sh:class rob:Tuner .\n" for one in names)
+    text = f"{PREAMBLE}:t a sc:Template ; sc:roles ( {' '.join(names)} ) .\n{chain}{roles}"
+    assert not validate([Source("t.ttl", text.encode())], SHAPES, ONTOLOGIES).diagnostics
