@@ -9,13 +9,17 @@ PYTHON ?= $(shell for p in python3.11 python3.10 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && echo $$p && exit; done)
 SEEDS  ?= 20
 
-.PHONY: demo test check package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test nightly check package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
 
 test: $(VENV)/with-dev
 	$(BIN)/python -m pytest
+
+# Ten thousand random ecologies for each property of the search, against every oracle; about twenty minutes.
+nightly: $(VENV)/with-dev
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest tests/search tests/test_certificate.py
 
 check: $(VENV)/with-dev lint types floors shapes docs-check test package
 

@@ -519,6 +519,18 @@ def test_what_is_deployed_is_rdf_with_what_it_revises_and_why(lab: Lab) -> None:
     assert second.values(revision, PROV.wasRevisionOf) == [name]
     (failure,) = second.instances(SC.Failure)
     assert second.values(failure, SC.component) == [iri("person-tracker")]
+    ((node, replaced),) = [
+        (node, second.value(node, SC.replaces))
+        for node in second.values(revision, SC.assignment)
+        if second.values(node, SC.replaces)
+    ]
+    assert replaced == iri("person-tracker")
+    assert second.value(node, SC.component) == iri("absolute-odometry")
+    assert second.values(node, SC.passedOver) == [iri("person-tracker")]
+    task = second.value(revision, SC.task)
+    assert task is not None
+    bound = {second.value(b, SC.parameter): second.value(b, SC.value) for b in second.values(task, SC.binding)}
+    assert bound[iri("robot")] == iri("Astrid")
 
 
 def test_no_broad_question_changes_anything(lab: Lab) -> None:
