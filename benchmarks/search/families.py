@@ -119,6 +119,14 @@ def distinct(roles: int, components: int) -> Problem:
     return made([everybody] * roles, ())
 
 
+def scarce(roles: int, share: float, seed: int) -> Problem:
+    """As many components as roles, and each role takes a share of them, so that all can be matched."""
+    rng = random.Random(seed)
+    everybody = [Candidate(profile(f"c{k:04}")) for k in range(roles)]
+    sure = rng.sample(range(roles), roles)
+    return made([[c for k, c in enumerate(everybody) if k == own or rng.random() < share] for own in sure], ())
+
+
 def satisfiability(variables: int, ratio: float, seed: int) -> Problem:
     """Random 3-SAT as one sink: a feeder role per variable with two candidates, an input per clause."""
     rng = random.Random(seed)

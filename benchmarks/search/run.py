@@ -40,6 +40,8 @@ def instances(full: bool) -> Iterator[Instance]:
     for k in (12, 60, 120, *((240,) if full else ())):
         yield Instance("distinct", f"{k} roles, {k} components", k, partial(f.distinct, k, k))
         yield Instance("distinct, impossible", f"{k} roles, {k - 1} components", k, partial(f.distinct, k, k - 1))
+    for k in (60, 120, 240):
+        yield Instance("distinct, scarce", f"{k} roles, {k} components", k, partial(f.scarce, k, 0.1, SEED))
     for variables in (50, 100, 150):
         for seed in range(SEED, SEED + (5 if full else 2)):
             make = partial(f.satisfiability, variables, 4.26, seed)

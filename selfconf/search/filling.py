@@ -2,7 +2,9 @@
 
 Slots are filled in order and take their candidates in order, so that solutions come in lexicographic order, the
 least first. It looks at no candidate that it does not try, where making a problem compact costs a pass over all of
-them; in return it sees late that a need cannot be served: once a role and all that feed it are filled.
+them; in return it sees late that a need cannot be served: once a role and all that feed it are filled. Where roles
+share candidates, those who play already are passed over for a fraction of a step, so that many roles that draw on
+one pool are filled without a matching.
 """
 
 from __future__ import annotations
@@ -15,6 +17,9 @@ from selfconf.search.walk import Budget
 
 PORTS = 4
 """How many ports can be compared for the price of a step."""
+
+TAKEN = 32
+"""How many candidates that play already can be passed over for the price of a step."""
 
 HEADROOM = 8
 """How many slots more than it has reached it may have taken steps for."""
@@ -90,12 +95,16 @@ class Filling:
     def _next(self, place: int, start: int) -> int | None:
         """Put the next candidate that fits into a slot; its number, or None if there is none or the budget ends."""
         role, work, budget, values = self.slots[place], self._work[place], self.budget, self._values[-1]
+        passed, taken = 0, self.taken
         for number, candidate in self.candidates(role, start):
-            if budget.steps is not None:
+            free = candidate.profile.component not in taken
+            if not free:
+                passed += 1
+            if budget.steps is not None and (free or passed % TAKEN == 0):
                 if budget.steps <= 0:
                     return None
-                budget.steps -= work
-            if candidate.profile.component in self.taken:
+                budget.steps -= work if free else 1
+            if not free:
                 continue
             narrowed = self.problem.narrowed(values, candidate) if values else values
             if narrowed is None:

@@ -281,8 +281,10 @@ class Clauses:
             literals = self.plays[role]
             current = next(i for i in range(start, len(literals)) if self.holds(literals[i]))
             while current > start:
-                earlier = self.literal()
-                self.add([-earlier, *literals[start:current]])
+                earlier = literals[start]
+                if current > start + 1:
+                    earlier = self.literal()
+                    self.add([-earlier, *literals[start:current]])
                 found = self.solve((earlier,), budget)
                 if isinstance(found, Undecided):
                     return found

@@ -19,6 +19,7 @@ from selfconf.search.requirement import pruned
 from selfconf.search.walk import Budget, walk
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problems
+from tests.search.worlds import problem as written
 
 
 def _numbers(problem: Problem) -> list[int] | None:
@@ -72,6 +73,19 @@ def test_a_few_steps_find_the_least_solution_or_nothing(problem: Problem) -> Non
     found = Filling(problem, Budget(6)).first()
     if found is not None:
         assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == _numbers(problem)
+
+
+def test_many_roles_that_draw_on_one_pool_are_filled_in_a_few_steps_each() -> None:
+    pool = [component(f"c{number:02}") for number in range(60)]
+    given_ = written({f"role{number:02}": pool for number in range(60)})
+    found = Filling(given_, Budget(4 * 60)).first()
+    assert found == [[candidate] for candidate in given_.candidates[0]]
+
+
+def test_passing_over_those_who_play_already_uses_up_a_budget_too() -> None:
+    pool = [component(f"c{number:02}") for number in range(60)]
+    given_ = written({f"role{number:02}": pool for number in range(60)})
+    assert Filling(given_, Budget(60)).first() is None
 
 
 @given(problems())
