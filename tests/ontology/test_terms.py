@@ -1,4 +1,4 @@
-"""The ontologies: every term is declared, named, defined, and used as it is declared."""
+"""The ontologies: every term is declared, named, defined, shown by example, and used as it is declared."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, XSD, Graph, Literal, Namespace, URIRef
+from rdflib import DCTERMS, OWL, RDF, RDFS, SH, SKOS, XSD, Graph, Literal, Namespace, URIRef
 from rdflib.collection import Collection
 
 from selfconf import library
@@ -17,6 +17,22 @@ VANN = Namespace("http://purl.org/vocab/vann/")
 ROOT = Path(__file__).resolve().parents[2]
 GRAPHS = {path.stem: Graph().parse(path) for path in library.ontologies()}
 KINDS = {OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDF.Property}
+OURS = "https://w3id.org/selfconf"
+DECLARED = sum(GRAPHS.values(), Graph())
+TERMS = sorted({term for kind in KINDS for term in DECLARED.subjects(RDF.type, kind) if isinstance(term, URIRef)})
+PREFIXES = "".join(
+    f"@prefix {prefix}: <{iri}> .\n"
+    for prefix, iri in {
+        "": "https://example.org/#",
+        "sc": SC,
+        "rob": ROB,
+        "home": f"{OURS}/peis-home#",
+        "rdfs": RDFS,
+        "sh": SH,
+        "xsd": XSD,
+        "unit": "http://qudt.org/vocab/unit/",
+    }.items()
+)
 
 NAMED_IN_THE_MANUAL = re.findall(
     r"\w+",
@@ -67,24 +83,18 @@ def test_every_term_of_ours_that_is_used_is_declared(path: Path) -> None:
             assert term in declared, term
 
 
-def test_examples_are_turtle() -> None:
-    prefixes = "".join(
-        f"@prefix {prefix}: <{iri}> .\n"
-        for prefix, iri in {
-            "": "https://example.org/#",
-            "sc": SC,
-            "rob": ROB,
-            "sh": "http://www.w3.org/ns/shacl#",
-            "xsd": XSD,
-            "unit": "http://qudt.org/vocab/unit/",
-        }.items()
-    )
-    for graph in GRAPHS.values():
-        for example in graph.objects(None, SKOS.example):
-            text = str(example)
-            if not text.endswith("."):
-                text = f":x {text} ." if not text.startswith("[") else f":x :y {text} ."
-            Graph().parse(data=prefixes + text, format="turtle")
+@pytest.mark.parametrize("term", TERMS, ids=lambda term: term.removeprefix(OURS))
+def test_every_class_and_property_has_examples_that_are_turtle_and_mention_it(term: URIRef) -> None:
+    examples = list(DECLARED.objects(term, SKOS.example))
+    assert examples
+    for example in examples:
+        text = str(example)
+        if not text.endswith("."):
+            text = f":x :y {text} ." if text.startswith("[") else f":x {text} ."
+        graph = Graph().parse(data=PREFIXES + text, format="turtle")
+        assert term in {part for triple in graph for part in triple}, text
+        for mentioned in {part for triple in graph for part in triple if str(part).startswith(OURS)}:
+            assert mentioned in TERMS, mentioned
 
 
 def test_every_signal_type_lists_fields_with_a_datatype_and_known_units() -> None:
