@@ -16,10 +16,7 @@ from selfconf.rdf.vocabulary import LABEL, OWL, RDF, ROB, SC, TYPE, Namespace
 
 ROOT = Path(__file__).resolve().parent.parent
 NOT_IN_CODE = {
-    "Binding": "a binding is found through sc:binding; its type adds nothing",
     "Port": "what inputs and outputs have in common, for ontologists",
-    "replaces": "for authors of provenance of their own",
-    "task": "for configurations that others write; a configurator is given a template with bindings",
 }
 """Terms of the ontology that no code names, and why."""
 KINDS = (RDF.Property, OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, OWL.NamedIndividual)
