@@ -16,7 +16,7 @@ from selfconf.errors import TemplateError
 from selfconf.model.refusal import TooFewEligible
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Answer, Cause, Fail, Release, Status, Verdict
-from selfconf.rdf import turtle, values
+from selfconf.rdf import shacl, turtle
 from selfconf.rdf.vocabulary import PROV, SC
 from selfconf.sdk.body import GRACE
 from selfconf.sdk.component import Refused
@@ -574,7 +574,7 @@ def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
 
 
 def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(values, "SECONDS", 0.05)
+    monkeypatch.setattr(shacl, "SECONDS", 0.05)
     broken = NAVIGATE + ':drive sh:pattern "^([^!]+)+!$" .\n'
     agent = lab.agent(broken)
     assert lab.until(lambda: bool(lab.ended))
