@@ -30,7 +30,7 @@ class Crew:
 
     def __init__(self, environment: Mapping[str, str] | None = None) -> None:
         path = os.pathsep.join(filter(None, (str(Path(__file__).parent.parent), os.environ.get("PYTHONPATH"))))
-        own = {"PYTHONUNBUFFERED": "1", "PYTHONPATH": path}
+        own = {"PYTHONPATH": path}
         self._environment = {**os.environ, **(environment or {}), **lineage(), **own}
         self._processes: dict[str, subprocess.Popen[str]] = {}
         self._lines: queue.SimpleQueue[Line] = queue.SimpleQueue()

@@ -14,10 +14,8 @@ it is told to. What happened goes to stdout, a line of JSON for each event, and 
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from pathlib import Path
-from typing import Any
 
 from selfconf.sdk import Ending, Host
 from selfconf.sdk.program import add_connection_arguments, join
@@ -25,6 +23,7 @@ from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
 from sim.geometry import Pose
 from sim.logbook import Logbook
+from sim.say import say
 from sim.world import TIME_STEP, World
 
 PERIOD = 0.1
@@ -158,11 +157,6 @@ def standing_point(apartment: Apartment, name: str) -> Pose:
     if standing is None:
         raise ApartmentError(name, "home:standingPoint", "is missing")
     return standing
-
-
-def say(event: str, **facts: Any) -> None:
-    """A line of JSON on stdout."""
-    print(json.dumps({"event": event, "real": time.time(), **facts}), flush=True)
 
 
 if __name__ == "__main__":

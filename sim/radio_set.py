@@ -6,17 +6,16 @@ it notices, and raises FAIL. For whoever measures a run it writes a line of JSON
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
 from selfconf.sdk import Component, Refused, main
 from selfconf.sdk import Signal as Received
 from sim.radio import CHUNK, RATE, Speaker, StationError, Tuner
+from sim.say import say
 
 ADVERTISEMENTS = "../examples/radio"
 
@@ -66,20 +65,15 @@ class RadioSpeaker(Component):
         self._speaker.render(sound.value)
         if not self._playing:
             self._playing = True
-            say("plays", self.name)
+            say("plays", speaker=self.name, process=os.getpid())
 
     def stopped(self) -> None:
         """Silence; what was played is written to a file if somebody wants it."""
         if self._playing:
-            say("silent", self.name, seconds=round(self._speaker.seconds, 1), level=round(self._speaker.level, 3))
+            seconds, level = round(self._speaker.seconds, 1), round(self._speaker.level, 3)
+            say("silent", speaker=self.name, process=os.getpid(), seconds=seconds, level=level)
         if self._playing and "SIM_SOUND" in os.environ:
             self._speaker.write(Path(os.environ["SIM_SOUND"]) / f"{self.name}.wav")
-
-
-def say(event: str, speaker: str, **facts: float) -> None:
-    """A line of JSON on stdout."""
-    line = {"event": event, "speaker": speaker, "process": os.getpid(), "real": time.time(), **facts}
-    print(json.dumps(line), flush=True)
 
 
 def speaker(file: str) -> type[RadioSpeaker]:

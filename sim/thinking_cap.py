@@ -6,14 +6,13 @@ measures a run it writes one line of JSON to stdout when the first pose of a new
 
 from __future__ import annotations
 
-import json
-import time
 from typing import Any
 
 from selfconf.sdk import Component, Refused, Signal, main
 from sim.apartment import read_apartment
 from sim.goal import GoalError
 from sim.navigator import Navigator
+from sim.say import say
 
 
 class ThinkingCap(Component):
@@ -47,7 +46,7 @@ class ThinkingCap(Component):
             return
         if signal.source != self._source:
             self._source = signal.source
-            print(json.dumps({"event": "first pose", "source": signal.source, "real": time.time()}), flush=True)
+            say("first pose", source=signal.source)
         if self._navigator is None or not {"sonar", "localize"} <= self._newest.keys():
             return
         scan, wheels = self._newest["sonar"].value, self._newest["localize"].value
