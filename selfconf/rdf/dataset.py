@@ -45,10 +45,7 @@ class Dataset:
     def add(self, name: IRI, triples: Iterable[Triple]) -> None:
         """Add triples to a named graph."""
         graph = ox.NamedNode(name)
-        self._store.extend(  # the types: a subject is never a literal
-            ox.Quad(ox_term(s), ox.NamedNode(p), ox_term(o), graph)  # type: ignore[arg-type]
-            for s, p, o in triples
-        )
+        self._store.extend(ox.Quad(ox_term(s), ox.NamedNode(p), ox_term(o), graph) for s, p, o in triples)
 
     def dump(self) -> bytes:
         """Everything in it, as N-Quads."""

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import datetime, timezone
 from types import MappingProxyType
+from typing import overload
 
 import pyoxigraph as ox
 
@@ -18,6 +19,10 @@ from selfconf.rdf.vocabulary import PROV, ROB, SC, TYPE, XSD
 PREFIXES = {"sc": SC.base, "rob": ROB.base, "prov": PROV.base, "xsd": XSD.base}
 
 
+@overload
+def ox_term(value: IRI | BlankNode) -> ox.NamedNode | ox.BlankNode: ...
+@overload
+def ox_term(value: Term) -> ox.NamedNode | ox.BlankNode | ox.Literal: ...
 def ox_term(value: Term) -> ox.NamedNode | ox.BlankNode | ox.Literal:
     """A value of the model as one of Oxigraph's terms."""
     if isinstance(value, IRI):
@@ -30,8 +35,8 @@ def ox_term(value: Term) -> ox.NamedNode | ox.BlankNode | ox.Literal:
 
 
 def _ox_triples(triples: Iterable[Triple]) -> Iterator[ox.Triple]:
-    for subject, predicate, value in triples:  # the types: a subject is never a literal
-        yield ox.Triple(ox_term(subject), ox.NamedNode(predicate), ox_term(value))  # type: ignore[arg-type]
+    for subject, predicate, value in triples:
+        yield ox.Triple(ox_term(subject), ox.NamedNode(predicate), ox_term(value))
 
 
 def ntriples(triples: Iterable[Triple]) -> bytes:
