@@ -19,7 +19,7 @@ from selfconf.cli.why import explained
 from selfconf.configurator.compose import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Reasoning
-from selfconf.model.profile import Input, OperationalParameter, Output, Profile
+from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import STRUCTURE, Advertisement, property_order
@@ -139,8 +139,10 @@ def profiles(graph: rdflib.Graph) -> list[Profile]:
                 component=IRI(component),
                 types=frozenset(IRI(kind) for kind in graph.objects(component, rdflib.RDF.type)),
                 properties=tuple(sorted((pair for pair in said if pair[0] not in STRUCTURE), key=property_order)),
-                inputs=tuple(Input(*port) for port in ports(component, "hasInput", "signalType")),
-                outputs=tuple(Output(*port) for port in ports(component, "hasOutput", "signalType")),
+                ports=Ports(
+                    tuple(Input(*port) for port in ports(component, "hasInput", "signalType")),
+                    tuple(Output(*port) for port in ports(component, "hasOutput", "signalType")),
+                ),
                 parameters=tuple(
                     OperationalParameter(*one) for one in ports(component, "hasParameter", "parameterType")
                 ),

@@ -5,9 +5,10 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
-from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.profile import Input, Output, Ports, Profile
 from selfconf.model.template import Interaction, Parameter, Role, Task, Template
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
@@ -31,10 +32,15 @@ def iri(name: object) -> IRI:
 
 def profile(name: object, inputs: Sequence[object] = (), outputs: Sequence[object] = ()) -> Profile:
     """A component with a port for each signal."""
-    return Profile(
-        iri(name),
-        inputs=tuple(Input(f"i{k}", iri(s)) for k, s in enumerate(inputs)),
-        outputs=tuple(Output(f"o{k}", iri(s)) for k, s in enumerate(outputs)),
+    return Profile(iri(name), ports=ports(tuple(inputs), tuple(outputs)))
+
+
+@lru_cache(maxsize=1_000)
+def ports(inputs: tuple[object, ...], outputs: tuple[object, ...]) -> Ports:
+    """A port for each signal; components that say the same share them, as they do once they have been loaded."""
+    return Ports(
+        tuple(Input(f"i{k}", iri(s)) for k, s in enumerate(inputs)),
+        tuple(Output(f"o{k}", iri(s)) for k, s in enumerate(outputs)),
     )
 
 
@@ -158,20 +164,21 @@ def fleet(robots: int, candidates: int, seed: int) -> Problem:
     domain = tuple(iri(f"robot{k:04}") for k in range(robots))
     variable = Variable(iri("robot"), domain)
     lacks = [rng.randrange(5) if k < robots - 1 else None for k in range(robots)]
-    ports: list[tuple[list[str], list[str]]] = [
+    told: list[tuple[list[str], list[str]]] = [
         ([], ["scan"]),
         ([], ["odometry"]),
         ([], ["pose"]),
         (["scan", "odometry", "pose"], ["velocity"]),
         (["velocity"], []),
     ]
+    only, any_robot = [(1 << k,) for k in range(robots)], (ANY_VALUE,)
     parts = []
-    for role, (inputs, outputs) in enumerate(ports):
+    for role, (inputs, outputs) in enumerate(told):
         owners = [k for k in range(robots) if lacks[k] != role]
         part = []
         for k in range(candidates):
             robot = owners[k % len(owners)]
-            mask = ANY_VALUE if role == 2 and k % 10 == 0 else 1 << robot
-            part.append(Candidate(profile(f"part{role}.{k:06}", inputs, outputs), (mask,)))
+            admits = any_robot if role == 2 and k % 10 == 0 else only[robot]
+            part.append(Candidate(profile(f"part{role}.{k:06}", inputs, outputs), admits))
         parts.append(part)
     return made(parts, NAVIGATION, (variable,))

@@ -1,4 +1,8 @@
-"""One engine on one instance, in a process of its own, with a time limit."""
+"""One engine on one instance, in a process of its own, with a time limit.
+
+Before its time begins, an engine solves some small problems: what a process pays for doing something for the first
+time (importing, loading a shared library, copying pages after a fork) is in nobody's time.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +13,12 @@ import time
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 
-from benchmarks.search.engines import ENGINES
+from benchmarks.search import families as f
+from benchmarks.search.engines import ENGINES, GENERAL
 from selfconf.search.problem import Problem
 
+WARMING = (f.navigation(3, 7001), f.navigation(3, 7001, solvable=False), f.satisfiability(50, 4.26, 7001))
+"""The last for the engines that are not hopeless on it."""
 QUICK = 0.3
 """Seconds; what is quicker is measured several times, and the shortest time counts."""
 
@@ -56,6 +63,8 @@ def _once(engine: str, problem: Problem, limit: float) -> Measured:
 
 def _child(engine: str, problem: Problem, sending: Connection) -> None:
     _own(problem)
+    for small in WARMING if engine in GENERAL or engine == "selfconf" else WARMING[:2]:
+        ENGINES[engine](small)
     sending.send(True)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     start = time.perf_counter()

@@ -24,7 +24,8 @@ PLOTTED = ("navigation", "navigation, impossible", "fleet of 100", "chain", "3-S
 TUNING = """\
 Before it writes clauses, the search looks for a quick answer: depth first over the candidates, for at most
 `FILL_STEPS` steps for each role that it has reached, where `TAKEN` candidates that play already are passed over for the
-price of one; then depth first over the kernel, for at most `WALK_PACE` steps for each option of the roles that it has
+price of one. Then it passes over all candidates to find the few that can matter, beginning with who shares ports where
+a role has more than `FEW`; then depth first over the kernel, for at most `WALK_PACE` steps for each option of the roles that it has
 reached. Then comes the `SOLVER` of python-sat. Each was varied by itself, on seeds 7001 to 7003 and on sizes of the
 same families that are not in the tables above (`python -m benchmarks.search.run --tuning`); solvers that cannot count
 get cardinalities as clauses. A time is a multiple of that with the value chosen, which is in bold; `worst` is the
@@ -169,12 +170,12 @@ def page(rows: Sequence[Row], limit: float, tuned: str = "") -> str:
     setting = (
         f"One run on {platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f},"
         f" Python {platform.python_version()}. Every engine in a process of its own, {limit:g} s for each answer, the"
-        " shortest of three where it takes less than 0.3 s; all start"
-        " from the same problem in their own memory: building a model of it is part of the"
-        " time, importing a library is not. selfconf answers with the lexicographically first configuration, the others"
-        " with any, which is the easier question. python-sat is Glucose 4 with cardinalities as clauses, the usual way;"
-        " MiniCard is the solver of the same library that counts by itself, which selfconf uses in the end too. SPARQL"
-        " asks one query for the whole template, on small sizes."
+        " shortest of three where it takes less than 0.3 s; all start from the same problem in their own memory, after"
+        " a few small ones so that nobody pays for what a process does for the first time: building a model is part of"
+        " the time, importing a library is not. selfconf answers with the lexicographically first configuration, the"
+        " others with any, which is the easier question. python-sat is Glucose 4 with cardinalities as clauses, the"
+        " usual way; MiniCard is the solver of the same library that counts by itself, which selfconf uses in the end"
+        " too. SPARQL asks one query for the whole template, on small sizes."
     )
     parts = [
         "# The search beside general solvers",

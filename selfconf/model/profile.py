@@ -39,6 +39,16 @@ class Output(NamedTuple):
     rate: float | None = None
 
 
+class Ports(NamedTuple):
+    """The functional part of a profile, each sorted by name; components with the same ports may share one of these."""
+
+    inputs: tuple[Input, ...] = ()
+    outputs: tuple[Output, ...] = ()
+
+
+NO_PORTS = Ports()
+
+
 @dataclass(frozen=True, slots=True)
 class OperationalParameter:
     """A parameter that a configurator may set on a component."""
@@ -49,17 +59,26 @@ class OperationalParameter:
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """What a component is. Ports and parameters are sorted by name, properties by predicate and value."""
+    """What a component is. Parameters are sorted by name, properties by predicate and value."""
 
     component: IRI
     types: frozenset[IRI] = frozenset()
     properties: tuple[tuple[IRI, Term], ...] = ()
-    inputs: tuple[Input, ...] = ()
-    outputs: tuple[Output, ...] = ()
+    ports: Ports = NO_PORTS
     parameters: tuple[OperationalParameter, ...] = ()
     preference: float = 0.0
     command: str | None = None
     place: Place | None = field(default=None, compare=False)
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """The ports that accept signals."""
+        return self.ports.inputs
+
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """The ports that issue signals."""
+        return self.ports.outputs
 
     def output(self, name: str) -> Output | None:
         """The output of that name, if there is one."""

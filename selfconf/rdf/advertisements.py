@@ -16,7 +16,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile
+from selfconf.model.profile import Input, OperationalParameter, Output, Place, Ports, Profile
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
@@ -182,8 +182,10 @@ class _Reader:
             properties=tuple(
                 sorted({(p, o) for p, o in statements if p not in STRUCTURE and allowed(p, o)}, key=property_order)
             ),
-            inputs=tuple(sorted(inputs, key=lambda port: port.name)),
-            outputs=tuple(sorted(outputs, key=lambda port: port.name)),
+            ports=Ports(
+                tuple(sorted(inputs, key=lambda port: port.name)),
+                tuple(sorted(outputs, key=lambda port: port.name)),
+            ),
             parameters=tuple(sorted(parameters, key=lambda parameter: parameter.name)),
             preference=self._preference(),
             command=self._command(),

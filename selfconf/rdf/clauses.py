@@ -19,7 +19,7 @@ from operator import attrgetter
 
 import pyoxigraph as ox
 
-from selfconf.model.profile import Input, OperationalParameter, Output, Profile
+from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import advertisements, turtle
 from selfconf.rdf.advertisements import STRUCTURE, allowed
@@ -95,9 +95,9 @@ def _port(found: re.Match[str]) -> Profile:
     """The part of a clause with one port, or one operational parameter, that says nothing but name and type."""
     name, type_ = found["name"], IRI(found["type"])
     if found["link"] == "hasInput":
-        return Profile(_SPOKEN_FOR, inputs=(Input(name, type_),))
+        return Profile(_SPOKEN_FOR, ports=Ports(inputs=(Input(name, type_),)))
     if found["link"] == "hasOutput":
-        return Profile(_SPOKEN_FOR, outputs=(Output(name, type_),))
+        return Profile(_SPOKEN_FOR, ports=Ports(outputs=(Output(name, type_),)))
     return Profile(_SPOKEN_FOR, parameters=(OperationalParameter(name, type_),))
 
 
@@ -129,6 +129,8 @@ class Clauses(dict[str, Clause]):
     def __init__(self) -> None:
         self.suspects: set[Clause] = set()
         """Clauses about which only the careful reader can tell."""
+        self.ports: dict[tuple[Clause, ...], Ports] = {}
+        """What clauses that state ports make together: components that say the same share it."""
         self._slots: dict[object, object] = {}
         self._predicates: dict[str, str] = {}
         self._allowed: dict[str, bool] = {}

@@ -90,8 +90,11 @@ class Partitioner:
         variables = tuple(self._variables(eligible))
         bits = [{value: 1 << number for number, value in enumerate(variable.domain)} for variable in variables]
 
+        masks: dict[tuple[int, ...], tuple[int, ...]] = {}
+
         def admits(found: Eligible) -> tuple[int, ...]:
-            return tuple([_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True)])
+            allowed = tuple([_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True)])
+            return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity who is alike
 
         return Partition(
             tuple(ordered([Candidate(found.profile, admits(found)) for found in role]) for role in eligible), variables

@@ -5,11 +5,14 @@ are numbered. What a candidate needs in a role, what it gives to the roles fed b
 variables be make its *kind*; two candidates of a role with the same ports have the same kind, which is worked out
 once. Output types are expanded upward, once per output and role, to the needs they serve.
 
-*Kernel.* Two cuts, each of which keeps the least solution.
-(1) Let S be the number of all slots. Of each kind of a role the first S suffice: were a later one in a slot of the
-least solution, then at most S - 1 of the first S would play, one of them would be free, and putting it there would
-give a lesser solution. This needs no knowledge of who is eligible for what else.
-(2) Let a group be the candidates that are eligible for exactly the same roles R, with the same kind in each, and k
+*Kernel.* Three cuts, each of which keeps the least solution.
+(1) Of each kind of a role with k slots take the first k candidates. If nobody is among all these twice, they suffice:
+of a least solution give each slot in turn the next of them that is of the kind in that slot. All are different, no
+slot gets a later candidate than it had, and so it is the same solution.
+(2) Otherwise let S be the number of all slots. Of each kind of a role the first S suffice: were a later one in a slot
+of the least solution, then at most S - 1 of the first S would play, one of them would be free, and putting it there
+would give a lesser solution. This needs no knowledge of who is eligible for what else.
+(3) Let a group be the candidates that are eligible for exactly the same roles R, with the same kind in each, and k
 the number of slots of R. For each role of R the first k of the group suffice, by the same argument: members can only
 play in the k slots of R. Keeping one per kind would be wrong as soon as roles share candidates.
 Roles with no slots take no part: nobody plays them before the extension.
@@ -24,29 +27,33 @@ Cost: one pass over the candidates of roles that have slots; after it only kinds
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import compress
 from operator import attrgetter, not_
 
 from selfconf.model.partition import ANY_VALUE, Candidate
-from selfconf.model.profile import Input, Output
+from selfconf.model.profile import Ports
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 from selfconf.search.wiring import Need, Wiring
 
-Ports = tuple[tuple[Input, ...], tuple[Output, ...], tuple[int, ...]]
+Likeness = tuple[Ports, tuple[int, ...]]
+"""All of a candidate that its kind depends on: its ports, and what it lets the variables be."""
 
-ports_of: Callable[[Candidate], Ports] = attrgetter("profile.inputs", "profile.outputs", "admits")
-"""All of a candidate that its kind depends on."""
+likeness: Callable[[Candidate], Likeness] = attrgetter("profile.ports", "admits")
+_PORTS: Callable[[Candidate], Ports] = attrgetter("profile.ports")
+_ADMITS: Callable[[Candidate], tuple[int, ...]] = attrgetter("admits")
+FEW = 32
+"""So many candidates are not worth a pass of their own to see which of them share their ports."""
 
 
 class Kind:
     """What a candidate is to the search, in one role: numbers of needs, and masks of values."""
 
-    __slots__ = ("admits", "gives", "needs", "number", "ports", "role")
+    __slots__ = ("admits", "gives", "likes", "needs", "number", "role")
 
     def __init__(
         self,
@@ -55,10 +62,10 @@ class Kind:
         gives: tuple[int, ...],
         admits: tuple[int, ...],
         number: int = -1,
-        ports: tuple[Ports, ...] = (),
+        likes: tuple[Likeness, ...] = (),
     ) -> None:
         self.role, self.needs, self.gives, self.admits = role, needs, gives, admits
-        self.number, self.ports = number, ports
+        self.number, self.likes = number, likes
         """The number of the first candidate of this kind, and what candidates of this kind have."""
 
 
@@ -110,24 +117,47 @@ def compact(problem: Problem, apart: Collection[IRI] = (), order: Mapping[int, S
     slots = tuple(role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum))
     minima = Counter(slots)
     wiring = Wiring(problem)
-    same: dict[int, list[tuple[int, Kind]]] = {}
-    for role in minima:
-        numbers = range(len(problem.candidates[role])) if order is None else order[role]
-        same[role] = _alike(role, problem.candidates[role], numbers, len(slots), apart, wiring)
-    for role, members in same.items():
-        for kind in {kind: None for _, kind in members}:
-            kind.gives = wiring.served(role, kind.ports[0][1])
-    names = [problem.candidates[role][number].profile.component for role in same for number, _ in same[role]]
-    unshared = len(set(names)) == len(names)
-    left: dict[int, list[Option]] = {}
-    for role, members in same.items():
-        here = problem.candidates[role]
-        some = _first(members, minima[role]) if unshared else members
-        left[role] = [Option(number, here[number].profile.component, kind) for number, kind in some]
-    if not unshared:
+    numbers, most = _enough(problem, apart, order, minima)
+    left = {
+        role: _alike(role, problem.candidates[role], some, most[role], apart, wiring) for role, some in numbers.items()
+    }
+    for role, options in left.items():
+        for kind in dict.fromkeys([option.kind for option in options]):
+            kind.gives = wiring.served(role, kind.likes[0][0].outputs)
+    if most is not minima:
         left = kernel(left, minima)
-    options = tuple(tuple(left.get(role, ())) for role in range(len(problem.roles)))
-    return Compact(slots, options, tuple(wiring.needs), problem.open_values)
+    return Compact(
+        slots,
+        tuple(tuple(left.get(role, ())) for role in range(len(problem.roles))),
+        tuple(wiring.needs),
+        problem.open_values,
+    )
+
+
+def _enough(
+    problem: Problem,
+    apart: Collection[IRI],
+    order: Mapping[int, Sequence[int]] | None,
+    minima: Mapping[int, int],
+) -> tuple[Mapping[int, Sequence[int]], Mapping[int, int]]:
+    """The candidates of each role that can matter, by number, and how many of each kind suffice: cuts (1) and (2)."""
+    everybody: dict[int, Sequence[int]] = {
+        role: range(len(problem.candidates[role])) if order is None else order[role] for role in minima
+    }
+    slots = dict.fromkeys(minima, sum(minima.values()))
+    if apart:
+        return everybody, slots
+    if not _twice(problem, {role: some[:1] for role, some in everybody.items()}):
+        firsts = {role: _first(problem.candidates[role], some, minima[role]) for role, some in everybody.items()}
+        if not _twice(problem, firsts):
+            return firsts, minima
+    return {role: _first(problem.candidates[role], some, slots[role]) for role, some in everybody.items()}, slots
+
+
+def _twice(problem: Problem, numbers: Mapping[int, Sequence[int]]) -> bool:
+    """Whether some component is among these candidates twice."""
+    names = [problem.candidates[role][number].profile.component for role, some in numbers.items() for number in some]
+    return len(set(names)) < len(names)
 
 
 def _alike(
@@ -137,54 +167,56 @@ def _alike(
     most: int,
     apart: Collection[IRI],
     wiring: Wiring,
-) -> list[tuple[int, Kind]]:
-    """The candidates that are among the first so many of their kind: their numbers, in the order given, and kinds.
-
-    The one pass over all candidates: who has what enough others have is passed over without a step of Python.
-    """
-    key: Callable[[Candidate], Hashable] = _own(apart) if apart else ports_of
+) -> list[Option]:
+    """Those of some candidates that are among the first so many of their kind."""
+    many = len(numbers) > most
     kinds: dict[Hashable, Kind] = {}
     met: dict[Kind, int] = {}
-    enough: set[Hashable] = set()
-    found: list[tuple[int, Kind]] = []
-    ordered = candidates if isinstance(numbers, range) else [candidates[number] for number in numbers]
-    here: Iterable[tuple[int, Candidate]] = zip(numbers, ordered, strict=True)
-    if len(ordered) > most:
-        here = compress(here, map(not_, map(enough.__contains__, map(key, ordered))))
-    for number, candidate in here:
-        same = key(candidate)
+    found: list[Option] = []
+    for number in numbers:
+        candidate = candidates[number]
+        component = candidate.profile.component
+        like = likeness(candidate)
+        same = (like, component) if component in apart else like
         kind = kinds.get(same)
         if kind is None:
-            ports = ports_of(candidate)
-            kind = kinds[same] = Kind(role, wiring.needed(role, ports[0]), (), ports[2], number, (ports,))
-            seen = met[kind] = 1
-        else:
-            seen = met[kind] = met[kind] + 1
-        found.append((number, kind))
-        if seen == most:
-            enough.add(same)
+            kind = kinds[same] = Kind(role, wiring.needed(role, like[0].inputs), (), like[1], number, (like,))
+        if many:
+            seen = met[kind] = met.get(kind, 0) + 1
+            if seen > most:
+                continue
+        found.append(Option(number, component, kind))
     return found
 
 
-def _first(members: list[tuple[int, Kind]], most: int) -> list[tuple[int, Kind]]:
-    """The first so many members of each kind."""
-    left = dict.fromkeys([kind for _, kind in members], most)
-    if len(left) == len(members):
-        return members
-    found = []
-    for number, kind in members:
-        if left[kind]:
-            left[kind] -= 1
-            found.append((number, kind))
+def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -> Sequence[int]:
+    """Those among the first so many that share one and the same ports and values.
+
+    The one pass over all candidates: no step of Python for who is passed over, nor a look at what ports say. Ports
+    that say the same but are not shared count as different here.
+    """
+    if len(numbers) <= max(most, FEW):
+        return numbers
+    ordered = candidates if isinstance(numbers, range) else [candidates[number] for number in numbers]
+    shared: list[Hashable] = list(map(id, map(_PORTS, ordered)))
+    if ordered[0].admits:
+        shared = list(zip(shared, map(id, map(_ADMITS, ordered)), strict=True))
+    if most == 1:
+        places = sorted(dict(zip(reversed(shared), reversed(range(len(shared))), strict=True)).values())
+        return places if isinstance(numbers, range) else [numbers[place] for place in places]
+    wanted = {one: min(count, most) for one, count in Counter(shared).items()}
+    left = sum(wanted.values())
+    found: list[int] = []
+    enough: set[Hashable] = set()
+    for place in compress(range(len(shared)), map(not_, map(enough.__contains__, shared))):
+        found.append(numbers[place])
+        if len(found) == left:
+            break
+        one = shared[place]
+        wanted[one] -= 1
+        if not wanted[one]:
+            enough.add(one)
     return found
-
-
-def _own(apart: Collection[IRI]) -> Callable[[Candidate], Hashable]:
-    """What candidates are told apart by if some components are set apart."""
-    return lambda candidate: (
-        ports_of(candidate),
-        candidate.profile.component if candidate.profile.component in apart else None,
-    )
 
 
 def consistent(
@@ -248,26 +280,26 @@ def _valueless(kinds: Sequence[Kind], values: Sequence[int], required: Collectio
 
 def kernel(left: Mapping[int, list[Option]], minima: Mapping[int, int]) -> dict[int, list[Option]]:
     """Of each group as many options as there are slots for it, the first ones."""
-    group: dict[IRI, int] = {}
-    limit: list[int] = [0]
-    following: dict[tuple[int, int], int] = {}
-    for role, options in left.items():
+    kinds: defaultdict[IRI, list[Kind]] = defaultdict(list)
+    for options in left.values():
         for option in options:
-            step = group.get(option.component, 0), id(option.kind)
-            after = following.get(step)
-            if after is None:
-                after = following[step] = len(limit)
-                limit.append(limit[step[0]] + minima[role])
-            group[option.component] = after
+            kinds[option.component].append(option.kind)
+    sizes = Counter(map(tuple, kinds.values()))
+    limits = {group: sum(minima[kind.role] for kind in group) for group, size in sizes.items() if size > 1}
+    crowded = {group: limit for group, limit in limits.items() if limit < sizes[group]}
+    if not crowded:
+        return dict(left)
     kept: dict[int, list[Option]] = {}
     for role, options in left.items():
-        count: dict[int, int] = {}
+        count: Counter[tuple[Kind, ...]] = Counter()
         kept[role] = []
         for option in options:
-            number = group[option.component]
-            seen = count[number] = count.get(number, 0) + 1
-            if seen <= limit[number]:
-                kept[role].append(option)
+            group = tuple(kinds[option.component])
+            if group in crowded:
+                count[group] += 1
+                if count[group] > crowded[group]:
+                    continue
+            kept[role].append(option)
     return kept
 
 

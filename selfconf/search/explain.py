@@ -31,7 +31,7 @@ from selfconf.model.refusal import (
     ValueUnknown,
 )
 from selfconf.search import sat
-from selfconf.search.compact import Compact, Kind, Prepared, consistent, ports_of
+from selfconf.search.compact import Compact, Kind, Prepared, consistent, likeness
 from selfconf.search.matching import shortage
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import (
@@ -257,8 +257,8 @@ def _steps(problem: Problem, given: Compact, found: Sequence[Requirement]) -> It
         feeding = [problem.roles[source] for source in dict.fromkeys(source for source, _ in need.sources)]
         sources = tuple(feeder.iri for feeder in feeding)
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
-        same = {ports for kind in kinds for ports in kind.ports}
-        more = sum(map(same.__contains__, map(ports_of, problem.candidates[role]))) - 1
+        same = {like for kind in kinds for like in kind.likes}
+        more = sum(map(same.__contains__, map(likeness, problem.candidates[role]))) - 1
         yield Step(problem.roles[role].iri, profile.component, more, port.name, need.signal, sources, optional)
 
 

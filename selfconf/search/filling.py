@@ -10,6 +10,7 @@ one pool are filled without a matching.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 
 from selfconf.model.partition import Candidate
 from selfconf.search.problem import Problem
@@ -43,21 +44,22 @@ class Filling:
         """After which slot the inputs of which roles can be checked, and about how many steps that is worth."""
         last = {role: place for place, role in enumerate(self.slots)}
         due: list[list[int]] = [[] for _ in self.slots]
-        work = [1 for _ in self.slots]
-        for role in last:
-            feeding = [role, *(source for source in self.problem.sources[role] if source in last)]
-            place = max([last[r] for r in feeding])
+        work = [1] * len(self.slots)
+        candidates = self.problem.candidates
+        for role, place in last.items():
+            ports = len(candidates[role][0].profile.ports.inputs) if candidates[role] else 0
+            for source in self.problem.sources[role]:
+                if source in last:
+                    place = max(place, last[source])
+                    ports += len(candidates[source][0].profile.ports.outputs) if candidates[source] else 0
             due[place].append(role)
-            firsts = [self.problem.candidates[r][0].profile for r in feeding if self.problem.candidates[r]]
-            ports = sum([len(first.outputs) for first in firsts[1:]], len(firsts[0].inputs) if firsts else 0)
             work[place] += ports // PORTS
         return due, work
 
     def candidates(self, role: int, start: int) -> Iterator[tuple[int, Candidate]]:
         """The candidates for the next slot of a role from a number on, in order, with their numbers."""
         candidates = self.problem.candidates[role]
-        for number in range(start, len(candidates)):
-            yield number, candidates[number]
+        return zip(range(start, len(candidates)), islice(candidates, start, None), strict=True)
 
     def first(self) -> list[list[Candidate]] | None:
         """The least solution, if it is met within the budget."""

@@ -107,6 +107,8 @@ class Partners:
     def __init__(self, slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> None:
         self.slots, self.options = slots, options
         found = _matched(slots, options)
+        self.shortage = found if isinstance(found, Shortage) else None
+        """The roles that lack components, if there are any: then nobody has a partner."""
         self.holder: dict[IRI, int] = {} if isinstance(found, Shortage) else found
         self.held: list[IRI | None] = [None] * len(slots)
         for component, slot in self.holder.items():

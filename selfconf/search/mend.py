@@ -21,7 +21,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition
-from selfconf.model.profile import Output, Profile
+from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.repair import AcceptNearMiss, AddComponents, AddInteraction, Addition, AskForFewer, Repair
 from selfconf.model.requirement import InputFed, RolePlayed
@@ -111,7 +111,7 @@ def _with_candidates(problem: Problem, more: dict[IRI, list[Candidate]]) -> Prob
 
 def _newcomer(problem: Problem, role: IRI, number: int, outputs: tuple[Output, ...]) -> Candidate:
     name = IRI(f"{ADDITION}{number}:{role}")
-    return Candidate(Profile(name, outputs=outputs), tuple(ANY_VALUE for _ in problem.variables))
+    return Candidate(Profile(name, ports=Ports(outputs=outputs)), tuple(ANY_VALUE for _ in problem.variables))
 
 
 def _additions(problem: Problem) -> AddComponents | None:
@@ -189,7 +189,7 @@ def _trimmed(
 def _without(candidate: Candidate, outputs: tuple[Output, ...]) -> Candidate:
     if not candidate.profile.component.startswith(ADDITION):
         return candidate
-    return replace(candidate, profile=replace(candidate.profile, outputs=outputs))
+    return replace(candidate, profile=replace(candidate.profile, ports=Ports(candidate.profile.inputs, outputs)))
 
 
 def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction]:

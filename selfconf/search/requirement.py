@@ -121,5 +121,5 @@ def _relaxed_kind(kind: Kind, needs: Set[int], variables: Set[int], known: dict[
     if found is None:
         found = known[key] = Kind(*key, number=kind.number)
     found.number = min(found.number, kind.number)
-    found.ports += kind.ports
+    found.likes += kind.likes
     return found

@@ -94,15 +94,18 @@ def least(given: Compact, budget: Budget) -> list[Option] | Undecided | None:
     components = [[option.component for option in options] for options in part.options]
     partners: Partners | None = None
     if len(set().union(*components)) < sum(map(len, components)):
-        never = impossible(part.slots, components)
-        if isinstance(never, Shortage):
+        partners = Partners(part.slots, components)
+        if partners.shortage is not None:
             return None
+    chosen = walk(part, budget, partners=partners, pace=WALK_PACE)
+    if not isinstance(chosen, Undecided) or budget.steps == 0:
+        return chosen
+    if partners is not None:
+        never = impossible(part.slots, components)
+        assert not isinstance(never, Shortage)
         part = _without(part, never)
         partners = Partners(part.slots, [[option.component for option in options] for options in part.options])
-    if not sat.available():
-        return walk(part, budget, partners=partners)
-    chosen = walk(part, budget, partners=partners, pace=WALK_PACE)
-    return sat.least(part, budget) if isinstance(chosen, Undecided) else chosen
+    return sat.least(part, budget) if sat.available() else walk(part, budget, partners=partners)
 
 
 def _without(part: Compact, never: set[tuple[int, IRI]]) -> Compact:

@@ -64,10 +64,9 @@ class Walk:
         last_slot = {role: place for place, role in enumerate(slots)}
         self.last = [-1] * len(compact.needs)
         """The last slot with an option that gives this need."""
-        for role, place in last_slot.items():
-            for kind in {id(option.kind): option.kind for option in compact.options[role]}.values():
-                for need in kind.gives:
-                    self.last[need] = max(self.last[need], place)
+        for role, place in last_slot.items():  # in the order of places
+            for need in {need for option in compact.options[role] for need in option.kind.gives}:
+                self.last[need] = place
         self.expiring: list[list[int]] = [[] for _ in slots]
         for need, place in enumerate(self.last):
             if place >= 0:

@@ -34,13 +34,10 @@ class Wiring:
     """
 
     def __init__(self, problem: Problem) -> None:
-        self.problem = problem
         self.needs: list[Need] = []
         self._fed = [_Feeding(problem, role) for role in range(len(problem.roles))]
-        self._told = [any(link.output for sink in sinks for link in problem.links[sink]) for sinks in problem.sinks]
-        """For each role whether the names of its outputs may matter."""
-        self._tables = [[self._fed[sink] for sink in sinks] for sinks in problem.sinks]
-        self._serving: list[dict[Output | IRI, tuple[int, ...]]] = [{} for _ in problem.roles]
+        told = {link.source for links in problem.links for link in links if link.output}
+        self._serving = [_Serving(problem, role, self._fed, role in told) for role in range(len(problem.roles))]
 
     def needed(self, role: int, inputs: Sequence[Input]) -> tuple[int, ...]:
         """The numbers of the needs that these inputs of whoever plays a role are."""
@@ -49,67 +46,76 @@ class Wiring:
         fed = self._fed[role]
         known, found = fed.number, []
         for wanted in inputs:
-            key = wanted if fed.named else wanted.signal
-            number = known.get(key)
-            if number is None:
-                number = known[key] = self._need(fed, wanted)
-            found.append(number)
-        return tuple(found if len(found) == 1 else dict.fromkeys(found))
-
-    def _need(self, fed: _Feeding, wanted: Input) -> int:
-        name = wanted.name if fed.named else None
-        sources = fed.sources(name)
-        number = fed.same.setdefault((wanted.signal, sources), len(self.needs)) if fed.named else len(self.needs)
-        if number == len(self.needs):
-            self.needs.append(Need(fed.role, wanted.signal, sources, name))
-            fed.needs.setdefault(wanted.signal, []).append(number)
-        return number
+            number = known.get(wanted if fed.named else wanted[1])
+            found.append(fed.need(wanted, self.needs) if number is None else number)
+        return tuple(found) if len(set(found)) == len(found) else tuple(dict.fromkeys(found))
 
     def served(self, role: int, outputs: Sequence[Output]) -> tuple[int, ...]:
         """The needs that somebody with these outputs serves by playing a role; every need must be known by now."""
-        known, told = self._serving[role], self._told[role]
+        serving = self._serving[role]
+        known = serving.known
         found: tuple[int, ...] = ()
         for output in outputs:
-            key = output if told else output.signal
+            key = output if serving.told else output[1]
             numbers = known.get(key)
             if numbers is None:
-                numbers = known[key] = self._serves(role, output, told)
+                numbers = known[key] = serving.needs(output, self.needs)
             found += numbers
         return found if len(outputs) == 1 else tuple(sorted(set(found)))
-
-    def _serves(self, role: int, output: Output, told: bool) -> tuple[int, ...]:
-        found: list[int] = []
-        for signal in self.problem.hierarchy.superclasses(output.signal):
-            for fed in self._tables[role]:
-                numbers = fed.needs.get(signal)
-                if numbers is None:
-                    continue
-                if told or fed.named:
-                    names = (role, None), (role, output.name)
-                    numbers = [n for n in numbers if any(source in names for source in self.needs[n].sources)]
-                found += numbers
-        return tuple(found if len(found) < 2 else sorted(found))
 
 
 class _Feeding:
     """What feeds a role, and its needs so far."""
 
-    __slots__ = ("_by_name", "links", "named", "needs", "number", "role", "same")
+    __slots__ = ("_by_name", "_links", "_role", "_same", "by_signal", "named", "number")
 
     def __init__(self, problem: Problem, role: int) -> None:
-        self.role, self.links = role, problem.links[role]
-        self.named = any(link.input for link in self.links)
+        self._role, self._links = role, problem.links[role]
+        self.named = any(link.input for link in self._links)
         self.number: dict[Input | IRI, int] = {}
         """The need that an input is."""
-        self.needs: dict[IRI, list[int]] = {}
-        """The needs of a signal."""
-        self.same: dict[tuple[IRI, Sources], int] = {}
+        self.by_signal: dict[IRI, list[int]] = {}
+        self._same: dict[tuple[IRI, Sources], int] = {}
         self._by_name: dict[str | None, Sources] = {}
 
-    def sources(self, name: str | None) -> Sources:
-        """What may feed an input of that name."""
-        found = self._by_name.get(name)
-        if found is None:
-            pairs = [(link.source, link.output) for link in self.links if link.input in (None, name)]
-            found = self._by_name[name] = tuple(dict.fromkeys(pairs))
-        return found
+    def need(self, wanted: Input, needs: list[Need]) -> int:
+        """The number of the need that an input is, which may be a new one."""
+        name, signal = wanted if self.named else (None, wanted.signal)
+        sources = self._by_name.get(name)
+        if sources is None:
+            pairs = [(source, output) for source, output, only in self._links if only is None or only == name]
+            sources = self._by_name[name] = tuple(dict.fromkeys(pairs))
+        number = self._same.setdefault((signal, sources), len(needs)) if self.named else len(needs)
+        if number == len(needs):
+            needs.append(Need(self._role, signal, sources, name))
+            self.by_signal.setdefault(signal, []).append(number)
+        self.number[wanted if self.named else signal] = number
+        return number
+
+
+class _Serving:
+    """The needs that the outputs of a role serve."""
+
+    __slots__ = ("_above", "_fed", "_role", "known", "told")
+
+    def __init__(self, problem: Problem, role: int, fed: Sequence[_Feeding], told: bool) -> None:
+        self._role, self._above = role, problem.hierarchy.superclasses
+        self._fed = [fed[sink] for sink in problem.sinks[role]]
+        self.told = told
+        """Whether the names of its outputs may matter."""
+        self.known: dict[Output | IRI, tuple[int, ...]] = {}
+        """The needs that an output serves."""
+
+    def needs(self, output: Output, needs: Sequence[Need]) -> tuple[int, ...]:
+        """The needs that an output serves that was not met before."""
+        found: list[int] = []
+        for signal in self._above(output.signal):
+            for fed in self._fed:
+                numbers = fed.by_signal.get(signal)
+                if numbers is None:
+                    continue
+                if self.told or fed.named:
+                    names = (self._role, None), (self._role, output.name)
+                    numbers = [n for n in numbers if any(source in names for source in needs[n].sources)]
+                found += numbers
+        return tuple(found if len(found) < 2 else sorted(found))

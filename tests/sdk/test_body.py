@@ -11,7 +11,7 @@ import pytest
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.errors import ProgrammerError
-from selfconf.model.profile import Input, OperationalParameter, Output, Profile
+from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
@@ -39,11 +39,10 @@ CAP, TRACKER = IRI("urn:c:cap"), IRI("urn:c:tracker")
 XSD = "http://www.w3.org/2001/XMLSchema#"
 CAP_PROFILE = Profile(
     CAP,
-    inputs=(Input("position", IRI("urn:s:Pose")),),
-    outputs=(Output("velocity", IRI("urn:s:Velocity")),),
+    ports=Ports((Input("position", IRI("urn:s:Pose")),), (Output("velocity", IRI("urn:s:Velocity")),)),
     parameters=(OperationalParameter("goal", IRI("urn:p:Goal")),),
 )
-TRACKER_PROFILE = Profile(TRACKER, outputs=(Output("pose", IRI("urn:s:Pose")),))
+TRACKER_PROFILE = Profile(TRACKER, ports=Ports(outputs=(Output("pose", IRI("urn:s:Pose")),)))
 
 
 class Stage:
@@ -86,7 +85,7 @@ class Stage:
 
     def neighbour(self, rate: float | None = None) -> Body:
         """A tracker that is active."""
-        profile = Profile(TRACKER, outputs=(Output("pose", IRI("urn:s:Pose"), rate),))
+        profile = Profile(TRACKER, ports=Ports(outputs=(Output("pose", IRI("urn:s:Pose"), rate),)))
         body = Body(self.network.node(), KEYS, profile, Component(), "life-t")
         replies: list[Replies] = []
         self.caller.ask(KEYS.call(TRACKER, "apply"), encode(Apply(1, US)), 1.0, replies.append)
@@ -369,7 +368,8 @@ def test_a_new_connection_carries_the_last_signal_at_once_and_an_old_one_does_no
     stage.call(follow())
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("position", "here")]
-    again = Body(stage.network.node(), KEYS, Profile(IRI("urn:c:other"), inputs=CAP_PROFILE.inputs), Recorder(), "l")
+    profile = Profile(IRI("urn:c:other"), ports=Ports(CAP_PROFILE.inputs))
+    again = Body(stage.network.node(), KEYS, profile, Recorder(), "l")
     replies: list[Replies] = []
     stage.caller.ask(KEYS.call(IRI("urn:c:other"), "apply"), encode(follow()), 1.0, replies.append)
     stage.let_pass(0.1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
+from unittest.mock import patch
 
 import pytest
 from hypothesis import given
@@ -41,6 +42,20 @@ def test_depth_first_on_the_kernel_finds_the_least_solution(problem: Problem) ->
     expected = _numbers(problem)
     assert _chosen(walk(pruned(compact(problem)), Budget())) == expected
     assert _chosen(walk(compact(problem), Budget())) == expected
+
+
+@given(problems(components=7))
+@agreement(0.6)
+def test_who_is_passed_over_for_sharing_ports_is_in_no_least_solution(problem: Problem) -> None:
+    with patch("selfconf.search.compact.FEW", 0):
+        assert _chosen(walk(compact(problem), Budget())) == _numbers(problem)
+
+
+def test_one_of_each_kind_is_not_enough_where_roles_share_candidates() -> None:
+    deaf, first, second = component("deaf", outputs="n:Noise"), *(component(c, outputs="p:Pose") for c in "ab")
+    cap = component("cap", "p:Pose")
+    given_ = written({"pose": [deaf, first], "spare": [first, second], "cap": [cap]}, "pose>cap")
+    assert _chosen(walk(compact(given_), Budget())) == [1, 1, 0]
 
 
 def test_who_suits_two_parameters_not_at_all_leaves_once() -> None:

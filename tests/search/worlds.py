@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
-from selfconf.model.profile import Input, OperationalParameter, Output, Profile
+from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
@@ -38,8 +38,10 @@ def component(name: str, inputs: str = "", outputs: str = "", preference: float 
     """A component by its ports: `component("cap", "sonar:Scan pose:Pose", "velocity:Velocity")`."""
     return Profile(
         iri(name),
-        inputs=tuple(Input(port, iri(signal)) for port, signal in _ports(inputs)),
-        outputs=tuple(Output(port, iri(signal)) for port, signal in _ports(outputs)),
+        ports=Ports(
+            tuple(Input(port, iri(signal)) for port, signal in _ports(inputs)),
+            tuple(Output(port, iri(signal)) for port, signal in _ports(outputs)),
+        ),
         parameters=(OperationalParameter("goal", iri("Goal")),),
         preference=preference,
     )
@@ -96,21 +98,32 @@ CLASSES = [*SIGNALS, iri("Goal")]
 NAMES = ["p", "q", "r"]
 
 
+def _once(ports: Ports, shared: dict[Ports, Ports] | None) -> Ports:
+    return ports if shared is None else shared.setdefault(ports, ports)
+
+
 @st.composite
 def problems(draw: st.DrawFn, roles: int = 4, components: int = 5) -> Problem:
     """Problems small enough to enumerate, with everything that a template can say.
 
-    Roles share candidates and order them each in their own way; cardinalities include none, two and without end;
-    interactions may form cycles, feed a role from itself and name ports; free parameters may also be set.
+    Roles share candidates and order them each in their own way; components may share what is equal of their ports;
+    cardinalities include none, two and without end; interactions may form cycles, feed a role from itself and name
+    ports; free parameters may also be set.
     """
     signals = st.sampled_from(SIGNALS[: draw(st.integers(1, 4))])
+    shared: dict[Ports, Ports] | None = {} if draw(st.booleans()) else None
     outputs = st.dictionaries(st.sampled_from(NAMES), signals, max_size=2)
     inputs = st.one_of(st.just({}), st.dictionaries(st.sampled_from(NAMES), signals, max_size=2))
     profiles = [
         Profile(
             iri(f"c{number}"),
-            inputs=tuple(Input(*port) for port in sorted(draw(inputs).items())),
-            outputs=tuple(Output(*port) for port in sorted(draw(outputs).items())),
+            ports=_once(
+                Ports(
+                    tuple(Input(*port) for port in sorted(draw(inputs).items())),
+                    tuple(Output(*port) for port in sorted(draw(outputs).items())),
+                ),
+                shared,
+            ),
             parameters=tuple(
                 OperationalParameter("goal", kind) for kind in draw(st.sets(st.sampled_from(CLASSES[3:]), max_size=1))
             ),
