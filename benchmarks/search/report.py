@@ -23,13 +23,12 @@ PLOTTED = ("navigation", "navigation, impossible", "fleet of 100", "chain", "3-S
 
 TUNING = """\
 Before it writes clauses, the search looks for a quick answer: depth first over the candidates, for at most
-`FILL_STEPS` steps for each role that it has reached, where `TAKEN` candidates that play already are passed over for the
-price of one. Then it passes over all candidates to find the few that can matter, beginning with who shares ports where
-a role has more than `FEW`; then depth first over the kernel, for at most `WALK_PACE` steps for each option of the roles that it has
-reached. Then comes the `SOLVER` of python-sat. Each was varied by itself, on seeds 7001 to 7003 and on sizes of the
-same families that are not in the tables above (`python -m benchmarks.search.run --tuning`); solvers that cannot count
-get cardinalities as clauses. A time is a multiple of that with the value chosen, which is in bold; `worst` is the
-instance on which a value does worst against that."""
+`FILL_STEPS` steps for each role that it has reached, where `TAKEN` candidates that play already are passed over for
+the price of one; then depth first over the kernel, for at most `WALK_PACE` steps for each option of the roles that it
+has reached. Then comes the `SOLVER` of python-sat. Each was varied by itself, on seeds 7001 to 7003 and on sizes of
+the same families that are not in the tables above (`python -m benchmarks.search.run --tuning`); solvers that cannot
+count get cardinalities as clauses. A time is a multiple of that with the value chosen, which is in bold; `worst` is
+the instance on which a value does worst against that."""
 
 
 @dataclass(frozen=True)

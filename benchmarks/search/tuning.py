@@ -15,7 +15,7 @@ from types import ModuleType
 from benchmarks.search import families as f
 from benchmarks.search.families import Instance
 from benchmarks.search.measure import measure
-from selfconf.search import compact, filling, sat, solve
+from selfconf.search import filling, sat, solve
 
 SEEDS = range(7_001, 7_004)
 
@@ -37,7 +37,6 @@ class Threshold:
 THRESHOLDS = (
     Threshold(solve, "FILL_STEPS", (0, 1, 2, 4, 8, 16)),
     Threshold(filling, "TAKEN", (1, 8, 32, 128)),
-    Threshold(compact, "FEW", (0, 8, 32, 128)),
     Threshold(solve, "WALK_PACE", (0.0, 0.15, 0.3, 0.6, 1.2, 2.4, 4.8)),
     Threshold(sat, "SOLVER", ("Minicard", "Minisat22", "MinisatGH", "Glucose4", "MapleCM", "Cadical153", "Cadical195")),
 )

@@ -46,8 +46,6 @@ Likeness = tuple[Ports, tuple[int, ...]]
 likeness: Callable[[Candidate], Likeness] = attrgetter("profile.ports", "admits")
 _PORTS: Callable[[Candidate], Ports] = attrgetter("profile.ports")
 _ADMITS: Callable[[Candidate], tuple[int, ...]] = attrgetter("admits")
-FEW = 32
-"""So many candidates are not worth a pass of their own to see which of them share their ports."""
 
 
 class Kind:
@@ -195,7 +193,7 @@ def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -
     The one pass over all candidates: no step of Python for who is passed over, nor a look at what ports say. Ports
     that say the same but are not shared count as different here.
     """
-    if len(numbers) <= max(most, FEW):
+    if len(numbers) <= most:
         return numbers
     ordered = candidates if isinstance(numbers, range) else [candidates[number] for number in numbers]
     shared: list[Hashable] = list(map(id, map(_PORTS, ordered)))
