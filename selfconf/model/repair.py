@@ -60,6 +60,18 @@ class AskForFewer:
 
 
 @dataclass(frozen=True, slots=True)
+class AskForOne:
+    """A role that asks for nobody, though others need what it issues, makes the task possible by asking for one."""
+
+    code: ClassVar[str] = "ask-for-one"
+    role: IRI
+    minimum: ClassVar[int] = 1
+
+    def __str__(self) -> str:
+        return f"let the role {self.role.short} ask for one (sc:minCount 1)"
+
+
+@dataclass(frozen=True, slots=True)
 class AddInteraction:
     """One more interaction makes the task possible."""
 
@@ -89,4 +101,4 @@ class AcceptNearMiss:
         return f"let {self.near.component.short} play {self.near.role.short}, although {self.near}"
 
 
-Repair = AddComponents | AskForFewer | AddInteraction | AcceptNearMiss
+Repair = AddComponents | AskForFewer | AskForOne | AddInteraction | AcceptNearMiss

@@ -144,12 +144,20 @@ def _enough(
     }
     slots = dict.fromkeys(minima, sum(minima.values()))
     if apart:
-        return everybody, slots
+        return {
+            role: _with(problem.candidates[role], some, slots[role], apart) for role, some in everybody.items()
+        }, slots
     if not _twice(problem, {role: some[:1] for role, some in everybody.items()}):
         firsts = {role: _first(problem.candidates[role], some, minima[role]) for role, some in everybody.items()}
         if not _twice(problem, firsts):
             return firsts, minima
     return {role: _first(problem.candidates[role], some, slots[role]) for role, some in everybody.items()}, slots
+
+
+def _with(candidates: Sequence[Candidate], numbers: Sequence[int], most: int, apart: Collection[IRI]) -> Sequence[int]:
+    """Those of the first so many that share ports who are not apart, and all who are."""
+    first = set(_first(candidates, numbers, most + len(apart)))
+    return [number for number in numbers if number in first or candidates[number].profile.component in apart]
 
 
 def _twice(problem: Problem, numbers: Mapping[int, Sequence[int]]) -> bool:

@@ -6,24 +6,34 @@ component for one of its roles, or for a role that may feed one of its inputs, c
 over sets of such additions, each extended by these roles alone, finds the fewest; then outputs that are not needed
 are taken away again.
 
-*Things to relax.* A role that asks for fewer; one interaction more, where some candidate issues what is lacking; a
-near miss let in. Each alone.
+*Things to change.* A role that asks for fewer, or for one where it asked for nobody and others need what it would
+issue; one interaction more, where some candidate issues what is lacking; a near miss let in. Each alone.
 
 All this is tried on the kernel of the problem (`compact`): adding, relaxing and linking leave its argument intact,
-since candidates of one kind have the same ports. The number of trials is limited, so that a hard case may end with
-fewer repairs than there are, never with a wrong one.
+since candidates of one kind have the same ports; near misses, who may become eligible for more, are set apart in it. A
+role that asks for nobody is not in the kernel, and is asked for one in the whole problem. The number of trials is
+limited, so that a hard case may end with fewer repairs than there are, never with a wrong one.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition
 from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.repair import AcceptNearMiss, AddComponents, AddInteraction, Addition, AskForFewer, Repair
+from selfconf.model.repair import (
+    AcceptNearMiss,
+    AddComponents,
+    AddInteraction,
+    Addition,
+    AskForFewer,
+    AskForOne,
+    Repair,
+)
 from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI
@@ -51,11 +61,10 @@ def with_repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMi
 
 def repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMiss, Candidate]] = ()) -> Iterator[Repair]:
     """Changes that make a refused problem possible, what is easiest to do first."""
-    small = _kernel(problem)
-    for one, candidate in near[:TRIALS]:
-        accepted = AcceptNearMiss(one, candidate)
-        if _possible(mended(small, accepted)):
-            yield accepted
+    near = near[:TRIALS]
+    small = _kernel(problem, {one.component for one, _ in near})
+    yield from (a for a in itertools.starmap(AcceptNearMiss, near) if _possible(mended(small, a)))
+    yield from (r for r in _asked_for_one(problem, refused) if _possible(mended(problem, r)))
     added = _additions(small)
     if added is not None:
         yield added
@@ -93,8 +102,8 @@ def _possible(problem: Problem) -> bool:
     return isinstance(_solution(problem), list)
 
 
-def _kernel(problem: Problem) -> Problem:
-    kept = compact(problem).options
+def _kernel(problem: Problem, apart: Collection[IRI]) -> Problem:
+    kept = compact(problem, apart).options
     candidates = tuple(
         tuple(candidates[option.number] for option in options)
         for candidates, options in zip(problem.candidates, kept, strict=True)
@@ -192,12 +201,25 @@ def _without(candidate: Candidate, outputs: tuple[Output, ...]) -> Candidate:
     return replace(candidate, profile=replace(candidate.profile, ports=Ports(candidate.profile.inputs, outputs)))
 
 
+def _lacking(refused: Refusal) -> list[InputFed]:
+    """The inputs of which the reasons say that nobody feeds them."""
+    return [r for reason in refused.reasons for r in reason.requirements if isinstance(r, InputFed)]
+
+
+def _asked_for_one(problem: Problem, refused: Refusal) -> Iterator[AskForOne]:
+    """The roles that could feed what is lacking but ask for nobody."""
+    index = {role.iri: number for number, role in enumerate(problem.roles)}
+    sources = dict.fromkeys(source for need in _lacking(refused) for source in problem.sources[index[need.role]])
+    for role in [problem.roles[source] for source in sources][:TRIALS]:
+        if role.minimum == 0 and role.maximum != 0:
+            yield AskForOne(role.iri)
+
+
 def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction]:
     """Links that are not there, from roles with a candidate that issues a signal which is lacking."""
-    lacking = [r for reason in refused.reasons for r in reason.requirements if isinstance(r, InputFed)]
     index = {role.iri: number for number, role in enumerate(problem.roles)}
     tried: set[tuple[IRI, IRI]] = set()
-    for need in lacking:
+    for need in _lacking(refused):
         for number, role in enumerate(problem.roles):
             pair = role.iri, need.role
             known = any(

@@ -9,7 +9,7 @@ from hypothesis import given
 
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
-from selfconf.model.repair import AcceptNearMiss, AddComponents, Addition
+from selfconf.model.repair import AcceptNearMiss, AddComponents, Addition, AskForOne
 from selfconf.search import mend, solve
 from selfconf.search.mend import mended, wanted_of, with_repairs
 from selfconf.search.problem import Problem
@@ -33,6 +33,12 @@ def test_every_repair_works_and_adds_as_few_as_possible(problem: Problem) -> Non
         assert repair.code
         assert repair.role in {role.iri for role in problem.roles}
         assert _possible(mended(problem, repair)), repair
+    asked = {repair.role for repair in mending if isinstance(repair, AskForOne)}
+    assert asked == {
+        role.iri
+        for role in problem.roles
+        if role.minimum == 0 and role.maximum != 0 and _possible(mended(problem, AskForOne(role.iri)))
+    }
     added = [repair for repair in mending if isinstance(repair, AddComponents)]
     fewest = sum(addition.count for addition in added[0].additions) if added else 3
     for size in range(1, min(fewest, 3)):
@@ -64,6 +70,26 @@ def test_a_near_miss_that_would_do_is_offered_first() -> None:
     first = with_repairs(given_, refused, [(near, candidate)]).repairs[0]
     assert isinstance(first, AcceptNearMiss)
     assert str(first) == "let tracker play position, although its support is Pippi, not Astrid"
+
+
+def test_a_near_miss_that_stands_for_others_elsewhere_can_be_spared() -> None:
+    eyes = [component(name, outputs="p:Pose") for name in ("a", "b")]
+    given_ = problem({"position": eyes, "spare": []})
+    near = NearMiss(iri("spare"), iri("a"), "support is Pippi, not Astrid")
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    assert isinstance(with_repairs(given_, refused, [(near, Candidate(eyes[0]))]).repairs[0], AcceptNearMiss)
+
+
+def test_an_optional_role_that_is_needed_may_be_asked_for_one() -> None:
+    given_ = problem(
+        {"sonar": [component("ring", outputs="s:Scan")], "control": [component("cap", "s:Scan")]},
+        "sonar>control",
+        {"sonar": (0, 1)},
+    )
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    assert str(with_repairs(given_, refused).repairs[0]) == "let the role sonar ask for one (sc:minCount 1)"
 
 
 def test_a_role_that_asks_for_too_many_may_ask_for_fewer() -> None:
