@@ -112,7 +112,7 @@ class Composer:
 
     def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         if self.strategy is Strategy.BEST:
-            yield from self._best(problem)
+            yield from self._best(problem, running)
             return
         found = paper.search(problem, self.steps) if self.strategy is Strategy.PAPER else None
         if found is not None:
@@ -129,10 +129,10 @@ class Composer:
     def _first(self, problem: Problem) -> Outcome:
         return solve.search(problem) if self.steps is None else solve.decide(problem, self.steps)
 
-    def _best(self, problem: Problem) -> Iterator[Optimum | Outcome]:
+    def _best(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         most = SLICES[-1] if self.steps is None else self.steps
         for steps in (*(slice_ for slice_ in SLICES if slice_ < most), most):
-            found = best.search(problem, steps)
+            found = best.search(problem, steps, running)
             yield found
             if isinstance(found, Refusal) or (isinstance(found, Optimum) and found.proved):
                 return
@@ -168,7 +168,15 @@ class Composer:
     def what_if(self, ecology: Mapping[IRI, Advertisement], configuration: Configuration) -> list[whatif.Loss]:
         """For each component of a configuration, what would come instead of it if it failed."""
         problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
-        return list(whatif.losses(problem, configuration))
+        return list(whatif.losses(problem, configuration, self._after))
+
+    def _after(self, problem: Problem, running: Configuration) -> Configuration | Refusal:
+        """What comes after a configuration that runs."""
+        if self.strategy is Strategy.BEST:
+            *_, found = self._best(problem, running)
+            if isinstance(found, Optimum):
+                return found.configuration
+        return repair.search(problem, running)
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
         """For each component and input of a configuration, the outputs of the next candidates that could feed it.

@@ -5,6 +5,9 @@ level. The answer is the lexicographically first of the solutions of least cost,
 are added by the extension are a gift and do not count. `first` ignores cost: it takes the least solution in the order
 of preference. With no cost stated, or one that is the same for all, both give the same answer.
 
+*After a failure.* With a configuration that runs, to give up as few of its components as can be is the first level of
+the cost: whoever did not play the role costs one. So the answer is the cheapest of the nearest solutions.
+
 *How.* Levels are folded into one integer that is ordered as they are. Options of a role are sorted by cost, then by
 their order, for which the argument of the kernel holds as it does for the order alone: a member of a group that is
 beyond the first k can be replaced by one that costs no more. Branch and bound walks depth first, cheapest first, and
@@ -37,6 +40,8 @@ from selfconf.search.walk import Budget, Walk
 
 WALK_STEPS = 20_000
 """Steps of branch and bound before clauses are written."""
+BEFORE = 2
+"""Levels before those that the template states: how many newcomers there are, and how many terms are unknown."""
 STEPS = 2_000_000
 """Steps until the search for the best is content with a good one."""
 
@@ -59,15 +64,18 @@ class Optimum:
         return len(self.missing)
 
 
-def search(problem: Problem, steps: int = STEPS) -> Optimum | Refusal | Undecided:
-    """The best configuration that was found within so many steps, or why there is none."""
+def search(problem: Problem, steps: int = STEPS, running: Configuration | None = None) -> Optimum | Refusal | Undecided:
+    """The best configuration that was found within so many steps, or why there is none.
+
+    With a configuration that runs it is the best of those that keep the most of its components.
+    """
     given = Prepared(problem)
     playing = solve.solution(given, Budget(steps))
     if isinstance(playing, Undecided):
         return Undecided(steps)
     if playing is None:
         return explain.refusal(given)
-    prices = Prices(problem)
+    prices = Prices(problem, running)
     order = {
         role: sorted(range(len(problem.candidates[role])), key=prices.of[role].__getitem__)
         for role, asked in enumerate(problem.roles)
@@ -93,21 +101,29 @@ def search(problem: Problem, steps: int = STEPS) -> Optimum | Refusal | Undecide
         for candidate in some
         for wanted in unknown(problem.task.template.cost, role.iri, candidate.profile, problem.hierarchy)
     ]
-    return Optimum(problem.solved(playing), spent[1:], least[1:], tuple(missing), proved=spent == least)
+    configuration = problem.solved(playing, running)
+    return Optimum(configuration, spent[BEFORE:], least[BEFORE:], tuple(missing), proved=spent == least)
 
 
 class Prices:
     """What each candidate costs in each role, folded into an integer."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, running: Configuration | None = None) -> None:
         levels = problem.task.template.cost
+        played = {a.role: frozenset(a.components) for a in running.assignments} if running is not None else {}
+        nobody: frozenset[IRI] = frozenset()
+
+        def price(role: IRI, candidate: Candidate) -> tuple[Fraction, ...]:
+            newcomer = bool(played) and candidate.profile.component not in played.get(role, nobody)
+            return Fraction(newcomer), *cost(levels, role, candidate.profile, problem.hierarchy)
+
         self.exact: list[list[tuple[Fraction, ...]]] = [
-            [cost(levels, role.iri, c.profile, problem.hierarchy) for c in candidates] if role.minimum else []
+            [price(role.iri, candidate) for candidate in candidates] if role.minimum else []
             for role, candidates in zip(problem.roles, problem.candidates, strict=True)
         ]
         rows = [row for role in self.exact for row in role]
         slots = sum(role.minimum for role in problem.roles)
-        width = 1 + len(levels)
+        width = BEFORE + len(levels)
         self.scale = [lcm(*(row[k].denominator for row in rows)) for k in range(width)]
         self.lowest = [min((row[k] for row in rows), default=Fraction(0)) for k in range(width)]
         self.base = [1] * width
@@ -133,7 +149,7 @@ class Prices:
         )
 
     def levels(self, playing: Sequence[Sequence[Candidate]]) -> tuple[Fraction, ...]:
-        """The cost of a solution, level by level, the unknown first."""
+        """The cost of a solution, level by level, with the newcomers and the unknown before all others."""
         rows = [
             self.exact[role][self._number[role][c.profile.component]] for role, some in enumerate(playing) for c in some
         ]

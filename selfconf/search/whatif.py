@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from selfconf.model.configuration import Configuration
@@ -39,12 +39,16 @@ class Loss:
         return f"{head}: {', '.join(one.short for one in self.started)}{stops}"
 
 
-def losses(problem: Problem, running: Configuration) -> Iterator[Loss]:
+def losses(
+    problem: Problem,
+    running: Configuration,
+    search: Callable[[Problem, Configuration], Configuration | Refusal] = repair.search,
+) -> Iterator[Loss]:
     """The loss of each component of a configuration by itself, in the order of the roles."""
     for assignment in running.assignments:
         for component in assignment.components:
             left = Problem(problem.task, problem.partition.without(frozenset((component,))), problem.hierarchy)
-            after = repair.search(left, running)
+            after = search(left, running)
             if isinstance(after, Refusal):
                 yield Loss(component, assignment.role, after)
             else:

@@ -73,6 +73,12 @@ def test_levels_are_compared_in_their_order(watch: Watch) -> None:
     assert body["cost"]["levels"] == [-9.0]
 
 
+def test_what_comes_after_a_failure_is_the_cheapest_of_what_keeps_the_most(watch: Watch) -> None:
+    watch.costs("[ sc:term [ sc:property rob:latency ; sc:weight -1 ] ]", POWER)
+    lines = [" ".join(line.split()) for line in watch.run("--strategy", "best", "--what-if").out.splitlines()]
+    assert ":corner-camera -> :shelf-camera, :light-tracker, and :deep-tracker would stop" in lines
+
+
 def test_a_cost_over_a_property_that_nobody_has_is_told(watch: Watch) -> None:
     watch.costs("[ sc:term [ sc:property rob:error ] ]")
     body = watch.best()
@@ -132,7 +138,8 @@ def test_a_cost_that_cannot_be_read_is_one_sentence(watch: Watch, cost: str, wor
 def test_an_answer_that_is_not_proved_says_so(watch: Watch, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = best.search
 
-    def hasty(problem: best.Problem, steps: int) -> best.Optimum:
+    def hasty(problem: best.Problem, steps: int, running: best.Configuration | None) -> best.Optimum:
+        assert running is None
         found, first = whole(problem), solve.search(problem)
         assert isinstance(found, best.Optimum)
         assert isinstance(first, best.Configuration)

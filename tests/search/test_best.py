@@ -90,6 +90,31 @@ def test_the_best_is_the_first_of_least_cost(problem: Problem) -> None:
     assert answer.configuration == world.configuration(least)
 
 
+@given(priced_problems(), st.data())
+@agreement(0.4)
+def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Problem, data: st.DataObject) -> None:
+    running = solve.search(problem)
+    if not isinstance(running, Configuration) or not running.components:
+        return
+    lost = frozenset((data.draw(st.sampled_from(running.components)),))
+    left = Problem(problem.task, problem.partition.without(lost), problem.hierarchy)
+    world = World(left.task, left.partition, left.hierarchy)
+    played = {assignment.role: assignment.components for assignment in running.assignments}
+
+    def newcomers(players: Players) -> int:
+        pairs = zip(world.roles, players, strict=True)
+        return sum(c.profile.component not in played[role.iri] for role, some in pairs for c in some)
+
+    answer = best.search(left, running=running)
+    solutions = list(world.solutions())
+    assert isinstance(answer, Optimum) == bool(solutions)
+    if isinstance(answer, Optimum):
+        nearest = min(solutions, key=lambda players: (newcomers(players), *_total(world, players)))
+        assert answer.proved
+        assert (answer.unknown, *answer.cost) == _total(world, nearest)
+        assert answer.configuration == left.solved(nearest, running)
+
+
 @given(priced_problems())
 @agreement(0.5)
 def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
