@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 import sys
+
+COLLECTING = 100_000, 20, 50
+"""Objects, and rounds, after which Python looks for garbage: seldom, as what a command makes is kept or freed soon."""
 
 
 def main() -> int:
     """Run the command line; the exit code."""
+    gc.set_threshold(*COLLECTING)
     try:
         from selfconf.cli.main import main as run
 

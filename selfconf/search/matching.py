@@ -29,13 +29,13 @@ class Shortage:
 
 def shortage(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> Shortage | None:
     """The roles that lack components, or None if each slot can have one of its own; `options` are per role."""
-    found = _matched(slots, options)
+    found = _matched(slots, _pools(options))
     return found if isinstance(found, Shortage) else None
 
 
 def impossible(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> Shortage | set[tuple[int, IRI]]:
     """The roles that lack components; or else the pairs of a role and an option that are in no matching."""
-    holder = _matched(slots, options)
+    holder = _matched(slots, _pools(options))
     if isinstance(holder, Shortage):
         return holder
     home = {component: slots[slot] for component, slot in holder.items()}
@@ -105,8 +105,8 @@ class Partners:
     """
 
     def __init__(self, slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> None:
-        self.slots, self.options = slots, options
-        found = _matched(slots, options)
+        self.slots, self.options = slots, _pools(options)
+        found = _matched(slots, self.options)
         self.shortage = found if isinstance(found, Shortage) else None
         """The roles that lack components, if there are any: then nobody has a partner."""
         self.holder: dict[IRI, int] = {} if isinstance(found, Shortage) else found
@@ -131,6 +131,12 @@ class Partners:
         if before is not None:
             self.holder[before] = place
         return False
+
+
+def _pools(options: Sequence[Sequence[IRI]]) -> list[Sequence[IRI]]:
+    """The same options; roles that have the same share one sequence, so that it needs to be looked through but once."""
+    known: dict[tuple[IRI, ...], Sequence[IRI]] = {}
+    return [known.setdefault(tuple(some), some) for some in options]
 
 
 def _matched(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> Shortage | dict[IRI, int]:
@@ -163,17 +169,18 @@ def _augment(
 ) -> set[int] | None:
     """Give the slot a component, moving others but those up to a settled one; or else the slots that are reached.
 
-    Slots of one role have the same options, so that each role is looked through once.
+    Options are looked through once, however many slots and roles have them.
     """
     came: dict[IRI, int] = {}
     looked: set[int] = set()
     reached, waiting = {start}, [start]
     while waiting:
         slot = waiting.pop()
-        if slots[slot] in looked:
+        pool = options[slots[slot]]
+        if id(pool) in looked:
             continue
-        looked.add(slots[slot])
-        for component in options[slots[slot]]:
+        looked.add(id(pool))
+        for component in pool:
             if component in came:
                 continue
             owner = holder.get(component)
