@@ -15,7 +15,7 @@ from typing import TypeVar
 from benchmarks.search import sparql
 from selfconf.model.configuration import Configuration
 from selfconf.search import paper, solve
-from selfconf.search.compact import Prepared
+from selfconf.search.kernel import Prepared
 from selfconf.search.problem import Problem
 from selfconf.search.walk import Budget
 

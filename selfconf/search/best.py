@@ -32,7 +32,8 @@ from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.search import explain, sat, solve
-from selfconf.search.compact import Compact, Option, Prepared, compact
+from selfconf.search.compact import Compact, Option
+from selfconf.search.kernel import Prepared, compact
 from selfconf.search.maxsat import minimise
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import pruned

@@ -31,7 +31,9 @@ from selfconf.model.refusal import (
     ValueUnknown,
 )
 from selfconf.search import sat
-from selfconf.search.compact import Compact, Kind, Prepared, consistent, likeness
+from selfconf.search.compact import Compact, Kind, likeness
+from selfconf.search.consistency import consistent
+from selfconf.search.kernel import Prepared
 from selfconf.search.matching import shortage
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import (

@@ -9,7 +9,7 @@ are taken away again.
 *Things to change.* A role that asks for fewer, or for one where it asked for nobody and others need what it would
 issue; one interaction more, where some candidate issues what is lacking; a near miss let in. Each alone.
 
-All this is tried on the kernel of the problem (`compact`): adding, relaxing and linking leave its argument intact,
+All this is tried on the kernel of the problem (`kernel`): adding, relaxing and linking leave its argument intact,
 since candidates of one kind have the same ports; near misses, who may become eligible for more, are set apart in it. A
 role that asks for nobody is not in the kernel, and is asked for one in the whole problem. The number of trials is
 limited, so that a hard case may end with fewer repairs than there are, never with a wrong one.
@@ -38,8 +38,8 @@ from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI
 from selfconf.search import solve
-from selfconf.search.compact import Prepared, compact
 from selfconf.search.explain import Questions, core
+from selfconf.search.kernel import Prepared, compact
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import Fed, Played
 from selfconf.search.walk import Budget

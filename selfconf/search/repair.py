@@ -29,8 +29,8 @@ from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.search import explain, sat, solve
-from selfconf.search.compact import Prepared, compact
 from selfconf.search.filling import Filling
+from selfconf.search.kernel import Prepared, compact
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import pruned
 from selfconf.search.walk import Budget

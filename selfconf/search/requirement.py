@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
-from selfconf.search.compact import Compact, Kind, Option, consistent, kernel
+from selfconf.search.compact import Compact, Kind, Option
+from selfconf.search.consistency import consistent
+from selfconf.search.kernel import kernel
 
 
 @dataclass(frozen=True, slots=True)

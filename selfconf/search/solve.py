@@ -10,10 +10,10 @@ A configuration is a satisfying assignment. Without inputs it is bipartite match
 partial configurations in the order of their roles and candidates, so that the first complete one is the least
 (`paper`). The least is unique: which engine finds it, and how long each was allowed to try, changes the time alone.
 
-*Invariants.* Every step keeps the least solution: arc consistency and the kernel by their proofs (`compact`), depth
-first by its order (`filling`, `walk`), the clause-learning engine by asking for a lesser solution until there is none
-(`sat`). "None" comes from a role that runs out of candidates, from Hall's theorem (`matching`), from an exhausted
-search or from a refuted set of clauses, never from a budget that ended.
+*Invariants.* Every step keeps the least solution: the kernel and arc consistency by their proofs (`kernel`,
+`consistency`), depth first by its order (`filling`, `walk`), the clause-learning engine by asking for a lesser
+solution until there is none (`sat`). "None" comes from a role that runs out of candidates, from Hall's theorem
+(`matching`), from an exhausted search or from a refuted set of clauses, never from a budget that ended.
 
 *Costs.* An easy instance takes a few steps for each slot, however many candidates there are; then a pass over the
 candidates and matching, slots times options; then depth first, for no more steps than writing down the clauses would
@@ -32,8 +32,9 @@ from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.search import explain, sat
-from selfconf.search.compact import Compact, Option, Prepared
+from selfconf.search.compact import Compact, Option
 from selfconf.search.filling import Filling
+from selfconf.search.kernel import Prepared
 from selfconf.search.matching import Partners, Shortage, impossible
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import pruned

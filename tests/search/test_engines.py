@@ -11,8 +11,9 @@ from selfconf.model.partition import Candidate, Partition, Variable
 from selfconf.model.refusal import Undecided
 from selfconf.model.template import Interaction, Role, Task, Template
 from selfconf.search import sat
-from selfconf.search.compact import Compact, Option, compact
+from selfconf.search.compact import Compact, Option
 from selfconf.search.filling import Filling
+from selfconf.search.kernel import compact
 from selfconf.search.matching import Partners, Shortage, impossible, shortage
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import pruned
