@@ -34,11 +34,11 @@ def algorithm_1(problem: Problem) -> bool:
 
 PROGRAM = """
 1 { plays(R,C) : candidate(R,C) } 1 :- role(R).
-:- component(C), 2 { plays(R,C) }.
+:- shared(C), 2 { plays(R,C) }.
 fed(R,S) :- feeds(Q,R), plays(Q,C), output(C,S).
 :- plays(R,C), input(C,S), not fed(R,S).
 1 { value(V,K) : domain(V,K) } 1 :- variable(V).
-:- plays(R,C), constrained(R,C,V), value(V,K), not allows(R,C,V,K).
+:- plays(R,C), constrained(R,C,V), not value(V,K) : allows(R,C,V,K).
 """
 
 
@@ -64,8 +64,9 @@ def _facts(problem: Problem) -> Iterator[str]:
             known = profile.component in components
             number = components.setdefault(profile.component, len(components))
             yield f"candidate({role},{number})."
-            if not known:
-                yield f"component({number})."
+            if known:
+                yield f"shared({number})."
+            else:
                 for wanted in profile.inputs:
                     yield f"input({number},{signals.setdefault(wanted.signal, len(signals))})."
                 for output in profile.outputs:
@@ -88,7 +89,7 @@ def _bits(mask: int) -> Iterator[int]:
 
 
 def cp_sat(problem: Problem) -> bool:
-    """OR-tools CP-SAT with Boolean variables, one worker."""
+    """OR-tools CP-SAT with Boolean variables; one worker, as every other engine has."""
     from ortools.sat.python import cp_model
 
     model = cp_model.CpModel()
@@ -208,9 +209,9 @@ LIBRARIES = {
     "python-sat": "pysat.solvers",
     "MiniCard": "pysat.solvers",
 }
+"""What an engine imports, before its time begins."""
 GENERAL = ("clingo", "CP-SAT", "python-sat", "MiniCard")
 """The general solvers."""
-"""What an engine imports, before its time begins."""
 SMALL = {"Oxigraph": 100, "rdflib": 10, "Algorithm 1": 10}
 """Up to which size an engine is tried that is hopeless beyond."""
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
-from selfconf.model.profile import Input, Output, Ports, Profile
+from selfconf.model.profile import Input, Output, Profile, shared_ports
 from selfconf.model.template import Interaction, Parameter, Role, Task, Template
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
@@ -32,15 +31,12 @@ def iri(name: object) -> IRI:
 
 def profile(name: object, inputs: Sequence[object] = (), outputs: Sequence[object] = ()) -> Profile:
     """A component with a port for each signal."""
-    return Profile(iri(name), ports=ports(tuple(inputs), tuple(outputs)))
-
-
-@lru_cache(maxsize=1_000)
-def ports(inputs: tuple[object, ...], outputs: tuple[object, ...]) -> Ports:
-    """A port for each signal; components that say the same share them, as they do once they have been loaded."""
-    return Ports(
-        tuple(Input(f"i{k}", iri(s)) for k, s in enumerate(inputs)),
-        tuple(Output(f"o{k}", iri(s)) for k, s in enumerate(outputs)),
+    return Profile(
+        iri(name),
+        ports=shared_ports(  # as whoever reads an advertisement does
+            tuple(Input(f"i{k}", iri(s)) for k, s in enumerate(inputs)),
+            tuple(Output(f"o{k}", iri(s)) for k, s in enumerate(outputs)),
+        ),
     )
 
 

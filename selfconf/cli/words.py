@@ -115,11 +115,7 @@ def losses_text(losses: Sequence[Loss], names: Names) -> str:
     """What would replace each component, for people; single points of failure stand out."""
     width = max((len(names(loss.component)) for loss in losses), default=0)
     lines = ["if it failed"]
-    for loss in losses:
-        instead = ", ".join(map(names, loss.started)) or "nobody needed"
-        also = f", and {', '.join(map(names, loss.stopped))} would stop" if loss.stopped else ""
-        fate = "NONE, a single point of failure" if loss.fatal else f"{instead}{also}"
-        lines.append(f"  {names(loss.component):<{width}}  ->  {fate}")
+    lines += [f"  {names(loss.component):<{width}}  ->  {loss.told(names)}" for loss in losses]
     return "\n".join(lines)
 
 
@@ -132,6 +128,7 @@ def losses_body(losses: Sequence[Loss]) -> list[dict[str, Any]]:
             "single_point_of_failure": loss.fatal,
             "started": list(loss.started),
             "stopped": list(loss.stopped),
+            "moved": [{"component": component, "role": role} for component, role in loss.moved],
         }
         for loss in losses
     ]

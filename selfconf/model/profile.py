@@ -7,6 +7,7 @@ component types and the properties. Operational parameters set or tune the runni
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import NamedTuple
 
 from selfconf.model.term import IRI, Term
@@ -40,13 +41,19 @@ class Output(NamedTuple):
 
 
 class Ports(NamedTuple):
-    """The functional part of a profile, each sorted by name; components with the same ports may share one of these."""
+    """The functional part of a profile, each sorted by name."""
 
     inputs: tuple[Input, ...] = ()
     outputs: tuple[Output, ...] = ()
 
 
 NO_PORTS = Ports()
+
+
+@lru_cache(maxsize=10_000)
+def shared_ports(inputs: tuple[Input, ...], outputs: tuple[Output, ...]) -> Ports:
+    """Ports as one object for all who have the same, so that a search tells by identity who is alike."""
+    return Ports(inputs, outputs)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,8 +33,8 @@ class Contradiction:
 
     def __str__(self) -> str:
         return (
-            f"the role {self.role.short} asks for at least {self.minimum} components and at most {self.maximum}; "
-            "nothing can satisfy both"
+            f"the role {self.role.short} asks for no fewer than {self.minimum} and no more than {self.maximum} "
+            "components; nothing can satisfy both"
         )
 
 
@@ -91,12 +91,12 @@ class Step:
     signal: IRI
     sources: tuple[IRI, ...]
     optional: tuple[IRI, ...] = ()
-    """Those of the sources that are asked for nobody (`sc:minCount 0`), so that their candidates do not count."""
+    """Those of the sources that ask for nobody (`sc:minCount 0`), so that their candidates do not count."""
 
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
         nobody = f"nobody left in {{}} issues a {self.signal.short}"
-        lack = _lack(self.sources, self.optional, nobody, "no role feeds it")
+        lack = _lack(self.sources, self.optional, nobody, f"no interaction feeds its input {self.input!r}")
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
 
 
@@ -104,7 +104,7 @@ def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], nobody: str, no_r
     """Why nobody feeds an input: `nobody` is said of the sources that are asked for somebody."""
     asked = [source.short for source in sources if source not in optional]
     said = [nobody.format(listed(asked))] if asked else [] if optional else [no_role]
-    return ", and ".join([*said, *(f"{role.short} is asked for nobody (sc:minCount 0)" for role in optional)])
+    return ", and ".join([*said, *(f"the role {role.short} asks for nobody (sc:minCount 0)" for role in optional)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,12 +121,12 @@ class InputUnfed:
     consequences: tuple[Step, ...] = ()
     """What follows from it, up to the role that nobody is left to play."""
     optional: tuple[IRI, ...] = ()
-    """Those of the sources that are asked for nobody (`sc:minCount 0`), so that their candidates do not count."""
+    """Those of the sources that ask for nobody (`sc:minCount 0`), so that their candidates do not count."""
 
     def __str__(self) -> str:
         name = f"the input {self.input!r} ({self.signal.short}) of {self.component.short}"
         nobody = f"no candidate of {{}} issues a {self.signal.short} for it"
-        lack = _lack(self.sources, self.optional, nobody, f"no role feeds the role {self.role.short}")
+        lack = _lack(self.sources, self.optional, nobody, f"no interaction feeds it in the role {self.role.short}")
         return "; so ".join([f"{name} cannot be fed: {lack}", *map(str, self.consequences)])
 
 
@@ -208,12 +208,15 @@ class Undecided:
     steps: int = 0
     seconds: float | None = None
     """The time that was allowed, if it was time that ended the search."""
+    unaided: bool = False
+    """Whether there was no clause-learning solver at hand."""
 
     def __str__(self) -> str:
         if self.seconds is not None:
             return f"not decided within {self.seconds:g} s; allow more by --seconds"
         steps = "1 step" if self.steps == 1 else f"{self.steps} steps"
-        return f"not decided within {steps}; allow more by --steps, or install selfconf[solvers]"
+        solver = ", or install selfconf[solvers]" if self.unaided else ""
+        return f"not decided within {steps}; allow more by --steps{solver}"
 
 
 Outcome = Configuration | Refusal | Undecided

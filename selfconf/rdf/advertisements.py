@@ -16,7 +16,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from selfconf.model.profile import Input, OperationalParameter, Output, Place, Ports, Profile
+from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile, shared_ports
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
@@ -182,7 +182,7 @@ class _Reader:
             properties=tuple(
                 sorted({(p, o) for p, o in statements if p not in STRUCTURE and allowed(p, o)}, key=property_order)
             ),
-            ports=Ports(
+            ports=shared_ports(
                 tuple(sorted(inputs, key=lambda port: port.name)),
                 tuple(sorted(outputs, key=lambda port: port.name)),
             ),

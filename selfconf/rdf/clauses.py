@@ -129,8 +129,6 @@ class Clauses(dict[str, Clause]):
     def __init__(self) -> None:
         self.suspects: set[Clause] = set()
         """Clauses about which only the careful reader can tell."""
-        self.ports: dict[tuple[Clause, ...], Ports] = {}
-        """What clauses that state ports make together: components that say the same share it."""
         self._slots: dict[object, object] = {}
         self._predicates: dict[str, str] = {}
         self._allowed: dict[str, bool] = {}

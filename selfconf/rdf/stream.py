@@ -14,11 +14,11 @@ from hashlib import blake2s
 from itertools import starmap
 from operator import attrgetter
 
-from selfconf.model.profile import OperationalParameter, Place, Ports, Profile
+from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile, shared_ports
 from selfconf.model.term import IRI, BlankNode, Term
 from selfconf.rdf import advertisements, turtle
 from selfconf.rdf.advertisements import Advertisement, Malformed, about
-from selfconf.rdf.clauses import END, NEXT, Clause, Clauses
+from selfconf.rdf.clauses import END, NEXT, Clause
 from selfconf.rdf.pieces import Pieces, folded
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import SC
@@ -46,7 +46,7 @@ class Streamed(Advertisement):
     def profile(self) -> Profile:
         """What it says, as a value."""
         if self._profile is None:
-            self._profile = _merged(self.component, self.types, self._clauses, self._origin)
+            self._profile = _merged(self.component, self.types, self._clauses, self._origin.place)
         return self._profile
 
     @property
@@ -77,10 +77,11 @@ class Judged(Streamed):
         return ()
 
 
-def _merged(component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], origin: Origin) -> Profile:
+def _merged(component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], place: Place) -> Profile:
     """The profile of a component about which nothing is unusual."""
     properties: list[Keyed] = []
-    ports: list[Clause] = []
+    inputs: list[Input] = []
+    outputs: list[Output] = []
     parameters: list[OperationalParameter] = []
     preference, command = 0.0, None
     for clause in clauses:
@@ -88,8 +89,10 @@ def _merged(component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], 
             properties += clause.keyed or _keyed(clause, component)
             continue
         part = clause.part or clause.read()
-        if part.inputs or part.outputs:
-            ports.append(clause)
+        if part.inputs:
+            inputs += part.inputs
+        elif part.outputs:
+            outputs += part.outputs
         elif part.parameters:
             parameters += part.parameters
         else:
@@ -100,11 +103,14 @@ def _merged(component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], 
         component,
         types,
         tuple(dict.fromkeys([pair for _, pair in properties])),
-        origin.ports(tuple(ports)),
+        shared_ports(
+            tuple(inputs) if len(inputs) < 2 else tuple(sorted(inputs, key=_NAME)),
+            tuple(outputs) if len(outputs) < 2 else tuple(sorted(outputs, key=_NAME)),
+        ),
         tuple(parameters) if len(parameters) < 2 else tuple(sorted(parameters, key=_NAME)),
         preference,
         command,
-        origin.place,
+        place,
     )
 
 
@@ -126,20 +132,9 @@ def _own(value: BlankNode, component: IRI) -> BlankNode:
 class Origin:
     """The document that advertisements came from: its name, and what it says about things that are no components."""
 
-    def __init__(self, source: str, clauses: Clauses) -> None:
+    def __init__(self, source: str) -> None:
         self.place = Place(source)
         self.things: dict[str, list[Clause]] = {}
-        self._ports = clauses.ports
-
-    def ports(self, clauses: tuple[Clause, ...]) -> Ports:
-        """What clauses that state ports make together."""
-        found = self._ports.get(clauses)
-        if found is None:
-            parts = [clause.read().ports for clause in clauses]
-            inputs = sorted([port for part in parts for port in part.inputs], key=_NAME)
-            outputs = sorted([port for part in parts for port in part.outputs], key=_NAME)
-            found = self._ports[clauses] = Ports(tuple(inputs), tuple(outputs))
-        return found
 
     @cached_property
     def surroundings(self) -> Document:
@@ -174,7 +169,7 @@ def read(
     if subjects is None:
         return advertisements.read(turtle.parse(text, source, base))
     del text  # as large as what is made of it
-    origin = Origin(source, pieces)
+    origin = Origin(source)
     found: list[Advertisement | tuple[IRI, list[Clause]]] = []
     suspects, slot, component_type = pieces.suspects, attrgetter("slot"), SC.Component
     unusual = False

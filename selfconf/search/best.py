@@ -5,8 +5,9 @@ level. The answer is the lexicographically first of the solutions of least cost,
 are added by the extension are a gift and do not count. `first` ignores cost: it takes the least solution in the order
 of preference. With no cost stated, or one that is the same for all, both give the same answer.
 
-*After a failure.* With a configuration that runs, to give up as few of its components as can be is the first level of
-the cost: whoever did not play the role costs one. So the answer is the cheapest of the nearest solutions.
+*After a failure.* With a configuration that runs, newcomers are the first level of the cost: who did not play the role
+costs one. So the answer starts as few components as can be, and is the cheapest of the solutions that do. What is
+beyond the minima does not count, nor do connections, unlike in a repair (`repair`).
 
 *How.* Levels are folded into one integer that is ordered as they are. Options of a role are sorted by cost, then by
 their order, for which the argument of the kernel holds as it does for the order alone: a member of a group that is
@@ -68,12 +69,12 @@ class Optimum:
 def search(problem: Problem, steps: int = STEPS, running: Configuration | None = None) -> Optimum | Refusal | Undecided:
     """The best configuration that was found within so many steps, or why there is none.
 
-    With a configuration that runs it is the best of those that keep the most of its components.
+    With a configuration that runs it is the best of those with the fewest newcomers.
     """
     given = Prepared(problem)
     playing = solve.solution(given, Budget(steps))
     if isinstance(playing, Undecided):
-        return Undecided(steps)
+        return Undecided(steps, unaided=not sat.available())
     if playing is None:
         return explain.refusal(given)
     prices = Prices(problem, running)
@@ -88,8 +89,6 @@ def search(problem: Problem, steps: int = STEPS, running: Configuration | None =
     if not done and sat.available():
         better, bound, done = _by_clauses(part, prices, Budget(steps))
         chosen = better or chosen
-    if chosen is not None:
-        total = sum(prices.of[o.kind.role][o.number] for o in chosen)
     if chosen is not None:
         playing = [[] for _ in problem.roles]
         for option in chosen:

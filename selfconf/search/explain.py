@@ -254,14 +254,14 @@ def _steps(problem: Problem, given: Compact, found: Sequence[Requirement]) -> It
     for (role, number), kinds in leaving.items():
         need = given.needs[number]
         profile = problem.candidates[role][min(kind.number for kind in kinds)].profile
-        ports = [port for port in profile.inputs if port.signal == need.signal]
-        port = next((port for port in ports if port.name == need.input), ports[0])
+        wanting = [name for name, signal in profile.inputs if signal == need.signal]
+        unfed = next(name for name in wanting if problem.feeding(role, name) == need.sources)
         feeding = [problem.roles[source] for source in dict.fromkeys(source for source, _ in need.sources)]
         sources = tuple(feeder.iri for feeder in feeding)
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
         same = {like for kind in kinds for like in kind.likes}
         more = sum(map(same.__contains__, map(likeness, problem.candidates[role]))) - 1
-        yield Step(problem.roles[role].iri, profile.component, more, port.name, need.signal, sources, optional)
+        yield Step(problem.roles[role].iri, profile.component, more, unfed, need.signal, sources, optional)
 
 
 def _told(problem: Problem, given: Compact, requirement: Requirement) -> model.Requirement:

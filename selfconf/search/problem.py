@@ -31,6 +31,10 @@ Playing = Sequence[Sequence[Candidate]]
 """For each role, in order, the candidates that play it so far."""
 
 
+Sources = tuple[tuple[int, str | None], ...]
+"""The roles that may feed something, each with the name of the output, if the interaction names one."""
+
+
 class Link(NamedTuple):
     """An interaction seen from its sink: the index of the role that feeds it, and the ports if they are named."""
 
@@ -83,6 +87,11 @@ class Problem:
             if parameter.iri == variable.parameter and parameter.is_set:
                 return (1 << len(variable.domain)) - 1
         return ANY_VALUE
+
+    def feeding(self, role: int, name: str | None) -> Sources:
+        """What may feed an input of a role, by its name; None stands for one that no interaction names."""
+        some = [(source, output) for source, output, wanted in self.links[role] if wanted in (None, name)]
+        return tuple(dict.fromkeys(some))
 
     def matches(self, output: Output, link: Link, wanted: Input) -> bool:
         """Whether an output feeds an input along a link: the names, where given, and the signal types."""

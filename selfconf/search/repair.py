@@ -21,8 +21,9 @@ configuration all the same, and `proved` says that it may not be the nearest.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.partition import Candidate
@@ -39,6 +40,9 @@ WALK_STEPS = 2_000
 """Steps of depth-first search before clauses are written."""
 STEPS = 20_000
 """Steps until the search for the nearest configuration is content with a near one."""
+
+
+_COMPONENT: Callable[[Candidate], IRI] = attrgetter("profile.component")
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +109,15 @@ def _alive(problem: Problem, running: Configuration) -> list[list[tuple[int, Can
     ]
 
 
+def _living(problem: Problem, running: Configuration, alive: list[list[tuple[int, Candidate]]]) -> set[IRI]:
+    """What runs and is still eligible for some role, if not for its own."""
+    living = {candidate.profile.component for role in alive for _, candidate in role}
+    others = {component for component in running.components if component not in living}
+    for candidates in problem.candidates if others else ():
+        living |= others.intersection(map(_COMPONENT, candidates))
+    return living
+
+
 def _numbered(candidates: tuple[Candidate, ...], wanted: set[IRI]) -> list[tuple[int, Candidate]]:
     found: list[tuple[int, Candidate]] = []
     for number, candidate in enumerate(candidates):
@@ -120,7 +133,7 @@ def _best(
 ) -> Configuration | None:
     """The best configuration that gives up so many running components, if there is one."""
     whole = sum(map(len, alive))
-    living = {c.profile.component for role in alive for _, c in role}
+    living = _living(problem, running, alive)
     possible = sum(c.source in living and c.sink in living for c in running.connections)
     best: tuple[int, int] | None = None
     answer: Configuration | None = None
@@ -138,7 +151,7 @@ def _by_clauses(
     problem: Problem, running: Configuration, alive: list[list[tuple[int, Candidate]]], budget: Budget
 ) -> Configuration | None:
     """The nearest configuration of a problem that has one and whose roles ask for fixed numbers."""
-    part = pruned(compact(problem, {c.profile.component for role in alive for _, c in role}))
+    part = pruned(compact(problem, _living(problem, running, alive)))
     stays = {(role, number) for role, some in enumerate(alive) for number, _ in some}
     with sat.Clauses(part) as clauses:
         plays = {

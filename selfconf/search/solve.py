@@ -58,7 +58,7 @@ def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
     given = Prepared(problem)
     playing = solution(given, Budget(steps))
     if isinstance(playing, Undecided):
-        return Undecided(steps)
+        return Undecided(steps, unaided=not sat.available())
     return explain.refusal(given, steps) if playing is None else problem.solved(playing)
 
 

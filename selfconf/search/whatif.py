@@ -23,20 +23,25 @@ class Loss:
     """Components that would begin to play a part, in the order of the roles."""
     stopped: tuple[IRI, ...] = ()
     """Components that would no longer play one, apart from the one that failed."""
+    moved: tuple[tuple[IRI, IRI], ...] = ()
+    """Components that would play another role, each with that role."""
 
     @property
     def fatal(self) -> bool:
         """Whether it is a single point of failure."""
         return isinstance(self.after, Refusal)
 
-    def __str__(self) -> str:
-        head = f"{self.component.short} ({self.role.short})"
+    def told(self, name: Callable[[IRI], str]) -> str:
+        """What would come instead, with names for things."""
         if self.fatal:
-            return f"{head}: none, a single point of failure"
-        if not self.started:
-            return f"{head}: none needed"
-        stops = f", and {', '.join(one.short for one in self.stopped)} would stop" if self.stopped else ""
-        return f"{head}: {', '.join(one.short for one in self.started)}{stops}"
+            return "NONE, a single point of failure"
+        changes = [", ".join(map(name, self.started))] if self.started else []
+        changes += [f"{name(one)} as {name(role)}" for one, role in self.moved]
+        instead = ", ".join(changes) or "nobody needed"
+        return f"{instead}, and {', '.join(map(name, self.stopped))} would stop" if self.stopped else instead
+
+    def __str__(self) -> str:
+        return f"{self.component.short} ({self.role.short}): {self.told(lambda iri: iri.short)}"
 
 
 def losses(
@@ -53,10 +58,12 @@ def losses(
                 yield Loss(component, assignment.role, after)
             else:
                 before, now = running.components, after.components
+                playing = [(one, new.role) for new in after.assignments for one in new.components]
                 yield Loss(
                     component,
                     assignment.role,
                     after,
                     tuple(one for one in now if one not in before),
                     tuple(one for one in before if one not in now and one != component),
+                    tuple((one, role) for one, role in playing if one in before and running.role_of(one) != role),
                 )

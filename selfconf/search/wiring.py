@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 from selfconf.model.profile import Input, Output
 from selfconf.model.term import IRI
-from selfconf.search.problem import Problem
-
-Sources = tuple[tuple[int, str | None], ...]
-"""The roles that may feed something, each with the name of the output, if the interaction names one."""
+from selfconf.search.problem import Problem, Sources
 
 
 class Need(NamedTuple):
-    """A signal that an input of whoever plays `role` must get; `input` only where an interaction names one."""
+    """A signal that an input of whoever plays `role` must get.
+
+    `input` is the name of the first such input, where some interaction into the role names an input.
+    """
 
     role: int
     signal: IRI
@@ -67,11 +67,11 @@ class Wiring:
 class _Feeding:
     """What feeds a role, and its needs so far."""
 
-    __slots__ = ("_by_name", "_links", "_role", "_same", "by_signal", "named", "number")
+    __slots__ = ("_by_name", "_problem", "_role", "_same", "by_signal", "named", "number")
 
     def __init__(self, problem: Problem, role: int) -> None:
-        self._role, self._links = role, problem.links[role]
-        self.named = any(link.input for link in self._links)
+        self._problem, self._role = problem, role
+        self.named = any(link.input for link in problem.links[role])
         self.number: dict[Input | IRI, int] = {}
         """The need that an input is."""
         self.by_signal: dict[IRI, list[int]] = {}
@@ -83,8 +83,7 @@ class _Feeding:
         name, signal = wanted if self.named else (None, wanted.signal)
         sources = self._by_name.get(name)
         if sources is None:
-            pairs = [(source, output) for source, output, only in self._links if only is None or only == name]
-            sources = self._by_name[name] = tuple(dict.fromkeys(pairs))
+            sources = self._by_name[name] = self._problem.feeding(self._role, name)
         number = self._same.setdefault((signal, sources), len(needs)) if self.named else len(needs)
         if number == len(needs):
             needs.append(Need(self._role, signal, sources, name))

@@ -133,5 +133,5 @@ def test_a_source_that_is_asked_for_nobody_is_not_said_to_issue_nothing() -> Non
         {"sonar": (0, 1)},
     )
     (reason,) = solve.search(given_).reasons
-    cause = "no candidate of bumper issues a RangeScan for it, and sonar is asked for nobody (sc:minCount 0)"
+    cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for nobody (sc:minCount 0)"
     assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.partition import Candidate
+from selfconf.model.partition import Candidate, Partition
 from selfconf.model.refusal import Refusal
 from selfconf.search import repair, solve
 from selfconf.search.problem import Problem
@@ -51,14 +51,24 @@ def _nearest(world: World, running: Configuration) -> Configuration | None:
     return best
 
 
+def _after_losses(problem: Problem, running: Configuration, data: st.DataObject) -> Problem:
+    """The problem once one or two components are gone, and one or two others are not eligible any more for a role."""
+    lost = frozenset(data.draw(st.sets(st.sampled_from(running.components), min_size=1, max_size=2)))
+    unfit = [data.draw(st.sets(st.sampled_from(running.components), max_size=1)) for _ in problem.roles]
+    candidates = tuple(
+        tuple(c for c in role if c.profile.component not in out)
+        for role, out in zip(problem.partition.without(lost).candidates, unfit, strict=True)
+    )
+    return Problem(problem.task, Partition(candidates, problem.variables), problem.hierarchy)
+
+
 @given(problems(), st.data())
 @agreement(0.5)
 def test_a_repair_keeps_the_most_and_is_the_first_that_does(problem: Problem, data: st.DataObject) -> None:
     running = solve.search(problem)
     if not isinstance(running, Configuration) or not running.components:
         return
-    lost = data.draw(st.sets(st.sampled_from(running.components), min_size=1, max_size=2))
-    left = Problem(problem.task, problem.partition.without(frozenset(lost)), problem.hierarchy)
+    left = _after_losses(problem, running, data)
     answer = repair.search(left, running)
     expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
     assert (answer if isinstance(answer, Configuration) else None) == expected
@@ -74,14 +84,25 @@ def test_clause_learning_gives_the_same_repair(problem: Problem, data: st.DataOb
     running = solve.search(Problem(task, problem.partition, problem.hierarchy))
     if not isinstance(running, Configuration) or not running.components:
         return
-    lost = data.draw(st.sets(st.sampled_from(running.components), min_size=1, max_size=2))
-    left = Problem(task, problem.partition.without(frozenset(lost)), problem.hierarchy)
+    left = _after_losses(Problem(task, problem.partition, problem.hierarchy), running, data)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(repair, "WALK_STEPS", 0)
         answer = repair.nearest(left, running)
     expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
     assert (answer.configuration if isinstance(answer, repair.Repaired) else None) == expected
     assert isinstance(answer, Refusal) or answer.proved
+
+
+def test_who_has_to_change_roles_may_keep_connections_all_the_same() -> None:
+    x, w, v = (component(name, outputs="o:Scan") for name in "xwv")
+    n, cap = component("n"), component("cap", "i:Scan")
+    running = solve.search(problem({"first": [x], "second": [w], "control": [cap]}, "first>control second>control"))
+    assert isinstance(running, Configuration)
+    left = problem({"first": [n], "second": [v, x], "control": [cap]}, "first>control second>control")
+    answer = repair.nearest(left, running)
+    assert isinstance(answer, repair.Repaired)
+    assert [one.short for one in answer.configuration.components] == ["n", "x", "cap"]
+    assert (answer.kept, answer.connections, answer.proved) == (1, 1, True)
 
 
 def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:

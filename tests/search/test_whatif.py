@@ -37,5 +37,17 @@ def test_each_component_is_told_what_would_come_instead() -> None:
     assert isinstance(running, Configuration)
     assert [str(loss) for loss in losses(given_, running)] == [
         "tracker (position): odometry",
-        "cap (control): none, a single point of failure",
+        "cap (control): NONE, a single point of failure",
+    ]
+
+
+def test_who_would_play_another_role_is_told() -> None:
+    a, b, x = component("a"), component("b"), component("x")
+    given_ = problem({"first": [a, x], "second": [b, x]}, counts={"second": (1, None)})
+    running = solve.search(given_)
+    assert isinstance(running, Configuration)
+    assert [str(loss) for loss in losses(given_, running)] == [
+        "a (first): x as first",
+        "b (second): nobody needed",
+        "x (second): nobody needed",
     ]
