@@ -1,7 +1,8 @@
 """The search of selfconf and the engines beside it, each fed with the problem as its users would write it down.
 
 An engine gets a problem and answers whether there is a configuration. Ours gives the first one; the general solvers
-may give any, which is the easier question. Building the model is part of the time, importing a library is not.
+may give any, which is the easier question. The families ask for one component per role and name no ports, so that
+neither do the models. Building the model is part of the time, importing a library is not.
 """
 
 from __future__ import annotations

@@ -64,7 +64,8 @@ def table(rows: Sequence[Row]) -> str:
     ]
     for row in rows:
         cells = " | ".join(_cell(row.found.get(engine)) for engine in engines)
-        ratio = "no other answers" if row.ratio is None else f"{row.ratio:.2f}"
+        late = ">" if row.found["selfconf"].answer is None else ""
+        ratio = "no other answers" if row.ratio is None else f"{late}{row.ratio:.2f}"
         missed = row.counts and (row.ratio or 0.0) > GOAL
         ratio = f"**{ratio}**" if missed else ratio
         lines.append(f"| {row.instance.family} | {row.instance.name} | {cells} | {ratio} |")
@@ -174,7 +175,7 @@ def page(rows: Sequence[Row], limit: float, tuned: str = "") -> str:
         " the time, importing a library is not. selfconf answers with the lexicographically first configuration, the"
         " others with any, which is the easier question. python-sat is Glucose 4 with cardinalities as clauses, the"
         " usual way; MiniCard is the solver of the same library that counts by itself, which selfconf uses in the end"
-        " too. SPARQL asks one query for the whole template, on small sizes."
+        " too. Every engine has one thread. SPARQL asks one query for the whole template, on small sizes."
     )
     parts = [
         "# The search beside general solvers",
@@ -192,7 +193,8 @@ def page(rows: Sequence[Row], limit: float, tuned: str = "") -> str:
         parts += ["## Decided by nobody", table(rest)]
     note = (
         "How far the peak of resident memory rises above that of the problem itself, where some engine needs over"
-        " 20 MB. What fits into memory that making the problem has left free shows as 0."
+        " 20 MB. What fits into memory that making the problem has left free does not show there; for selfconf it is at"
+        " least what Python allocates, counted in a run of its own."
     )
     if tuned:
         parts += ["## How the thresholds were chosen", TUNING, tuned]

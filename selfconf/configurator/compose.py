@@ -174,8 +174,8 @@ class Composer:
         """What comes after a configuration that runs."""
         if self.strategy is Strategy.BEST:
             *_, found = self._best(problem, running)
-            if isinstance(found, Optimum):
-                return found.configuration
+            if not isinstance(found, Undecided):
+                return found.configuration if isinstance(found, Optimum) else found
         return repair.search(problem, running)
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:

@@ -7,9 +7,10 @@
 4. Otherwise the clause-learning engine names assumptions that cannot hold together, again and again with one of
    them left out, until each is needed.
 
-What 2 and 3 give is made irreducible by QuickXplain (Junker, AAAI 2004), and so is everything together where there is
-no such engine: a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains
-of n. Each is decided on a problem with only these requirements in force, which is small when they are few.
+What 2 and 3 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component only:
+then any of its roles can be left out. So is everything together where there is no such engine: a question of the kind
+"can these hold together?" for about k log(n / k) subsets, k being what remains of n. Each is decided on a problem with
+only these requirements in force, which is small when they are few.
 Irreducible does not mean smallest.
 """
 

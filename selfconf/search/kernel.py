@@ -2,8 +2,8 @@
 
 Three cuts, each of which keeps the least solution.
 (1) Of each kind of a role with k slots take the first k candidates. If nobody is among all these twice, they suffice:
-of a least solution give each slot in turn the next of them that is of the kind in that slot. All are different, no
-slot gets a later candidate than it had, and so it is the same solution.
+of a least solution give each slot in turn the next of them that is of the kind in that slot. All are different, and of
+those in a role, in order, none comes later than the one in its place did. So it is the same solution.
 (2) Otherwise let S be the number of all slots. Of each kind of a role the first S suffice: were a later one in a slot
 of the least solution, then at most S - 1 of the first S would play, one of them would be free, and putting it there
 would give a lesser solution. This needs no knowledge of who is eligible for what else.
@@ -12,7 +12,13 @@ the number of slots of R. For each role of R the first k of the group suffice, b
 play in the k slots of R. Keeping one per kind would be wrong as soon as roles share candidates.
 Roles with no slots take no part: nobody plays them before the extension.
 
-Cost: one pass over the candidates of roles that have slots; after it only kinds and kept candidates are touched.
+The cuts need no more of a kind than that whoever is of it can take the place of another. So they hold for any order of
+the candidates, for what is left when requirements are dropped (`requirement`), and when components are added, as long
+as nobody who is a candidate becomes one of a further role. Whoever may is set *apart*: of a kind of its own, so that
+it is neither cut nor counted as one of the first; with somebody apart, cut (1) is left out.
+
+Cost: a pass over the candidates of roles that have slots, and where these share candidates another one; after it only
+kinds and kept candidates are touched.
 """
 
 from __future__ import annotations
@@ -42,15 +48,16 @@ def compact(problem: Problem, apart: Collection[IRI] = (), order: Mapping[int, S
     slots = tuple(role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum))
     minima = Counter(slots)
     wiring = Wiring(problem)
-    numbers, most = _enough(problem, apart, order, minima)
+    numbers, shared = _enough(problem, apart, order, minima)
+    most = dict.fromkeys(minima, len(slots)) if shared else minima
     left = {
         role: _alike(role, problem.candidates[role], some, most[role], apart, wiring) for role, some in numbers.items()
     }
     for role, options in left.items():
         for kind in dict.fromkeys([option.kind for option in options]):
             kind.gives = wiring.served(role, kind.likes[0][0].outputs)
-    if most is not minima:
-        left = kernel(left, minima)
+    if shared:
+        left = thinned(left, minima)
     return Compact(
         slots,
         tuple(tuple(left.get(role, ())) for role in range(len(problem.roles))),
@@ -64,21 +71,19 @@ def _enough(
     apart: Collection[IRI],
     order: Mapping[int, Sequence[int]] | None,
     minima: Mapping[int, int],
-) -> tuple[Mapping[int, Sequence[int]], Mapping[int, int]]:
-    """The candidates of each role that can matter, by number, and how many of each kind suffice: cuts (1) and (2)."""
+) -> tuple[Mapping[int, Sequence[int]], bool]:
+    """The candidates of each role that can matter, by number, by cut (1) or else (2), and whether it was (2)."""
     everybody: dict[int, Sequence[int]] = {
         role: range(len(problem.candidates[role])) if order is None else order[role] for role in minima
     }
-    slots = dict.fromkeys(minima, sum(minima.values()))
+    slots = sum(minima.values())
     if apart:
-        return {
-            role: _with(problem.candidates[role], some, slots[role], apart) for role, some in everybody.items()
-        }, slots
+        return {role: _with(problem.candidates[role], some, slots, apart) for role, some in everybody.items()}, True
     if not _twice(problem, {role: some[:1] for role, some in everybody.items()}):
         firsts = {role: _first(problem.candidates[role], some, minima[role]) for role, some in everybody.items()}
         if not _twice(problem, firsts):
-            return firsts, minima
-    return {role: _first(problem.candidates[role], some, slots[role]) for role, some in everybody.items()}, slots
+            return firsts, False
+    return {role: _first(problem.candidates[role], some, slots) for role, some in everybody.items()}, True
 
 
 def _with(candidates: Sequence[Candidate], numbers: Sequence[int], most: int, apart: Collection[IRI]) -> Sequence[int]:
@@ -125,8 +130,8 @@ def _alike(
 def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -> Sequence[int]:
     """Those among the first so many that share one and the same ports and values.
 
-    The one pass over all candidates: no step of Python for who is passed over, nor a look at what ports say. Ports
-    that say the same but are not shared count as different here.
+    The pass over all candidates: no step of Python for who is passed over, nor a look at what ports say. Ports that
+    say the same but are not shared count as different here, which costs time alone.
     """
     if len(numbers) <= most:
         return numbers
@@ -152,8 +157,8 @@ def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -
     return found
 
 
-def kernel(left: Mapping[int, list[Option]], minima: Mapping[int, int]) -> dict[int, list[Option]]:
-    """Of each group as many options as there are slots for it, the first ones."""
+def thinned(left: Mapping[int, list[Option]], minima: Mapping[int, int]) -> dict[int, list[Option]]:
+    """Of each group as many options as there are slots for it, the first ones: cut (3)."""
     kinds: defaultdict[IRI, list[Kind]] = defaultdict(list)
     for options in left.values():
         for option in options:

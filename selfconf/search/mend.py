@@ -62,7 +62,7 @@ def with_repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMi
 def repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMiss, Candidate]] = ()) -> Iterator[Repair]:
     """Changes that make a refused problem possible, what is easiest to do first."""
     near = near[:TRIALS]
-    small = _kernel(problem, {one.component for one, _ in near})
+    small = _small(problem, {one.component for one, _ in near})
     yield from (a for a in itertools.starmap(AcceptNearMiss, near) if _possible(mended(small, a)))
     yield from (r for r in _asked_for_one(problem, refused) if _possible(mended(problem, r)))
     added = _additions(small)
@@ -102,7 +102,8 @@ def _possible(problem: Problem) -> bool:
     return isinstance(_solution(problem), list)
 
 
-def _kernel(problem: Problem, apart: Collection[IRI]) -> Problem:
+def _small(problem: Problem, apart: Collection[IRI]) -> Problem:
+    """The problem with only the candidates of its kernel."""
     kept = compact(problem, apart).options
     candidates = tuple(
         tuple(candidates[option.number] for option in options)

@@ -14,7 +14,7 @@ from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
 from selfconf.search.compact import Compact, Kind, Option
 from selfconf.search.consistency import consistent
-from selfconf.search.kernel import kernel
+from selfconf.search.kernel import thinned
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ def relaxed(given: Compact, force: Set[Requirement]) -> Compact:
         for role in dict.fromkeys(slots)
     }
     minima = Counter(slots)
-    kept = kernel(left, minima)
+    kept = thinned(left, minima)
     free = tuple(ANY_VALUE for _ in given.values)
     for role in left:
         if role not in required:
