@@ -120,7 +120,7 @@ class _Check:
                 yield f"the parameter {name} is {found}, which no candidate allows"
             else:
                 bit = 1 << variable.domain.index(found)
-                for candidate in constrained:
+                for candidate in (candidate for some in players.values() for candidate in some):
                     if not candidate.admits[number] & bit:
                         yield f"{candidate.profile.component.short} does not allow {name} to be {found}"
 
@@ -128,7 +128,7 @@ class _Check:
         names = {parameter.iri: parameter.name for parameter in self.template.parameters}
         expected: list[ParameterSetting] = []
         for role in self.template.roles:
-            for setting in role.settings:
+            for setting in role.settings if players[role.iri] else ():
                 value: Term | None = setting.value
                 if isinstance(value, IRI) and value in names:
                     value = self.configuration.bindings.get(names[value])

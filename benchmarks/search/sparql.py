@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import pyoxigraph as ox
 import rdflib
 
+from selfconf.model.partition import ANY_VALUE
 from selfconf.model.profile import Input, Output, Profile
 from selfconf.search.problem import Link, Problem
 
@@ -71,14 +72,19 @@ def triples(problem: Problem) -> Iterator[Triple]:
             yield name, f"{BASE}plays{role}", f"{BASE}yes"
             yield from _ports(problem, candidate.profile, tell)
             for variable, mask in enumerate(candidate.admits):
-                if mask >= 0:
+                if mask != ANY_VALUE:
                     yield name, f"{BASE}constrained{role}", f"{BASE}variable{variable}"
-                    for number in range(mask.bit_length()):
+                    for number in _values(problem, variable):
                         if mask >> number & 1:
                             yield name, f"{BASE}allows{role}.{variable}", f"{BASE}value{number}"
-    for variable, one in enumerate(problem.variables):
-        for number in range(len(one.domain)):
+    for variable in range(len(problem.variables)):
+        for number in _values(problem, variable):
             yield f"{BASE}variable{variable}", f"{BASE}domain", f"{BASE}value{number}"
+
+
+def _values(problem: Problem, variable: int) -> range:
+    """The numbers of the values of a variable, the last of them, unless it is set, a value that nobody names."""
+    return range(len(problem.variables[variable].domain) + (problem.open_values[variable] == ANY_VALUE))
 
 
 def _ports(problem: Problem, profile: Profile, tell: bool) -> Iterator[Triple]:

@@ -57,7 +57,7 @@ def run(given: argparse.Namespace) -> int:
     partition = partitioner.partition(ecology)
     seconds["partition"] = time.perf_counter() - began
     rows = [
-        (role, candidates, partitioner.exclusions(compiled, ecology))
+        (role, candidates, partitioner.exclusions(compiled, {c.profile.component for c in candidates}, ecology))
         for role, compiled, candidates in zip(roles, partitioner.roles, partition.candidates, strict=True)
     ]
     if given.format == "json":

@@ -1,12 +1,14 @@
 """The partition F1 ... Fn: for each role, in order, who is eligible (section 3.2 of the paper).
 
 A parameter that is left unbound is a variable shared by the roles that mention it. What a candidate allows the
-variable to be is a bit mask over the variable's domain; `ANY_VALUE` (all bits set) does not constrain it at all.
+variable to be is a bit mask over the variable's domain. A negative mask, with infinitely many bits set, also allows
+what is not in the domain; `ANY_VALUE` (all bits set) does not constrain the variable at all.
 Candidates can play together iff, for each variable, the conjunction of their masks is not zero.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from selfconf.model.profile import Profile, candidate_order
@@ -23,7 +25,7 @@ class Variable:
     domain: tuple[Term, ...]
 
     def first(self, mask: int) -> Term | None:
-        """The first value that a mask allows, or None if it allows any value at all."""
+        """The first value that a mask allows, or None if it allows values that nobody names."""
         if mask < 0:
             return None
         return self.domain[(mask & -mask).bit_length() - 1]
@@ -58,11 +60,40 @@ class Partition:
     variables: tuple[Variable, ...] = ()
 
     def without(self, lost: frozenset[IRI]) -> Partition:
-        """The same partition after some components have left the ecology."""
+        """The same partition after some components have left the ecology, with the values that only they stated."""
+        left = tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates)
+        stated = [0] * len(self.variables)
+        for number in range(len(stated)):
+            for role in left:
+                for candidate in role:
+                    stated[number] |= max(0, candidate.admits[number])
+        if all(bits == (1 << len(v.domain)) - 1 for bits, v in zip(stated, self.variables, strict=True)):
+            return Partition(left, self.variables)
+        kept = [
+            [bit for bit in range(len(variable.domain)) if bits >> bit & 1]
+            for bits, variable in zip(stated, self.variables, strict=True)
+        ]
+        numbers = [number for number, places in enumerate(kept) if places]
         return Partition(
-            tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates),
-            self.variables,
+            tuple(
+                tuple(
+                    Candidate(c.profile, tuple(_moved(c.admits[number], kept[number]) for number in numbers))
+                    for c in role
+                )
+                for role in left
+            ),
+            tuple(
+                Variable(self.variables[n].parameter, tuple(self.variables[n].domain[place] for place in kept[n]))
+                for n in numbers
+            ),
         )
+
+
+def _moved(mask: int, kept: Sequence[int]) -> int:
+    """A mask over the values that are kept of a domain."""
+    if mask < 0:
+        return ANY_VALUE & ~sum(1 << bit for bit, place in enumerate(kept) if not mask >> place & 1)
+    return sum(1 << bit for bit, place in enumerate(kept) if mask >> place & 1)
 
 
 def ordered(candidates: list[Candidate]) -> tuple[Candidate, ...]:

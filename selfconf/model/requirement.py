@@ -19,7 +19,10 @@ class RolePlayed:
 
 @dataclass(frozen=True, slots=True)
 class InputFed:
-    """Whoever plays a role gets a signal; `input` is named where an interaction of the template names it."""
+    """Whoever plays a role gets a signal.
+
+    Where an interaction into the role names an input, `input` is the first that the same interactions may feed.
+    """
 
     role: IRI
     signal: IRI

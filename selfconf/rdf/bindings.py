@@ -19,6 +19,7 @@ from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SH, TYPE
 
 _CURIE = re.compile(r"([A-Za-z][\w.-]*)?:[^\s\"'<>()]*")
+_PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
 _NUMBER_OR_BOOLEAN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|true|false")
 
 
@@ -90,19 +91,31 @@ def complete(given: TaskDocument) -> TaskDocument:
 
 
 def _rigid(given: TaskDocument, parameter: Parameter) -> IRI | None:
-    """The property of a shape in which a parameter stands and which asks for a literal: no search finds a limit."""
+    """The property of a shape in which a parameter stands and which asks for a literal, or a path: none is searched."""
     for role in given.task.template.roles:
         for predicate, value in shape_statements(given.document, role.iri):
-            if value == parameter.iri and predicate in LITERAL:
+            if value == parameter.iri and (predicate in LITERAL or predicate in _PATHS):
                 return predicate
     return None
 
 
 def _check(parameter: Parameter, value: Term, document: Document) -> None:
-    """A parameter is a shape for its value (`sh:nodeKind`, `sh:datatype`, `sh:in` ...); pySHACL judges."""
+    for problem in misfits(parameter, (value,), document).values():
+        hint = ""
+        if isinstance(value, Literal) and "IRI" in problem:
+            hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
+        raise BindingError(f"{show(value)} cannot stand for the parameter {parameter.name!r}: {_plain(problem)}{hint}")
+
+
+def misfits(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
+    """Those of some values that cannot stand for a parameter, each with the reason.
+
+    A parameter is a shape for its value (`sh:nodeKind`, `sh:datatype`, `sh:in` ...); pySHACL judges.
+    """
     constraints = [p for p, _ in document.statements.get(parameter.iri, ()) if p in SH and p != SH.defaultValue]
-    if not constraints:
-        return
+    probes = {IRI(f"urn:selfconf:probe:{number}"): value for number, value in enumerate(values)}
+    if not constraints or not probes:
+        return {}
     probe, probe_shape = IRI("urn:selfconf:probe"), IRI("urn:selfconf:probe-shape")
     shapes = turtle.to_rdflib(document.triples())
     node, path = rdflib.URIRef(probe_shape), rdflib.BNode()
@@ -113,14 +126,10 @@ def _check(parameter: Parameter, value: Term, document: Document) -> None:
         if predicate in SH and predicate != SH.defaultValue:
             shapes.add((path, rdflib.URIRef(predicate), turtle.rdflib_term(constraint)))
     subjects = rdflib.Graph()
-    subjects.add((rdflib.URIRef(probe), rdflib.URIRef(probe), turtle.rdflib_term(value)))
-    problems = violations(subjects, shapes, probe_shape, [probe], document.source)
-    if problems:
-        hint = ""
-        if isinstance(value, Literal) and "IRI" in problems[probe]:
-            hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
-        problem = _plain(problems[probe])
-        raise BindingError(f"{show(value)} cannot stand for the parameter {parameter.name!r}: {problem}{hint}")
+    for one, value in probes.items():
+        subjects.add((rdflib.URIRef(one), rdflib.URIRef(probe), turtle.rdflib_term(value)))
+    found = violations(subjects, shapes, probe_shape, list(probes), document.source)
+    return {value: found[one] for one, value in probes.items() if one in found}
 
 
 def show(value: Term) -> str:

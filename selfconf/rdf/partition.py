@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 
 import rdflib
 
@@ -18,7 +19,7 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable, ordered
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term, sort_key
-from selfconf.rdf import turtle
+from selfconf.rdf import free_values, turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.bindings import free_parameters
 from selfconf.rdf.eligibility import CompiledRole
@@ -41,6 +42,8 @@ class Eligible:
 
     profile: Profile
     allows: Mapping[IRI, frozenset[Term]]
+    forbids: Mapping[IRI, frozenset[Term]] = field(default_factory=dict)
+    """For each free parameter that may be anything else, the values that it may not be."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +74,7 @@ class Partitioner:
     def __init__(self, given: TaskDocument, hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
         self.task, self.document, self.hierarchy = given.task, given.document, hierarchy
         self.free = free_parameters(given.task.template, given.task.bindings)
+        self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
         self.roles = tuple(
             compile_role(given.document, role.iri, tuple(s.type for s in role.settings), given.task.bindings, self.free)
             for role in given.task.template.roles
@@ -85,8 +89,7 @@ class Partitioner:
 
     def partition(self, advertisements: Advertisements) -> Partition:
         """F1 ... Fn and the variables that the free parameters are. Raises TemplateError for a shape that is none."""
-        ecology = Ecology.of(advertisements)
-        eligible = [list(self.eligible(role, ecology)) for role in self.roles]
+        eligible = self.eligible(Ecology.of(advertisements))
         variables = tuple(self._variables(eligible))
         bits = [{value: 1 << number for number, value in enumerate(variable.domain)} for variable in variables]
 
@@ -132,10 +135,9 @@ class Partitioner:
                 ]
                 yield from (NearMiss(role.iri, *one) for one in sorted(near) if one[0] not in lost)
 
-    def exclusions(self, role: CompiledRole, advertisements: Advertisements) -> list[Exclusion]:
-        """All that keeps each other component out of a role; first those of its class, and those with few obstacles."""
+    def exclusions(self, role: CompiledRole, inside: Container[IRI], advertisements: Advertisements) -> list[Exclusion]:
+        """All that keeps out of a role who is not inside; first those of its class, and those with few obstacles."""
         ecology = Ecology.of(advertisements)
-        inside = {found.profile.component for found in self.eligible(role, ecology)}
         akin = set(self.akin(role, ecology))
         outside = {
             advertisement: (kind in akin, verdict.obstacles)
@@ -155,49 +157,73 @@ class Partitioner:
             key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
         )
 
-    def eligible(self, role: CompiledRole, ecology: Ecology) -> Iterator[Eligible]:
-        """The components that conform to a role, unordered."""
-        tested = self.tested(role, ecology, self.akin(role, ecology))
-        passed = [(alike, verdict.allows) for _, alike, verdict in tested if not verdict.obstacles]
-        if role.complete:
-            yield from (Eligible(a.profile, allows) for alike, allows in passed if all(allows.values()) for a in alike)
-            return
-        survivors, everything = [a for alike, _ in passed for a in alike], list(ecology.values())
-        if mentions(self.document, role.iri, self.free):
-            yield from self._by_value(role, survivors, everything)
-        else:
-            outside = self._violations(role, survivors, everything, {})
-            yield from (Eligible(a.profile, {}) for a in survivors if a.component not in outside)
+    def eligible(self, ecology: Ecology) -> list[list[Eligible]]:
+        """For each role the components that conform to it, unordered. Raises TemplateError."""
+        everything = list(ecology.values())
+        found: list[list[Eligible]] = []
+        by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
+        for number, role in enumerate(self.roles):
+            tested = self.tested(role, ecology, self.akin(role, ecology))
+            passed = [(alike, verdict.allows) for _, alike, verdict in tested if not verdict.obstacles]
+            survivors = [a for alike, _ in passed for a in alike]
+            if role.complete:
+                found.append([Eligible(a.profile, allows) for alike, allows in passed for a in alike])
+            elif parameter := self._mentioned(role):
+                by_value[number] = parameter, survivors
+                found.append([])
+            else:
+                outside = self._violations(role, survivors, everything, {})
+                found.append([Eligible(a.profile, {}) for a in survivors if a.component not in outside])
+        stated: dict[IRI, set[Term]] = {parameter: set() for parameter in self.free}
+        for one in (one for some in found for one in some):
+            for parameter, values in one.allows.items():
+                stated[parameter] |= values
+        for number, (parameter, survivors) in by_value.items():
+            shown = self._visible(survivors if self.roles[number].local else everything)
+            stated[parameter] |= free_values.seen(self.document, self.roles[number].iri, shown)
+        suitable = {
+            parameter: free_values.suitable(self._parameters[parameter], values, self.document)
+            for parameter, values in stated.items()
+        }
+        for number, (parameter, survivors) in by_value.items():
+            found[number] = list(
+                self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, everything)
+            )
+        return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
 
-    def _by_value(
-        self, role: CompiledRole, passed: Sequence[Advertisement], everything: Sequence[Advertisement]
-    ) -> Iterator[Eligible]:
-        """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
+    def _mentioned(self, role: CompiledRole) -> IRI | None:
+        """The free parameter that the shape of a role mentions, if it does."""
         parameters = mentions(self.document, role.iri, self.free)
         if len(parameters) > 1:
-            names = " and ".join(sorted(p.name for p in self.task.template.parameters if p.iri in parameters))
+            names = " and ".join(sorted(self._parameters[parameter].name for parameter in parameters))
             raise TemplateError(
                 f"the role {role.iri!r} mentions the free parameters {names} in one shape that is judged by pySHACL; "
                 "bind all but one of them",
                 file=self.document.source,
             )
-        (parameter,) = parameters
-        values = {value for a in passed for _, value in a.profile.properties} | {
-            kind for a in passed for kind in a.profile.types
-        }
-        allowed: dict[IRI, set[Term]] = {a.component: set() for a in passed}
-        subjects = self._subjects(role, passed, everything)
+        return next(iter(parameters), None)
+
+    def _judged_by_value(
+        self,
+        role: CompiledRole,
+        parameter: IRI,
+        values: frozenset[Term],
+        survivors: Sequence[Advertisement],
+        everything: Sequence[Advertisement],
+    ) -> Iterator[Eligible]:
+        """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
+        allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
+        subjects = self._subjects(role, survivors, everything)
         for value in (*sorted(values, key=sort_key), ANOTHER):
-            outside = self._violations(role, passed, everything, {parameter: value}, subjects)
-            for advertisement in passed:
-                if advertisement.component not in outside:
-                    allowed[advertisement.component].add(value)
-        for advertisement in passed:
-            found = allowed[advertisement.component]
-            if ANOTHER in found:
-                yield Eligible(advertisement.profile, {})
-            elif found:
-                yield Eligible(advertisement.profile, {parameter: frozenset(found)})
+            outside = self._violations(role, survivors, everything, {parameter: value}, subjects)
+            for component in allowed.keys() - outside.keys():
+                allowed[component].add(value)
+        for advertisement in survivors:
+            found = frozenset(allowed[advertisement.component])
+            if ANOTHER not in found:
+                yield Eligible(advertisement.profile, {parameter: found})
+            else:
+                yield Eligible(advertisement.profile, {}, {parameter: values - found})
 
     def _violations(
         self,
@@ -243,9 +269,19 @@ class Partitioner:
                 yield Variable(parameter, tuple(sorted(domain, key=sort_key)))
 
 
+def _suited(suitable: Mapping[IRI, frozenset[Term]], eligible: Eligible) -> Eligible:
+    """With only the values that parameters may have."""
+    if all(values <= suitable[parameter] for parameter, values in eligible.allows.items()):
+        return eligible
+    allows = {parameter: values & suitable[parameter] for parameter, values in eligible.allows.items()}
+    return Eligible(eligible.profile, allows, eligible.forbids)
+
+
 def _mask(eligible: Eligible, parameter: IRI, bits: Mapping[Term, int]) -> int:
     allowed = eligible.allows.get(parameter)
-    return ANY_VALUE if allowed is None else sum(bits[value] for value in allowed)
+    if allowed is None:
+        return ANY_VALUE & ~sum(bits.get(value, 0) for value in eligible.forbids.get(parameter, ()))
+    return sum(bits[value] for value in allowed)
 
 
 def _clause(message: str) -> str:

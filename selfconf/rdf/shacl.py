@@ -38,7 +38,12 @@ _TARGETS = frozenset(
 )
 _CLASSES = frozenset((rdflib.RDFS.Class, rdflib.OWL.Class))
 """A shape that is a class has its instances as targets (SHACL, 2.1.3.3)."""
+_NOTHING = IRI("urn:selfconf:nothing")
+"""A node that nobody says anything about."""
+_NO_ORDER = (TypeError, ArithmeticError, ReportableRuntimeError)
+"""What rdflib raises, or pySHACL, where two values have no order."""
 _ILL_FORMED = (
+    ArithmeticError,
     ShapeLoadError,
     ConstraintLoadError,
     ReportableRuntimeError,
@@ -59,8 +64,8 @@ def violations(
 ) -> dict[IRI, str]:
     """The nodes of `focus` that do not conform to `shape`, each with the message of its first violation.
 
-    Conformance is that of SHACL, section 3.4: a result of any severity counts. Raises TemplateError, blaming
-    `source`, where the shape itself is not well-formed.
+    Conformance is that of SHACL, section 3.4: a result of any severity counts. So does a value that cannot be compared
+    with another (4.3, 4.5.3). Raises TemplateError, blaming `source`, where the shape itself is not well-formed.
     """
     if not focus:
         return {}
@@ -68,7 +73,11 @@ def violations(
         raise TemplateError(f"the shape {shape!r} is not evaluated: {reason}", file=source)
     try:
         with deadline(SECONDS):
-            report, text = judged(subjects, aimed(shapes, (shape,), focus))
+            try:
+                return _found(subjects, shapes, shape, focus, source)
+            except _NO_ORDER:
+                _found(subjects, shapes, shape, [_NOTHING], source)  # the shape may be at fault: it then is here too
+                return _bisected(subjects, shapes, shape, focus, source)
     except TimeUp:
         raise TemplateError(
             f"judging {len(focus)} components by the shape {shape!r} takes more than {SECONDS:g} s; "
@@ -77,6 +86,26 @@ def violations(
         ) from None
     except _ILL_FORMED as error:
         raise TemplateError(f"the shape {shape!r} is not well-formed: {reason_of(error)}", file=source) from error
+
+
+def _bisected(
+    subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
+) -> dict[IRI, str]:
+    """The same where pySHACL stops at some nodes, as they have values without an order."""
+    try:
+        return _found(subjects, shapes, shape, focus, source)
+    except _NO_ORDER:
+        if len(focus) == 1:
+            return {focus[0]: "Value cannot be compared"}
+    half = len(focus) // 2
+    parts = [_bisected(subjects, shapes, shape, part, source) for part in (focus[:half], focus[half:])]
+    return parts[0] | parts[1]
+
+
+def _found(
+    subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
+) -> dict[IRI, str]:
+    report, text = judged(subjects, aimed(shapes, (shape,), focus))
     if isinstance(report, ValidationFailure) or not isinstance(report, rdflib.Graph):
         raise TemplateError(f"the shape {shape!r} cannot be judged: {first_line(text)}", file=source)
     found: dict[IRI, str] = {}

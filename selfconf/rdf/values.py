@@ -151,5 +151,5 @@ def _within(value: rdflib.term.Identifier, limit: rdflib.term.Identifier, holds:
         return False
     try:
         return holds(_compare(value, limit))
-    except (TypeError, NotImplementedError):  # rdflib's words for values that have no order
+    except (TypeError, NotImplementedError, ArithmeticError):  # rdflib's words for values that have no order
         return False

@@ -73,8 +73,9 @@ def _plain(problem: Problem) -> Iterator[Reason]:
             yield Contradiction(role.iri, role.minimum, role.maximum)
         elif len(candidates) < role.minimum:
             yield TooFewEligible(role.iri, role.minimum, len(candidates))
-    for role_iri, parameter in problem.unvalued:
-        yield ValueUnknown(role_iri, parameter)
+    for position, parameter in problem.unvalued:
+        if problem.roles[position].minimum:
+            yield ValueUnknown(problem.roles[position].iri, parameter)
 
 
 class Questions:

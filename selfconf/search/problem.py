@@ -71,16 +71,24 @@ class Problem:
         """What each variable may be before anybody plays; a parameter that is also set needs a value of the domain."""
 
     @property
-    def unvalued(self) -> tuple[tuple[IRI, str], ...]:
-        """The roles that set something to a parameter that has no value and can get none, with its name."""
+    def unvalued(self) -> tuple[tuple[int, str], ...]:
+        """The roles that set something to a parameter that has no value and can get none, with its name.
+
+        Nobody can play them.
+        """
         known = {*self.task.bindings, *(variable.parameter for variable in self.variables)}
         names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}
         return tuple(
-            (role.iri, names[setting.value])
-            for role in self.roles
+            (position, names[setting.value])
+            for position, role in enumerate(self.roles)
             for setting in role.settings
             if isinstance(setting.value, IRI) and setting.value in names and setting.value not in known
         )
+
+    @property
+    def valueless(self) -> bool:
+        """Whether a role that somebody has to play sets something to a parameter that can get no value."""
+        return any(self.roles[position].minimum for position, _ in self.unvalued)
 
     def _open(self, variable: Variable) -> int:
         for parameter in self.task.template.parameters:
@@ -162,7 +170,12 @@ class Problem:
         Who is taken or allows no value left never fits later; who is unfed may, once a role that feeds his gets
         outputs that it did not have: he waits for that. So nearly every candidate is looked at once.
         """
-        open_roles = [p for p, role in enumerate(self.roles) if role.maximum is None or len(playing[p]) < role.maximum]
+        closed = {position for position, _ in self.unvalued}
+        open_roles = [
+            p
+            for p, role in enumerate(self.roles)
+            if p not in closed and (role.maximum is None or len(playing[p]) < role.maximum)
+        ]
         if not open_roles:
             return values
         taken = {candidate.profile.component for role in playing for candidate in role}
@@ -229,7 +242,7 @@ class Problem:
     def _settings(self, playing: Playing, bindings: Mapping[str, Term]) -> Iterator[ParameterSetting]:
         names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}
         for role, chosen in zip(self.roles, playing, strict=True):
-            for setting in role.settings:
+            for setting in role.settings if chosen else ():
                 value = setting.value
                 if isinstance(value, IRI) and value in names:
                     value = bindings[names[value]]

@@ -68,7 +68,7 @@ def nearest(problem: Problem, running: Configuration, steps: int = STEPS) -> Rep
     alive = _alive(problem, running)
     fixed = all(role.minimum == role.maximum for role in problem.roles) and sat.available()
     budget = Budget(min(steps, WALK_STEPS) if fixed else steps)
-    near = None if problem.unvalued else _best(problem, running, alive, 0, budget)
+    near = None if problem.valueless else _best(problem, running, alive, 0, budget)
     if near is None:
         given = Prepared(problem)
         playing = solve.solution(given, Budget())

@@ -12,7 +12,8 @@ exact, where clingo's priorities saturate at 32,767 levels. Without it everythin
 *Encoding.* A literal for each option: it plays; of two, the second plays iff the first does not. Each role is played
 by exactly as many as it has slots; a component plays one role at most. Whoever has a need implies one of its givers,
 by way of a literal for the need where several have it.
-A literal for each value of a variable, at most one of which holds: whoever is constrained implies one of the values.
+A literal for each value of a variable, at most one of which holds: whoever is constrained implies one of the values, or
+none of those that he does not allow.
 
 *The least solution.* Slot by slot: given the choices so far and a model, ask for one in which an earlier option is
 in the slot, until there is none. What is settled is added as a unit, so that everything learned stays true.
@@ -176,12 +177,17 @@ class Clauses:
             ]
             if not constrained:
                 continue
-            width = max(mask.bit_length() for _, mask in constrained)
+            width = max((mask if mask >= 0 else ~mask).bit_length() for _, mask in constrained)
             values = [self.literal() for _ in range(width)]
             self.at_most(values, 1)
             force = self._in_force(Shared(variable))
             for literal, mask in constrained:
-                self.add([*force, -literal, *(values[k] for k in range(width) if mask >> k & 1)])
+                if mask >= 0:
+                    self.add([*force, -literal, *(values[k] for k in range(width) if mask >> k & 1)])
+                    continue
+                for k in range(width):
+                    if not mask >> k & 1:
+                        self.add([*force, -literal, -values[k]])
 
     def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
         """No more than so many of the literals hold, under the guards given."""

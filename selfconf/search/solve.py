@@ -65,7 +65,7 @@ def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
 def solution(given: Prepared, budget: Budget) -> list[list[Candidate]] | Undecided | None:
     """The least solution as candidates per role; None if there is none."""
     problem = given.problem
-    if problem.unvalued or any(
+    if problem.valueless or any(
         len(candidates) < role.minimum or (role.maximum is not None and role.maximum < role.minimum)
         for role, candidates in zip(problem.roles, problem.candidates, strict=True)
     ):

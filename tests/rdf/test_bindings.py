@@ -101,6 +101,19 @@ def test_a_task_binds_for_itself_and_may_not_be_contradicted() -> None:
         bindings.bind(task, [("goal", "z")])
 
 
+@pytest.mark.parametrize("path", [":x", "[ sh:inversePath :x ]"])
+def test_a_path_cannot_be_left_free(path: str) -> None:
+    text = (
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
+        " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ."
+        f" :r a sc:Role ; sh:property [ sh:path {path} ; sh:hasValue 3 ] ."
+    )
+    with pytest.raises(
+        BindingError, match=r"'x' cannot be left free, for it stands in sh:(p|inverseP)ath; .*--bind x="
+    ):
+        bindings.complete(templates.read(turtle.parse(text, "t.ttl")))
+
+
 @pytest.mark.parametrize("place", ["minInclusive", "maxExclusive", "minCount", "pattern"])
 def test_a_limit_cannot_be_left_free(place: str) -> None:
     text = (

@@ -27,7 +27,7 @@ TERMS = st.sampled_from(
     (
         ":x", ":y", ":c1", '"abc"', '"Abc"@en', '""', "1", "2", "-3", "1.5", "2e0", '"01"^^xsd:integer',
         '"x"^^xsd:integer', "true", '"2020-01-01"^^xsd:date', '"2021-02-30"^^xsd:date',
-        '"2020-01-01T00:00:00Z"^^xsd:dateTime', '"2"^^xsd:int', '"a"^^:own',
+        '"2020-01-01T00:00:00Z"^^xsd:dateTime', '"2"^^xsd:int', '"a"^^:own', '"NaN"^^xsd:double',
     )
 )  # fmt: skip
 VALUES = st.one_of(TERMS, st.just("[ :q 1 ]"))
@@ -55,6 +55,7 @@ CONSTRAINTS = st.one_of(
     st.just("sh:deactivated true"),
     st.just('sh:message "so" ; sh:severity sh:Warning'),
     st.sampled_from(("sh:class :Thing", "sh:equals :r", "sh:disjoint :q", 'sh:languageIn ( "en" )')),
+    st.sampled_from(("sh:lessThan :r", "sh:lessThanOrEquals :q")),
     st.just("sh:uniqueLang true"),
 )
 
@@ -111,8 +112,8 @@ def ecology(components: list[tuple[str, list[tuple[str, str]], bool]]) -> list[A
 
 def eligible(partitioner: Partitioner, ads: list[Advertisement]) -> dict[IRI, object]:
     """Who is eligible for the only role, and the values that it allows."""
-    (role,) = partitioner.roles
-    return {e.profile.component: dict(e.allows) for e in partitioner.eligible(role, Ecology.of(ads))}
+    (found,) = partitioner.eligible(Ecology.of(ads))
+    return {e.profile.component: (dict(e.allows), {p: v for p, v in e.forbids.items() if v}) for e in found}
 
 
 def by_pyshacl(partitioner: Partitioner) -> Partitioner:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import clingo
 
+from selfconf.model.partition import ANY_VALUE
 from selfconf.search.problem import Problem
 
 RULES = """
@@ -57,9 +58,9 @@ def _facts(problem: Problem) -> Iterator[str]:
             yield f"candidate({number},{index},{name}). level({number},{index},{level})."
             level -= 1
             for variable, mask in enumerate(candidate.admits):
-                if mask >= 0:
+                if mask != ANY_VALUE:
                     yield f"constrained({number},{index},{variable})."
-                    values = [k for k in range(mask.bit_length()) if mask >> k & 1]
+                    values = [k for k in _values(problem, variable) if mask >> k & 1]
                     yield from (f"allows({number},{index},{variable},{k})." for k in values)
             if profile.component not in described:
                 described.add(profile.component)
@@ -80,6 +81,13 @@ def _facts(problem: Problem) -> Iterator[str]:
             yield f"link_to({source},{sink},{wanted})."
         else:
             yield f"link({source},{sink})."
-    for number, variable_ in enumerate(problem.partition.variables):
+    for number in range(len(problem.partition.variables)):
         yield f"variable({number})."
-        yield from (f"domain({number},{k})." for k in range(len(variable_.domain)))
+        yield from (f"domain({number},{k})." for k in _values(problem, number))
+
+
+def _values(problem: Problem, variable: int) -> range:
+    """The numbers of the values of a variable, the last of them, unless it is set, a value that nobody names."""
+    one = problem.variables[variable]
+    is_set = any(p.is_set for p in problem.task.template.parameters if p.iri == one.parameter)
+    return range(len(one.domain) + (not is_set))

@@ -63,13 +63,24 @@ class World:
         """For each variable the numbers of the values that every player allows; None where nobody constrains it."""
         found: list[set[int] | None] = []
         for number, variable in enumerate(self.variables):
-            masks = [c.admits[number] for role in players for c in role if c.admits[number] >= 0]
+            masks = [c.admits[number] for role in players for c in role]
             is_set = any(p.is_set for p in self.template.parameters if p.iri == variable.parameter)
-            if not masks and not is_set:
+            if not is_set and all(mask < 0 for mask in masks):  # a value that nobody names will do
                 found.append(None)
             else:
                 found.append({k for k in range(len(variable.domain)) if all(mask >> k & 1 for mask in masks)})
         return found
+
+    def unset(self, players: Sequence[Sequence[Candidate]]) -> bool:
+        """Whether somebody is to be set to a parameter that is not bound and of which nobody states a value."""
+        known = {*self.task.bindings, *(variable.parameter for variable in self.variables)}
+        parameters = {parameter.iri for parameter in self.template.parameters}
+        return any(
+            setting.value in parameters - known
+            for role, chosen in zip(self.roles, players, strict=True)
+            if chosen
+            for setting in role.settings
+        )
 
     def valid(self, players: Sequence[Sequence[Candidate]]) -> bool:
         """Distinct, fed, and of one mind about the free parameters."""
@@ -77,6 +88,7 @@ class World:
         return (
             len(everybody) == len(set(everybody))
             and not self.unfed(players)
+            and not self.unset(players)
             and all(allowed is None or allowed for allowed in self.values(players))
         )
 

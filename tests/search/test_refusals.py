@@ -8,7 +8,7 @@ from itertools import combinations, product
 import pytest
 from hypothesis import given
 
-from selfconf.model.partition import Candidate
+from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.refusal import Refusal
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.search import sat, solve
@@ -39,7 +39,8 @@ def _holds(world: World, players: tuple[tuple[Candidate, ...], ...], wanted: set
         return False
     for number, variable in enumerate(world.variables):
         if OneValue(variable.parameter.short) in wanted:
-            common = (1 << len(variable.domain)) - 1
+            is_set = any(p.is_set for p in world.template.parameters if p.iri == variable.parameter)
+            common = (1 << len(variable.domain)) - 1 if is_set else ANY_VALUE
             for role in players:
                 for candidate in role:
                     common &= candidate.admits[number]

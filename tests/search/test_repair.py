@@ -55,11 +55,12 @@ def _after_losses(problem: Problem, running: Configuration, data: st.DataObject)
     """The problem once one or two components are gone, and one or two others are not eligible any more for a role."""
     lost = frozenset(data.draw(st.sets(st.sampled_from(running.components), min_size=1, max_size=2)))
     unfit = [data.draw(st.sets(st.sampled_from(running.components), max_size=1)) for _ in problem.roles]
+    left = problem.partition.without(lost)
     candidates = tuple(
         tuple(c for c in role if c.profile.component not in out)
-        for role, out in zip(problem.partition.without(lost).candidates, unfit, strict=True)
+        for role, out in zip(left.candidates, unfit, strict=True)
     )
-    return Problem(problem.task, Partition(candidates, problem.variables), problem.hierarchy)
+    return Problem(problem.task, Partition(candidates, left.variables), problem.hierarchy)
 
 
 @given(problems(), st.data())
