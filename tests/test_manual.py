@@ -30,4 +30,4 @@ def test_a_command_says_what_its_page_says(
 
 
 def test_the_page_has_examples() -> None:
-    assert len(EXAMPLES) == 4
+    assert len(EXAMPLES) == 5

@@ -50,12 +50,17 @@ def compact(problem: Problem, apart: Collection[IRI] = (), order: Mapping[int, S
     wiring = Wiring(problem)
     numbers, shared = _enough(problem, apart, order, minima)
     most = dict.fromkeys(minima, len(slots)) if shared else minima
-    left = {
-        role: _alike(role, problem.candidates[role], some, most[role], apart, wiring) for role, some in numbers.items()
-    }
-    for role, options in left.items():
-        for kind in dict.fromkeys([option.kind for option in options]):
-            kind.gives = wiring.served(role, kind.likes[0][0].outputs)
+    left: dict[int, list[Option]] = {}
+    kinds: dict[int, list[Kind]] = {}
+    for role, some in numbers.items():
+        left[role], kinds[role] = _alike(role, problem.candidates[role], some, most[role], apart)
+        needs = wiring.needed(role, [kind.likes[0][0].inputs for kind in kinds[role]])
+        for kind, one in zip(kinds[role], needs, strict=True):
+            kind.needs = one
+    for role, alike in kinds.items():
+        gives = wiring.served(role, [kind.likes[0][0].outputs for kind in alike])
+        for kind, one in zip(alike, gives, strict=True):
+            kind.gives = one
     if shared:
         left = thinned(left, minima)
     return Compact(
@@ -104,9 +109,8 @@ def _alike(
     numbers: Sequence[int],
     most: int,
     apart: Collection[IRI],
-    wiring: Wiring,
-) -> list[Option]:
-    """Those of some candidates that are among the first so many of their kind."""
+) -> tuple[list[Option], list[Kind]]:
+    """Those of some candidates that are among the first so many of their kind, and the kinds."""
     many = len(numbers) > most
     kinds: dict[Hashable, Kind] = {}
     met: dict[Kind, int] = {}
@@ -118,13 +122,13 @@ def _alike(
         same = (like, component) if component in apart else like
         kind = kinds.get(same)
         if kind is None:
-            kind = kinds[same] = Kind(role, wiring.needed(role, like[0].inputs), (), like[1], number, (like,))
+            kind = kinds[same] = Kind(role, (), (), like[1], number, (like,))
         if many:
             seen = met[kind] = met.get(kind, 0) + 1
             if seen > most:
                 continue
         found.append(Option(number, component, kind))
-    return found
+    return found, list(kinds.values())
 
 
 def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -> Sequence[int]:

@@ -7,7 +7,8 @@ role, to the needs they serve, so that no pair of an output and an input is ever
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from selfconf.model.profile import Input, Output
@@ -28,93 +29,77 @@ class Need(NamedTuple):
 
 
 class Wiring:
-    """Numbers the needs of a problem and says which of them an output serves.
+    """Numbers the needs of a problem and says which of them outputs serve: a role at a time, first of all the inputs.
 
     Where no interaction names an input of a role, its needs are told by their signals alone; so are outputs.
     """
 
     def __init__(self, problem: Problem) -> None:
+        self.problem = problem
         self.needs: list[Need] = []
-        self._fed = [_Feeding(problem, role) for role in range(len(problem.roles))]
-        told = {link.source for links in problem.links for link in links if link.output}
-        self._serving = [_Serving(problem, role, self._fed, role in told) for role in range(len(problem.roles))]
+        self._named = [any(link.input for link in links) for links in problem.links]
+        self._told = {link.source for links in problem.links for link in links if link.output}
+        """The roles of which the names of outputs may matter."""
+        self._wanted: list[dict[IRI, list[int]]] = [{} for _ in problem.roles]
+        """For each role and signal the needs."""
 
-    def needed(self, role: int, inputs: Sequence[Input]) -> tuple[int, ...]:
-        """The numbers of the needs that these inputs of whoever plays a role are."""
-        if not inputs:
-            return ()
-        fed = self._fed[role]
-        known, found = fed.number, []
+    def needed(self, role: int, inputs: Sequence[tuple[Input, ...]]) -> list[tuple[int, ...]]:
+        """The numbers of the needs that inputs are, for those of each who may play a role."""
+        if self._named[role]:
+            number = self._numbered(role, dict.fromkeys(chain.from_iterable(inputs)))
+            return [tuple(dict.fromkeys(map(number.__getitem__, some))) for some in inputs]
+        sources, wanted, needs = self.problem.feeding(role, None), self._wanted[role], self.needs
+        found: list[tuple[int, ...]] = []
+        for some in inputs:
+            numbers: list[int] = []
+            for _, signal in some:
+                known = wanted.get(signal)
+                if known is None:
+                    known = wanted[signal] = [len(needs)]
+                    needs.append(Need(role, signal, sources))
+                numbers += known
+            found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
+        return found
+
+    def _numbered(self, role: int, inputs: Iterable[Input]) -> dict[Input, int]:
+        """The need that each input of a role is: one for all of a signal that the same may feed."""
+        same: dict[tuple[IRI, Sources], int] = {}
+        found: dict[Input, int] = {}
         for wanted in inputs:
-            number = known.get(wanted if fed.named else wanted[1])
-            found.append(fed.need(wanted, self.needs) if number is None else number)
-        return tuple(found) if len(set(found)) == len(found) else tuple(dict.fromkeys(found))
+            sources = self.problem.feeding(role, wanted.name)
+            number = found[wanted] = same.setdefault((wanted.signal, sources), len(self.needs))
+            if number == len(self.needs):
+                self.needs.append(Need(role, wanted.signal, sources, wanted.name))
+                self._wanted[role].setdefault(wanted.signal, []).append(number)
+        return found
 
-    def served(self, role: int, outputs: Sequence[Output]) -> tuple[int, ...]:
-        """The needs that somebody with these outputs serves by playing a role; every need must be known by now."""
-        serving = self._serving[role]
-        known = serving.known
-        found: tuple[int, ...] = ()
-        for output in outputs:
-            key = output if serving.told else output[1]
-            numbers = known.get(key)
-            if numbers is None:
-                numbers = known[key] = serving.needs(output, self.needs)
-            found += numbers
-        return found if len(outputs) == 1 else tuple(sorted(set(found)))
+    def served(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
+        """The needs that outputs serve, for those of each who may play a role; all inputs must have been told."""
+        told = role in self._told
+        known: dict[Output | IRI, list[int]] = {}
+        found: list[tuple[int, ...]] = []
+        for some in outputs:
+            numbers: list[int] = []
+            for output in some:
+                key = output if told else output[1]
+                serves = known.get(key)
+                if serves is None:
+                    serves = known[key] = self._serves(role, output)
+                numbers += serves
+            found.append(tuple(sorted(set(numbers))) if len(numbers) > 1 else tuple(numbers))
+        return found
 
-
-class _Feeding:
-    """What feeds a role, and its needs so far."""
-
-    __slots__ = ("_by_name", "_problem", "_role", "_same", "by_signal", "named", "number")
-
-    def __init__(self, problem: Problem, role: int) -> None:
-        self._problem, self._role = problem, role
-        self.named = any(link.input for link in problem.links[role])
-        self.number: dict[Input | IRI, int] = {}
-        """The need that an input is."""
-        self.by_signal: dict[IRI, list[int]] = {}
-        self._same: dict[tuple[IRI, Sources], int] = {}
-        self._by_name: dict[str | None, Sources] = {}
-
-    def need(self, wanted: Input, needs: list[Need]) -> int:
-        """The number of the need that an input is, which may be a new one."""
-        name, signal = wanted if self.named else (None, wanted.signal)
-        sources = self._by_name.get(name)
-        if sources is None:
-            sources = self._by_name[name] = self._problem.feeding(self._role, name)
-        number = self._same.setdefault((signal, sources), len(needs)) if self.named else len(needs)
-        if number == len(needs):
-            needs.append(Need(self._role, signal, sources, name))
-            self.by_signal.setdefault(signal, []).append(number)
-        self.number[wanted if self.named else signal] = number
-        return number
-
-
-class _Serving:
-    """The needs that the outputs of a role serve."""
-
-    __slots__ = ("_above", "_fed", "_role", "known", "told")
-
-    def __init__(self, problem: Problem, role: int, fed: Sequence[_Feeding], told: bool) -> None:
-        self._role, self._above = role, problem.hierarchy.superclasses
-        self._fed = [fed[sink] for sink in problem.sinks[role]]
-        self.told = told
-        """Whether the names of its outputs may matter."""
-        self.known: dict[Output | IRI, tuple[int, ...]] = {}
-        """The needs that an output serves."""
-
-    def needs(self, output: Output, needs: Sequence[Need]) -> tuple[int, ...]:
-        """The needs that an output serves that was not met before."""
+    def _serves(self, role: int, output: Output) -> list[int]:
         found: list[int] = []
-        for signal in self._above(output.signal):
-            for fed in self._fed:
-                numbers = fed.by_signal.get(signal)
-                if numbers is None:
-                    continue
-                if self.told or fed.named:
-                    names = (self._role, None), (self._role, output.name)
-                    numbers = [n for n in numbers if any(source in names for source in needs[n].sources)]
-                found += numbers
-        return tuple(found if len(found) < 2 else sorted(found))
+        for sink in self.problem.sinks[role]:
+            wanted = self._wanted[sink]
+            names_matter = role in self._told or self._named[sink]
+            for signal in self.problem.hierarchy.superclasses(output.signal):
+                numbers = wanted.get(signal)
+                if numbers is not None:
+                    found += self._fed(numbers, role, output.name) if names_matter else numbers
+        return found
+
+    def _fed(self, numbers: Sequence[int], role: int, name: str) -> list[int]:
+        """Those of some needs that an output of that name may feed."""
+        return [n for n in numbers if (role, None) in self.needs[n].sources or (role, name) in self.needs[n].sources]
