@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
@@ -11,6 +11,8 @@ from selfconf.rdf.templates import shape_statements
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
+KEPT = 64
+"""Of how many sets of values it is remembered which of them suit a parameter."""
 _STAYING = frozenset((SH.zeroOrMorePath, SH.zeroOrOnePath))
 """Paths that lead to where they begin."""
 _QUERIES = frozenset((SH.sparql, SH.select, SH.ask))
@@ -50,7 +52,22 @@ def _about_themselves(document: Document) -> bool:
     return False
 
 
-def suitable(parameter: Parameter, values: Iterable[Term], document: Document) -> frozenset[Term]:
-    """Those of some values that conform to what a parameter says of its value, as a value that is bound has to."""
-    wanted = frozenset(values)
-    return wanted - misfits(parameter, wanted, document).keys()
+class Suitable:
+    """Which values conform to what parameters say of theirs, as a value that is bound has to.
+
+    Remembered, as an ecology that has changed states much the same again.
+    """
+
+    def __init__(self, parameters: Mapping[IRI, Parameter], document: Document) -> None:
+        self._parameters, self._document = parameters, document
+        self._known: dict[tuple[IRI, frozenset[Term]], frozenset[Term]] = {}
+
+    def of(self, parameter: IRI, values: frozenset[Term]) -> frozenset[Term]:
+        """Those of some values that a parameter may have."""
+        known = self._known.get((parameter, values))
+        if known is None:
+            known = values - misfits(self._parameters[parameter], values, self._document).keys()
+            if len(self._known) == KEPT:
+                self._known.clear()
+            self._known[parameter, values] = known
+        return known

@@ -33,8 +33,6 @@ from selfconf.rdf.vocabulary import TYPE
 Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
 ANOTHER = IRI("urn:selfconf:another-value")
 """A value that no component has: what it lets pass, any value lets pass."""
-KEPT = 64
-"""Of how many sets of values it is remembered which of them suit a parameter."""
 NO_VALUE = "leaves no value for a free parameter that its statements agree on"
 
 
@@ -82,7 +80,7 @@ class Partitioner:
             for role in given.task.template.roles
         )
         self._above = Above(hierarchy)
-        self._suiting: dict[tuple[IRI, frozenset[Term]], frozenset[Term]] = {}
+        self._suitable = free_values.Suitable(self._parameters, given.document)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """The same task for roles that see another hierarchy."""
@@ -186,22 +184,12 @@ class Partitioner:
         for number, (parameter, survivors) in by_value.items():
             shown = self._visible(survivors if self.roles[number].local else everything)
             stated[parameter] |= free_values.seen(self.document, self.roles[number].iri, shown)
-        suitable = {parameter: self._suitable(parameter, frozenset(values)) for parameter, values in stated.items()}
+        suitable = {parameter: self._suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
         for number, (parameter, survivors) in by_value.items():
             found[number] = list(
                 self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, everything)
             )
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
-
-    def _suitable(self, parameter: IRI, values: frozenset[Term]) -> frozenset[Term]:
-        """Those of some values that a parameter may have; remembered, as an ecology states much the same again."""
-        known = self._suiting.get((parameter, values))
-        if known is None:
-            known = free_values.suitable(self._parameters[parameter], values, self.document)
-            if len(self._suiting) == KEPT:
-                self._suiting.clear()
-            self._suiting[parameter, values] = known
-        return known
 
     def _mentioned(self, role: CompiledRole) -> IRI | None:
         """The free parameter that the shape of a role mentions, if it does."""
