@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 
 import rdflib
@@ -33,6 +33,7 @@ from selfconf.rdf.vocabulary import TYPE
 Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
 ANOTHER = IRI("urn:selfconf:another-value")
 """A value that no component has: what it lets pass, any value lets pass."""
+_NOTHING: Mapping[IRI, frozenset[Term]] = {}
 NO_VALUE = "leaves no value for a free parameter that its statements agree on"
 
 
@@ -42,7 +43,7 @@ class Eligible:
 
     profile: Profile
     allows: Mapping[IRI, frozenset[Term]]
-    forbids: Mapping[IRI, frozenset[Term]] = field(default_factory=dict)
+    forbids: Mapping[IRI, frozenset[Term]]
     """For each free parameter that may be anything else, the values that it may not be."""
 
 
@@ -166,15 +167,16 @@ class Partitioner:
         for number, role in enumerate(self.roles):
             tested = self.tested(role, ecology, self.akin(role, ecology))
             passed = [(alike, verdict.allows) for _, alike, verdict in tested if not verdict.obstacles]
-            survivors = [a for alike, _ in passed for a in alike]
             if role.complete:
-                found.append([Eligible(a.profile, allows) for alike, allows in passed for a in alike])
-            elif parameter := self._mentioned(role):
+                found.append([Eligible(a.profile, allows, _NOTHING) for alike, allows in passed for a in alike])
+                continue
+            survivors = [a for alike, _ in passed for a in alike]
+            if parameter := self._mentioned(role):
                 by_value[number] = parameter, survivors
                 found.append([])
             else:
                 outside = self._violations(role, survivors, everything, {})
-                found.append([Eligible(a.profile, {}) for a in survivors if a.component not in outside])
+                found.append([Eligible(a.profile, {}, _NOTHING) for a in survivors if a.component not in outside])
         if not self.free:
             return found
         stated: dict[IRI, set[Term]] = {parameter: set() for parameter in self.free}
@@ -221,7 +223,7 @@ class Partitioner:
         for advertisement in survivors:
             found = frozenset(allowed[advertisement.component])
             if ANOTHER not in found:
-                yield Eligible(advertisement.profile, {parameter: found})
+                yield Eligible(advertisement.profile, {parameter: found}, _NOTHING)
             else:
                 yield Eligible(advertisement.profile, {}, {parameter: values - found})
 
