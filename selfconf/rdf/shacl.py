@@ -25,6 +25,7 @@ from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
 from selfconf.rdf.deadline import TimeUp, deadline
 from selfconf.rdf.queries import faults
+from selfconf.rdf.values import UNORDERED
 
 SECONDS = 30.0
 """How long one shape may be judged: what a pattern or query of it is matched against is untrusted."""
@@ -40,10 +41,10 @@ _CLASSES = frozenset((rdflib.RDFS.Class, rdflib.OWL.Class))
 """A shape that is a class has its instances as targets (SHACL, 2.1.3.3)."""
 _NOTHING = IRI("urn:selfconf:nothing")
 """A node that nobody says anything about."""
-_NO_ORDER = (TypeError, ArithmeticError, ReportableRuntimeError)
-"""What rdflib raises, or pySHACL, where two values have no order."""
+_NO_ORDER = (*UNORDERED, ReportableRuntimeError)
+"""What comes through pySHACL where two values have no order; the last is its own, for blank nodes."""
 _ILL_FORMED = (
-    ArithmeticError,
+    *UNORDERED,
     ShapeLoadError,
     ConstraintLoadError,
     ReportableRuntimeError,
@@ -53,7 +54,6 @@ _ILL_FORMED = (
     AttributeError,
     LookupError,
     RecursionError,
-    TypeError,
     ValueError,
 )
 """What pySHACL and the libraries behind it raise on a shape that is ill-formed, also in ways they do not look for."""

@@ -20,6 +20,8 @@ from selfconf.rdf.deadline import TimeUp, deadline
 from selfconf.rdf.turtle import rdflib_term
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
 
+UNORDERED = (TypeError, ArithmeticError)
+"""What comparing two literals raises if they have no order; the latter for a decimal beside NaN."""
 SECONDS = 5.0
 """How long a pattern may be matched against one value."""
 _compare: Callable[[rdflib.Literal, rdflib.Literal], int] = compare_literal
@@ -151,5 +153,5 @@ def _within(value: rdflib.term.Identifier, limit: rdflib.term.Identifier, holds:
         return False
     try:
         return holds(_compare(value, limit))
-    except (TypeError, NotImplementedError, ArithmeticError):  # rdflib's words for values that have no order
+    except UNORDERED:
         return False
