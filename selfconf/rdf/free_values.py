@@ -43,6 +43,11 @@ def seen(document: Document, role: IRI, shown: Iterable[Triple]) -> set[Term]:
     return found
 
 
+def enumerated(document: Document, parameter: IRI) -> set[Term]:
+    """The values that a parameter lists (`sh:in`), so that it has no others; nothing if it lists none."""
+    return {value for head in document.values(parameter, SH["in"]) for value in document.items(head)}
+
+
 def _about_themselves(document: Document) -> bool:
     """Whether a shape asks which one its focus node is, not which values a path of it has."""
     for statements in document.statements.values():

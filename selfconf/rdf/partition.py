@@ -186,6 +186,7 @@ class Partitioner:
         for number, (parameter, survivors) in by_value.items():
             shown = self._visible(survivors if self.roles[number].local else everything)
             stated[parameter] |= free_values.seen(self.document, self.roles[number].iri, shown)
+            stated[parameter] |= free_values.enumerated(self.document, parameter)
         suitable = {parameter: self._suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
         for number, (parameter, survivors) in by_value.items():
             found[number] = list(
@@ -216,7 +217,8 @@ class Partitioner:
         """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
         subjects = self._subjects(role, survivors, everything)
-        for value in (*sorted(values, key=sort_key), ANOTHER):
+        others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
+        for value in (*sorted(values, key=sort_key), *others):
             outside = self._violations(role, survivors, everything, {parameter: value}, subjects)
             for component in allowed.keys() - outside.keys():
                 allowed[component].add(value)

@@ -81,6 +81,13 @@ def test_a_free_parameter_takes_no_value_that_it_could_not_be_bound_to(constrain
     assert names == (["c2"] if "datatype" in constraint else ["c1", "c2"])
 
 
+def test_a_parameter_that_lists_its_values_has_no_others() -> None:
+    text = f"{PARAMETER} ; sh:in ( :x :y ) . :r a sc:Role ; sh:not [ sh:property [ sh:path :p ; sh:hasValue :v ] ] ."
+    ads = ecology([(":A", [(":p", ":x"), (":p", ":y")], False), (":A", [(":p", ":x")], False), (":A", [], False)])
+    partition = Partitioner(bindings.complete(document(text))).partition(ads)
+    assert [(c.profile.component.short, c.admits) for c in partition.candidates[0]] == [("c1", (2,)), ("c2", (3,))]
+
+
 def test_a_role_that_must_not_have_the_value_of_another_is_not_played_by_its_like() -> None:
     text = (
         ":t a sc:Template ; sc:roles ( :r :s ) ; sc:parameter :v . :v a sc:Parameter ; sc:name 'v' ."
