@@ -4,7 +4,7 @@ Slots are filled in order and take their candidates in order, so that solutions 
 least first. It looks at no candidate that it does not try, where making a problem compact costs a pass over all of
 them; in return it sees late that a need cannot be served: once a role and all that feed it are filled. Where roles
 share candidates, those who play already are passed over for a fraction of a step, so that many roles that draw on
-one pool are filled without a matching.
+one pool are filled without a matching; for a whole one where nobody else is left, as matching then sees more.
 """
 
 from __future__ import annotations
@@ -37,6 +37,8 @@ class Filling:
         self.slots = [role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum)]
         self.playing: list[list[Candidate]] = [[] for _ in problem.roles]
         self.taken: set[str] = set()
+        self.furthest = 0
+        """How many slots have been filled at the same time, at most."""
         self._values = [problem.open_values]
         self._due, self._work = self._checks()
 
@@ -70,7 +72,7 @@ class Filling:
         slots = self.slots
         self._values = [self.problem.open_values]
         following = [0] * (len(slots) + 1)
-        place = furthest = 0
+        place = 0
         given = self.budget.steps
         while place >= 0:
             if place < len(slots):
@@ -78,12 +80,12 @@ class Filling:
                 if number is not None:
                     following[place] = number + 1
                     place += 1
-                    furthest = max(furthest, place)
+                    self.furthest = max(self.furthest, place)
                     same = place < len(slots) and slots[place] == slots[place - 1]
                     following[place] = number + 1 if same else 0
                     continue
                 if given is not None and self.budget.steps is not None:
-                    if self.pace is not None and given - self.budget.steps > self.pace * (furthest + HEADROOM):
+                    if self.pace is not None and given - self.budget.steps > self.pace * (self.furthest + HEADROOM):
                         self.budget.steps = 0
                     if self.budget.steps <= 0:
                         return
@@ -97,31 +99,35 @@ class Filling:
     def _next(self, place: int, start: int) -> int | None:
         """Put the next candidate that fits into a slot; its number, or None if there is none or the budget ends."""
         role, work, budget, values = self.slots[place], self._work[place], self.budget, self._values[-1]
-        passed, taken = 0, self.taken
+        passed, taken, due = 0, self.taken, self._due[place]
         for number, candidate in self.candidates(role, start):
-            free = candidate.profile.component not in taken
-            if not free:
+            component = candidate.profile.component
+            if component in taken:
                 passed += 1
-            if budget.steps is not None and (free or passed % TAKEN == 0):
+                if passed % TAKEN:
+                    continue
+            if budget.steps is not None:
                 if budget.steps <= 0:
                     return None
-                budget.steps -= work if free else 1
-            if not free:
+                budget.steps -= 1 if component in taken else work
+            if component in taken:
                 continue
             narrowed = self.problem.narrowed(values, candidate) if values else values
             if narrowed is None:
                 continue
             self.playing[role].append(candidate)
-            if self._fed(place):
-                self.taken.add(candidate.profile.component)
+            if not due or self._fed(due):
+                taken.add(component)
                 self._values.append(narrowed)
                 return number
             self.playing[role].pop()
+        if budget.steps is not None:
+            budget.steps = max(0, budget.steps - passed)
         return None
 
-    def _fed(self, place: int) -> bool:
+    def _fed(self, roles: list[int]) -> bool:
         compatible, playing = self.problem.compatible, self.playing
-        for role in self._due[place]:
+        for role in roles:
             for candidate in playing[role]:
                 if not compatible(role, candidate.profile, playing):
                     return False

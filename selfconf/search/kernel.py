@@ -40,14 +40,21 @@ _PORTS: Callable[[Candidate], Ports] = attrgetter("profile.ports")
 _ADMITS: Callable[[Candidate], tuple[int, ...]] = attrgetter("admits")
 
 
-def compact(problem: Problem, apart: Collection[IRI] = (), order: Mapping[int, Sequence[int]] | None = None) -> Compact:
+def compact(
+    problem: Problem,
+    apart: Collection[IRI] = (),
+    order: Mapping[int, Sequence[int]] | None = None,
+    roles: int | None = None,
+) -> Compact:
     """The kernel of a problem; components that are set apart are of no kind but their own.
 
     `order` is another order of the candidates of each role, by number: then the first and the least are by that.
+    With `roles` it is the kernel of what is asked of the first so many of them alone: where that has no solution, the
+    problem has none.
     """
-    slots = tuple(role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum))
+    slots = tuple(role for role, asked in enumerate(problem.roles[:roles]) for _ in range(asked.minimum))
     minima = Counter(slots)
-    wiring = Wiring(problem)
+    wiring = Wiring(problem, roles)
     numbers, shared = _enough(problem, apart, order, minima)
     most = dict.fromkeys(minima, len(slots)) if shared else minima
     left: dict[int, list[Option]] = {}

@@ -48,6 +48,13 @@ def available() -> bool:
     return find_spec("pysat") is not None
 
 
+def some(compact: Compact, budget: Budget) -> list[Option] | Undecided | None:
+    """Any solution, one option per slot; None if there is none; Undecided when the conflicts are used up."""
+    with Clauses(compact) as clauses:
+        found = clauses.solve((), budget)
+        return clauses.chosen() if found is True else None if found is False else found
+
+
 def least(compact: Compact, budget: Budget) -> list[Option] | Undecided | None:
     """The least solution, one option per slot; None if there is none; Undecided when the conflicts are used up."""
     with Clauses(compact) as clauses:
@@ -276,6 +283,15 @@ class Clauses:
     def core(self) -> set[int]:
         """Assumptions of the last call that cannot hold together."""
         return set(self._solver.get_core() or ())
+
+    def chosen(self) -> list[Option]:
+        """The solution that the last model is."""
+        return [
+            option
+            for options, literals in zip(self.compact.options, self.plays, strict=True)
+            for option, literal in zip(options, literals, strict=True)
+            if self.holds(literal)
+        ]
 
     def least(self, budget: Budget) -> list[Option] | Undecided:
         """The least solution, given that the last call found one."""

@@ -18,6 +18,8 @@ solution until there is none (`sat`). "None" comes from a role that runs out of 
 *Costs.* An easy instance takes a few steps for each slot, however many candidates there are; then a pass over the
 candidates and matching, slots times options; then depth first, for no more steps than writing down the clauses would
 take, so that it never costs more than it could have saved; then clause learning, exponential in the worst case.
+Whoever is stuck early often is for a reason that lies near: the first roles by themselves are tried before the rest
+of many is so much as looked at.
 Depth-first search is left as soon as it has taken more steps than it should have for the slots it has reached: where
 it succeeds, it goes ahead steadily; where it thrashes, it is stuck early. Without a solver library it goes on by
 itself. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`).
@@ -25,6 +27,7 @@ itself. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from selfconf.model.configuration import Configuration
@@ -33,17 +36,23 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.search import explain, sat
 from selfconf.search.compact import Compact, Option
-from selfconf.search.filling import Filling
-from selfconf.search.kernel import Prepared
+from selfconf.search.filling import HEADROOM, Filling
+from selfconf.search.kernel import Prepared, compact
 from selfconf.search.matching import Partners, Shortage, impossible
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import pruned
 from selfconf.search.walk import Budget, walk
 
+Engine = Callable[[Compact, Budget], list[Option] | Undecided | None]
+
 FILL_STEPS = 4
 """Steps per slot reached before anything is prepared; a few slots more, for the smallest problems."""
 WALK_PACE = 0.6
 """Steps of depth-first search for each option of the slots reached before clauses are written."""
+NEARBY = 3
+"""How many times as far as depth first has come the cause is sought why it comes no further."""
+SHARE = 3
+"""One in how many slots at most may lie that near, or everything is prepared at once."""
 
 
 def search(problem: Problem) -> Configuration | Refusal:
@@ -71,12 +80,16 @@ def solution(given: Prepared, budget: Budget) -> list[list[Candidate]] | Undecid
     ):
         return None
     slots = sum(role.minimum for role in problem.roles)
-    part = budget.part(FILL_STEPS * (slots + 8))
+    part = budget.part(FILL_STEPS * (slots + HEADROOM))
     steps = part.steps or 0
-    found = Filling(problem, part, FILL_STEPS).first()
+    filling = Filling(problem, part, FILL_STEPS)
+    found = filling.first()
     if found is not None or (part.steps or 0) > 0:
         return found
     budget.spend(steps)
+    near = NEARBY * (filling.furthest + HEADROOM)
+    if SHARE * near < slots and _impossible(problem, filling.slots[near] + 1, budget):
+        return None
     chosen = least(given.compact, budget)
     if not isinstance(chosen, list):
         return chosen
@@ -87,7 +100,16 @@ def solution(given: Prepared, budget: Budget) -> list[list[Candidate]] | Undecid
     return playing
 
 
-def least(given: Compact, budget: Budget) -> list[Option] | Undecided | None:
+def _impossible(problem: Problem, roles: int, budget: Budget) -> bool:
+    """Whether the first so many roles are found to have no solution, even without what later ones ask of them."""
+    part = Budget(None if budget.steps is None else budget.steps // 2)
+    steps = part.steps
+    found = least(compact(problem, roles=roles), part, sat.some)
+    budget.spend((steps or 0) - (part.steps or 0))
+    return found is None
+
+
+def least(given: Compact, budget: Budget, by_clauses: Engine = sat.least) -> list[Option] | Undecided | None:
     """The least solution of a compact problem, by whichever engine finds it."""
     part = pruned(given)
     if part.short() is not None:
@@ -106,7 +128,7 @@ def least(given: Compact, budget: Budget) -> list[Option] | Undecided | None:
         assert not isinstance(never, Shortage)
         part = _without(part, never)
         partners = Partners(part.slots, [[option.component for option in options] for options in part.options])
-    return sat.least(part, budget) if sat.available() else walk(part, budget, partners=partners)
+    return by_clauses(part, budget) if sat.available() else walk(part, budget, partners=partners)
 
 
 def _without(part: Compact, never: set[tuple[int, IRI]]) -> Compact:

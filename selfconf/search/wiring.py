@@ -31,11 +31,13 @@ class Need(NamedTuple):
 class Wiring:
     """Numbers the needs of a problem and says which of them outputs serve: a role at a time, first of all the inputs.
 
-    Where no interaction names an input of a role, its needs are told by their signals alone; so are outputs.
+    Where no interaction names an input of a role, its needs are told by their signals alone; so are outputs. Where
+    only the first so many roles matter, an input that a later one may feed is no need.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, roles: int | None = None) -> None:
         self.problem = problem
+        self._roles = len(problem.roles) if roles is None else roles
         self.needs: list[Need] = []
         self._named = [any(link.input for link in links) for links in problem.links]
         self._told = {link.source for links in problem.links for link in links if link.output}
@@ -47,8 +49,10 @@ class Wiring:
         """The numbers of the needs that inputs are, for those of each who may play a role."""
         if self._named[role]:
             number = self._numbered(role, dict.fromkeys(chain.from_iterable(inputs)))
-            return [tuple(dict.fromkeys(map(number.__getitem__, some))) for some in inputs]
+            return [tuple(dict.fromkeys([number[one] for one in some if one in number])) for some in inputs]
         sources, wanted, needs = self.problem.feeding(role, None), self._wanted[role], self.needs
+        if self._fed_later(sources):
+            return [()] * len(inputs)
         found: list[tuple[int, ...]] = []
         for some in inputs:
             numbers: list[int] = []
@@ -61,12 +65,17 @@ class Wiring:
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
         return found
 
+    def _fed_later(self, sources: Sources) -> bool:
+        return any(source >= self._roles for source, _ in sources)
+
     def _numbered(self, role: int, inputs: Iterable[Input]) -> dict[Input, int]:
         """The need that each input of a role is: one for all of a signal that the same may feed."""
         same: dict[tuple[IRI, Sources], int] = {}
         found: dict[Input, int] = {}
         for wanted in inputs:
             sources = self.problem.feeding(role, wanted.name)
+            if self._fed_later(sources):
+                continue
             number = found[wanted] = same.setdefault((wanted.signal, sources), len(self.needs))
             if number == len(self.needs):
                 self.needs.append(Need(role, wanted.signal, sources, wanted.name))

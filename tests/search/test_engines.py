@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
+from benchmarks.search import families
 from selfconf.model.partition import Candidate, Partition, Variable
 from selfconf.model.refusal import Undecided
 from selfconf.model.template import Interaction, Role, Task, Template
-from selfconf.search import sat
+from selfconf.search import sat, solve
 from selfconf.search.compact import Compact, Option
 from selfconf.search.filling import Filling
-from selfconf.search.kernel import compact
+from selfconf.search.kernel import Prepared, compact
 from selfconf.search.matching import Partners, Shortage, impossible, shortage
 from selfconf.search.problem import Problem
 from selfconf.search.requirement import pruned
@@ -143,3 +146,70 @@ def test_a_matching_beside_depth_first_leaves_no_solution_out(problem: Problem) 
     given_ = compact(problem)
     partners = Partners(given_.slots, [[o.component for o in some] for some in given_.options])
     assert _chosen(walk(given_, Budget(), partners=partners)) == _numbers(problem)
+
+
+def _first_roles(problem: Problem, roles: int) -> Problem:
+    """The first so many roles by themselves, without the inputs that a later one may feed."""
+    template = problem.task.template
+    kept = {role.iri for role in template.roles[:roles]}
+    candidates = []
+    for links, some in zip(problem.links, problem.candidates[:roles], strict=False):
+        later = {link.input for link in links if link.source >= roles}
+        candidates.append(
+            tuple(
+                replace(
+                    c,
+                    profile=replace(
+                        c.profile,
+                        ports=c.profile.ports._replace(
+                            inputs=tuple(one for one in c.profile.inputs if not later & {None, one.name})
+                        ),
+                    ),
+                )
+                for c in some
+            )
+        )
+    between = tuple(one for one in template.interactions if {one.source, one.sink} <= kept)
+    shorter = replace(template, roles=template.roles[:roles], interactions=between)
+    partition = replace(problem.partition, candidates=tuple(candidates))
+    return Problem(replace(problem.task, template=shorter), partition, problem.hierarchy)
+
+
+@given(problems(), st.integers(1, 3))
+@agreement()
+def test_the_first_roles_are_asked_for_nothing_that_a_later_one_may_feed(problem: Problem, roles: int) -> None:
+    given_ = compact(problem, roles=roles)
+    expected = _numbers(_first_roles(problem, min(roles, len(problem.roles))))
+    assert _chosen(walk(given_, Budget())) == expected
+    if expected is None:
+        assert _numbers(problem) is None
+    if sat.available():
+        assert (sat.some(given_, Budget()) is None) == (expected is None)
+
+
+def test_what_a_later_role_may_feed_refuses_nobody_among_the_first() -> None:
+    parts = {"cap": [component("cap", "pose:Pose")], "deaf": [component("deaf")], "pose": [component("pose")]}
+    by_type, by_name = written(parts, "deaf>cap pose>cap"), written(parts, "deaf>cap.pose pose>cap.pose")
+    for given_ in (by_type, by_name):
+        assert walk(compact(given_, roles=3), Budget()) is None
+        assert _chosen(walk(compact(given_, roles=2), Budget())) == [0, 0]
+    assert walk(compact(written(parts, "deaf>cap"), roles=2), Budget()) is None
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_cause_near_the_beginning_is_found_there_and_the_answer_is_the_same(seed: int) -> None:
+    pytest.importorskip("pysat")
+    problem = families.graph("graph", 150, 10 + seed, 3, seed)
+    given_ = Prepared(problem)
+    found = solve.solution(given_, Budget())
+    expected = _chosen(sat.least(compact(problem), Budget()))
+    assert isinstance(found, list) == (expected is not None)
+    if isinstance(found, list):
+        assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == expected
+
+
+def test_for_a_cause_near_the_beginning_the_rest_is_not_even_prepared() -> None:
+    pytest.importorskip("pysat")
+    given_ = Prepared(families.graph("graph", 200, 10, 3, 7_001))
+    assert solve.solution(given_, Budget()) is None
+    assert "compact" not in vars(given_)
