@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from benchmarks.search import families, sparql
+from benchmarks.search import families, first, sparql
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row, exponents, page, verdict
+from selfconf.model.term import IRI
+from selfconf.search.problem import Problem
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -35,6 +38,25 @@ def test_rdflib_answers_the_same_query(solvable: bool) -> None:
     assert sparql.oxigraph(families.fleet(3, 4, 1))
 
 
+PROBLEMS = {
+    "navigation": families.navigation(12, 7001),
+    "tree": families.graph("tree", 12, 6, 3, 7001),
+    "distinct": families.distinct(8, 8),
+    "scarce": families.scarce(12, 0.4, 1),
+    "3-SAT": families.satisfiability(20, 3.0, 7001),
+    "fleet": families.fleet(6, 20, 7001),
+    "impossible": families.navigation(4, 7001, solvable=False),
+}
+
+
+@pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
+def test_whoever_is_asked_for_the_first_configuration_names_it(problem: Problem) -> None:
+    expected = first.ENGINES["selfconf"](problem)
+    assert {engine: solved(problem) for engine, solved in first.ENGINES.items()} == dict.fromkeys(
+        first.ENGINES, expected
+    )
+
+
 def row(size: int, mine: float, other: float | None, answer: bool | None = True) -> Row:
     """A row of the table."""
     instance = families.Instance("navigation", f"{size} per role", size, lambda: families.navigation(1, 1))
@@ -51,6 +73,16 @@ def test_a_goal_that_is_missed_is_said_to_be_missed() -> None:
     whole = page([good, bad, row(10, 0.1, 0.2, False), row(20, 3.0, None, None)], 3.0)
     assert "**2.00**" in whole
     assert "## Decided by nobody" in whole
+
+
+def test_the_easier_question_is_told_from_the_same_one() -> None:
+    who = (IRI("urn:test:somebody"),)
+    lines = list(verdict([row(100, 0.02, 0.01), replace(row(100, 0.02, 0.05), answer=who)]))
+    assert "first configuration" in lines[0]
+    assert "met on all" in lines[0]
+    assert "any configuration" in lines[1]
+    assert "missed on 1" in lines[1]
+    assert "## Time to the first configuration" in page([replace(row(100, 0.02, 0.05), answer=who)], 3.0)
 
 
 def test_growth_is_the_slope_in_a_log_log_diagram() -> None:

@@ -1,17 +1,19 @@
 """The search of selfconf and the engines beside it, each fed with the problem as its users would write it down.
 
 An engine gets a problem and answers whether there is a configuration. Ours gives the first one; the general solvers
-may give any, which is the easier question. The families ask for one component per role and name no ports, so that
-neither do the models. Building the model is part of the time, importing a library is not.
+may give any, which is the easier question (`first` asks them for the first one too). The families ask for one
+component per role and name no ports, so that neither do the models. Building the model is part of the time, importing
+a library is not.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from benchmarks.search import sparql
 from selfconf.model.configuration import Configuration
@@ -48,12 +50,13 @@ def clingo(problem: Problem) -> bool:
     import clingo as asp
 
     control = asp.Control(["--warn=none"])
-    control.add("base", [], PROGRAM + "\n".join(_facts(problem)))
+    control.add("base", [], PROGRAM + "\n".join(facts(problem)))
     control.ground([("base", [])])
     return bool(control.solve().satisfiable)
 
 
-def _facts(problem: Problem) -> Iterator[str]:
+def facts(problem: Problem) -> Iterator[str]:
+    """A problem as facts of answer set programming; components are numbered as they come."""
     signals: dict[str, int] = {}
     components: dict[str, int] = {}
     for role, candidates in enumerate(problem.candidates):
@@ -93,6 +96,15 @@ def cp_sat(problem: Problem) -> bool:
     """OR-tools CP-SAT with Boolean variables; one worker, as every other engine has."""
     from ortools.sat.python import cp_model
 
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    return bool(solver.solve(cp_model_of(problem)[0]) in (cp_model.OPTIMAL, cp_model.FEASIBLE))
+
+
+def cp_model_of(problem: Problem) -> tuple[Any, list[list[Any]]]:
+    """A problem as a model, and the variables that say who plays which role."""
+    from ortools.sat.python import cp_model
+
     model = cp_model.CpModel()
     plays = [[model.new_bool_var("") for _ in candidates] for candidates in problem.candidates]
     for literals in plays:
@@ -108,13 +120,18 @@ def cp_sat(problem: Problem) -> bool:
         model.add_exactly_one(values)
         for literal, mask in some:
             model.add_bool_or([~literal, *(values[k] for k in _bits(mask))])
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    return bool(solver.solve(model) in (cp_model.OPTIMAL, cp_model.FEASIBLE))
+    return model, plays
 
 
 def python_sat(problem: Problem, solver: str = "glucose4") -> bool:
     """python-sat, cardinalities by its encodings or, where the solver has them, by its own constraints."""
+    with clauses_of(problem, solver) as (clauses, _):
+        return bool(clauses.solve())
+
+
+@contextmanager
+def clauses_of(problem: Problem, solver: str) -> Iterator[tuple[Any, list[list[int]]]]:
+    """A solver of python-sat that has a problem as clauses, and the literals that say who plays which role."""
     from pysat.card import CardEnc, EncType
     from pysat.solvers import Solver
 
@@ -149,7 +166,7 @@ def python_sat(problem: Problem, solver: str = "glucose4") -> bool:
                 encoded = CardEnc.atmost(literals, 1, top_id=top, encoding=EncType.seqcounter)
                 top = max(top, encoded.nv)
                 clauses.append_formula(encoded.clauses)
-        return bool(clauses.solve())
+        yield clauses, plays
 
 
 def _shared(problem: Problem, plays: list[list[L]]) -> list[list[L]]:

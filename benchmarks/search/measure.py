@@ -11,12 +11,16 @@ import multiprocessing
 import resource
 import time
 import tracemalloc
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 
 from benchmarks.search import families as f
-from benchmarks.search.engines import ENGINES, GENERAL
+from benchmarks.search.engines import ENGINES, SMALL
+from benchmarks.search.first import First
 from selfconf.search.problem import Problem
+
+Engine = Callable[[Problem], First]
 
 WARMING = (f.navigation(3, 7001), f.navigation(3, 7001, solvable=False), f.satisfiability(50, 4.26, 7001))
 """The last for the engines that are not hopeless on it."""
@@ -29,25 +33,28 @@ class Measured:
     """Seconds, the answer (None: none within the limit) and the growth of memory in megabytes."""
 
     seconds: float
-    answer: bool | None
+    answer: First | None
     memory: float = 0.0
 
 
-def measure(engine: str, problem: Problem, limit: float, times: int = 3) -> Measured:
+def measure(
+    engine: str, problem: Problem, limit: float, times: int = 3, engines: Mapping[str, Engine] = ENGINES
+) -> Measured:
     """The time from the problem to the answer, building a model of it included, importing a library not."""
-    found = _once(engine, problem, limit)
+    found = _once(engine, problem, limit, engines)
     for _ in range(times - 1):
         if found.answer is not None and found.seconds < QUICK:
-            found = min(found, _once(engine, problem, limit), key=lambda one: (one.answer is None, one.seconds))
+            again = _once(engine, problem, limit, engines)
+            found = min(found, again, key=lambda one: (one.answer is None, one.seconds))
     return found
 
 
-def _once(engine: str, problem: Problem, limit: float) -> Measured:
+def _once(engine: str, problem: Problem, limit: float, engines: Mapping[str, Engine]) -> Measured:
     context = multiprocessing.get_context("fork")
     receiving, sending = context.Pipe(duplex=False)
     gc.collect()
     gc.freeze()  # so that the child does not copy the pages of the problem as it counts references to nothing
-    process = context.Process(target=_child, args=(engine, problem, sending))
+    process = context.Process(target=_child, args=(engine, engines[engine], problem, sending))
     process.start()
     sending.close()
     found = Measured(limit, None)
@@ -62,19 +69,19 @@ def _once(engine: str, problem: Problem, limit: float) -> Measured:
     return found
 
 
-def _child(engine: str, problem: Problem, sending: Connection) -> None:
+def _child(engine: str, solved: Engine, problem: Problem, sending: Connection) -> None:
     _own(problem)
-    for small in WARMING if engine in GENERAL or engine == "selfconf" else WARMING[:2]:
-        ENGINES[engine](small)
+    for small in WARMING[:2] if engine in SMALL else WARMING:
+        solved(small)
     sending.send(True)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     start = time.perf_counter()
-    answer = ENGINES[engine](problem)
+    answer = solved(problem)
     seconds = time.perf_counter() - start
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     if engine == "selfconf":  # what it needs may fit into what making the problem has left free
         tracemalloc.start()
-        ENGINES[engine](problem)
+        solved(problem)
         grown = max(grown, tracemalloc.get_traced_memory()[1] / 1024**2)
     sending.send(Measured(seconds, answer, grown))
     sending.close()

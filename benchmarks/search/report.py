@@ -12,6 +12,7 @@ from pathlib import Path
 
 from benchmarks.search.engines import ENGINES, GENERAL
 from benchmarks.search.families import Instance
+from benchmarks.search.first import First
 from benchmarks.search.measure import Measured
 from selfconf.model.wording import listed
 
@@ -33,11 +34,14 @@ the instance on which a value does worst against that."""
 
 @dataclass(frozen=True)
 class Row:
-    """An instance, what each engine did on it, and the answer on which those agree that have one."""
+    """An instance, what each engine did on it, and the answer on which those agree that have one.
+
+    The answer to whether there is a configuration is a truth value; to which is the first, who plays in it.
+    """
 
     instance: Instance
     found: Mapping[str, Measured]
-    answer: bool | None
+    answer: First | None
 
     @property
     def others(self) -> dict[str, float]:
@@ -49,10 +53,6 @@ class Row:
         """Our time over that of the best other engine."""
         return self.found["selfconf"].seconds / min(self.others.values()) if self.others else None
 
-    def without(self, engine: str) -> Row:
-        """The same without an engine."""
-        return Row(self.instance, {e: m for e, m in self.found.items() if e != engine}, self.answer)
-
     @property
     def counts(self) -> bool:
         """Whether it is one of the instances that the goal speaks of."""
@@ -61,7 +61,7 @@ class Row:
 
 def table(rows: Sequence[Row]) -> str:
     """The times, an engine in each column."""
-    engines = [engine for engine in ENGINES if any(engine in row.found for row in rows)]
+    engines = list(dict.fromkeys(engine for row in rows for engine in row.found))
     lines = [
         f"| family | instance | {' | '.join(engines)} | selfconf / best |",
         "|---|---|" + "---:|" * (len(engines) + 1),
@@ -113,26 +113,27 @@ def memory(rows: Sequence[Row]) -> str:
     return "\n".join(lines)
 
 
-def _missed(rows: Sequence[Row], beginning: str) -> str:
-    missed = [row for row in rows if (row.ratio or 0.0) > GOAL]
+def _beside_the_best(rows: Sequence[Row], question: str) -> Iterator[str]:
+    counted = [row for row in rows if row.counts and row.ratio is not None]
+    ratios = [row.ratio or 0.0 for row in counted]
+    if not ratios:
+        return
+    missed = [row for row in counted if (row.ratio or 0.0) > GOAL]
     places = "; ".join(f"{r.instance.family}, {r.instance.name} ({r.ratio:.2f})" for r in missed)
-    return (
-        f"* {beginning} missed on {len(missed)} of them: {places}." if missed else f"* {beginning} met on all of them."
+    yield (
+        f"* {question}: on the {len(ratios)} instances beyond {WORK * 1000:g} ms of work, selfconf takes"
+        f" {statistics.median(ratios):.2f} times as long as the best other engine in the median, {max(ratios):.2f}"
+        f" times at worst. The goal of at most {GOAL:g} times is"
+        f" {f'missed on {len(missed)} of them: {places}' if missed else 'met on all of them'}."
     )
 
 
-def verdict(rows: Sequence[Row]) -> Iterator[str]:
+def verdict(everything: Sequence[Row]) -> Iterator[str]:
     """Whether the goals are met, and where not."""
-    counted = [row for row in rows if row.counts]
-    ratios = [row.ratio for row in counted if row.ratio is not None]
-    if ratios:
-        yield (
-            f"* On the {len(ratios)} instances beyond {WORK * 1000:g} ms of work, selfconf takes"
-            f" {statistics.median(ratios):.2f} times as long as the best other engine in the median, {max(ratios):.2f}"
-            f" times at worst. The goal is at most {GOAL:g} times on each."
-        )
-        yield _missed(counted, "It is")
-        yield _missed([row.without("MiniCard") for row in counted], "Leaving MiniCard out, it is")
+    same = [row for row in everything if row.answer is not True]
+    rows = [row for row in everything if not isinstance(row.answer, tuple)]
+    yield from _beside_the_best(same, "All asked the same, for the first configuration or the proof that there is none")
+    yield from _beside_the_best(rows, "The others asked for any configuration, the easier question")
     undecided = [row for row in rows if row.found["selfconf"].answer is None]
     if undecided:
         places = "; ".join(f"{r.instance.family}, {r.instance.name}" for r in undecided)
@@ -176,15 +177,17 @@ def verdict(rows: Sequence[Row]) -> Iterator[str]:
         )
 
 
-def page(rows: Sequence[Row], limit: float, tuned: str = "") -> str:
+def page(everything: Sequence[Row], limit: float, tuned: str = "") -> str:
     """The page; `tuned` is the table of the thresholds that were tried, if they were."""
+    rows = [row for row in everything if not isinstance(row.answer, tuple)]
     setting = (
         f"One run on {platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f},"
         f" Python {platform.python_version()}. Every engine in a process of its own, {limit:g} s for each answer, the"
         " shortest of three where it takes less than 0.3 s; all start from the same problem in their own memory, after"
         " a few small ones so that nobody pays for what a process does for the first time: building a model is part of"
-        " the time, importing a library is not. selfconf answers with the lexicographically first configuration, the"
-        " others with any, which is the easier question. python-sat is Glucose 4 with cardinalities as clauses, the"
+        " the time, importing a library is not. selfconf answers with the lexicographically first configuration. The"
+        " others may answer with any, which is the easier question; in a table of their own those that can be are asked"
+        " for the first too, and name the same components. python-sat is Glucose 4 with cardinalities as clauses, the"
         " usual way; MiniCard is the solver of the same library that counts by itself, which selfconf uses in the end"
         " too. Every engine has one thread. SPARQL asks one query for the whole template, on small sizes."
     )
@@ -193,15 +196,17 @@ def page(rows: Sequence[Row], limit: float, tuned: str = "") -> str:
         "<!-- Made by `python -m benchmarks.search.run --write`. -->",
         setting,
         "![Time by size](search.png)",
-        "\n".join(verdict(rows)),
+        "\n".join(verdict(everything)),
     ]
-    for answer, title in ((True, "Time to an answer"), (False, "Time to the proof that there is none")):
-        some = [row for row in rows if row.answer is answer]
+    titles = {
+        "Time to any configuration": [row for row in rows if row.answer],
+        "Time to the first configuration": [row for row in everything if isinstance(row.answer, tuple)],
+        "Time to the proof that there is none": [row for row in rows if row.answer is False],
+        "Decided by nobody": [row for row in rows if row.answer is None],
+    }
+    for title, some in titles.items():
         if some:
             parts += [f"## {title}", table(some)]
-    rest = [row for row in rows if row.answer is None]
-    if rest:
-        parts += ["## Decided by nobody", table(rest)]
     note = (
         "How far the peak of resident memory rises above that of the problem itself, where some engine needs over"
         " 20 MB. What fits into memory that making the problem has left free does not show there; for selfconf it is at"

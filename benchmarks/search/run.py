@@ -3,7 +3,8 @@
     python -m benchmarks.search.run [--full | --smoke] [--limit SECONDS] [--only FAMILY] [--tuning] [--write]
 
 Every engine runs in a process of its own, with a time limit; all must agree whether there is a configuration. Ours
-answers with the first one, the others with any, which is the easier question. `--tuning` tries the thresholds of the
+answers with the first one, the others with any, which is the easier question; then those that can be are asked for
+the first one as well. `--tuning` tries the thresholds of the
 search on instances that are not reported (`tuning`). `--write` does both, and writes `docs/benchmarks/search.md` and
 the plot beside it.
 """
@@ -17,7 +18,7 @@ from functools import partial
 from pathlib import Path
 
 from benchmarks.search import families as f
-from benchmarks.search import tuning
+from benchmarks.search import first, tuning
 from benchmarks.search.engines import SMALL, installed
 from benchmarks.search.families import Instance
 from benchmarks.search.measure import Measured, measure
@@ -63,13 +64,22 @@ def smoke() -> Iterator[Instance]:
     yield Instance("fleet of 5", "8 per role", 8, partial(f.fleet, 5, 8, SEED))
 
 
-def measured(instance: Instance, engines: Sequence[str], limit: float, times: int) -> Row:
-    """Every engine that is not hopeless on an instance. Raises AssertionError if they disagree."""
+def measured(instance: Instance, engines: Sequence[str], limit: float, times: int) -> Iterator[Row]:
+    """Every engine that is not hopeless on an instance: asked for any configuration, and then for the first.
+
+    The second row is only there if there is a configuration. Raises AssertionError if engines disagree.
+    """
     problem = instance.make()
-    found: dict[str, Measured] = {}
-    for engine in engines:
-        if instance.size <= SMALL.get(engine, instance.size) and not _hopeless(engine, instance):
-            found[engine] = measure(engine, problem, limit, times)
+    hopeful = [e for e in engines if instance.size <= SMALL.get(e, instance.size) and not _hopeless(e, instance)]
+    yield _row(instance, {engine: measure(engine, problem, limit, times) for engine in hopeful})
+    asked = [engine for engine in first.ENGINES if engine.partition(",")[0] in engines]
+    ours = measure("selfconf", problem, limit, times, first.ENGINES)
+    if ours.answer:
+        others = {e: measure(e, problem, limit, times, first.ENGINES) for e in asked if e != "selfconf"}
+        yield _row(instance, {"selfconf": ours, **others})
+
+
+def _row(instance: Instance, found: dict[str, Measured]) -> Row:
     answers = {one.answer for one in found.values() if one.answer is not None}
     if len(answers) > 1:
         raise AssertionError(f"the engines disagree on {instance.family}, {instance.name}: {found}")
@@ -100,8 +110,9 @@ def main() -> int:
         return 0
     for instance in smoke() if options.smoke else instances(options.full):
         if options.only in instance.family:
-            rows.append(measured(instance, engines, limit, 1 if options.smoke else 3))
-            print(table(rows[-1:]).splitlines()[-1], flush=True)
+            for row in measured(instance, engines, limit, 1 if options.smoke else 3):
+                rows.append(row)
+                print(table([row]).splitlines()[-1], flush=True)
     if not any("selfconf" in row.found for row in rows):
         print("nothing was measured", file=sys.stderr)
         return 1
@@ -110,7 +121,7 @@ def main() -> int:
     if options.write:
         PAGE.parent.mkdir(exist_ok=True)
         PAGE.write_text(text)
-        plot(rows, limit, PAGE.with_suffix(".png"))
+        plot([row for row in rows if not isinstance(row.answer, tuple)], limit, PAGE.with_suffix(".png"))
     return 0
 
 

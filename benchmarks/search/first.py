@@ -1,0 +1,111 @@
+"""The general solvers asked the question that selfconf answers: which configuration is lexicographically the first.
+
+Each is asked as its manual tells its users to. Solvers that can be told to decide on the candidates in order, always
+on the best one left first, meet the first configuration first; clingo can weigh them as well, a level for each role.
+With python-sat one asks for an earlier candidate, role after role, until there is none. All must name the same
+components, so that whoever leaves one out is noticed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from benchmarks.search.engines import PROGRAM, clauses_of, cp_model_of, facts
+from selfconf.model.term import IRI
+from selfconf.search import solve
+from selfconf.search.kernel import Prepared
+from selfconf.search.problem import Problem
+from selfconf.search.walk import Budget
+
+First = tuple[IRI, ...] | bool
+"""Who plays the roles in the first configuration, or False if there is none."""
+
+
+def selfconf(problem: Problem) -> First:
+    """The strategy `first`."""
+    playing = solve.solution(Prepared(problem), Budget())
+    return tuple(one.profile.component for (one,) in playing) if isinstance(playing, list) else False
+
+
+WEIGHED = ":~ plays(R,C), rank(R,C,K), last(N). [K@N-R]\n"
+IN_ORDER = "#heuristic plays(R,C) : rank(R,C,K), last(N), most(M). [(N-R)*M-K,true]\n"
+
+
+def clingo(problem: Problem, rule: str, options: Sequence[str] = ()) -> First:
+    """The program for any configuration with one more rule; the last answer set is the best one."""
+    import clingo as asp
+
+    numbers: dict[IRI, int] = {}
+    ranks = [
+        f"rank({role},{numbers.setdefault(candidate.profile.component, len(numbers))},{rank})."
+        for role, candidates in enumerate(problem.candidates)
+        for rank, candidate in enumerate(candidates)
+    ]
+    last = f"last({len(problem.roles)}). most({max(map(len, problem.candidates))})."
+    control = asp.Control(["--warn=none", *options])
+    control.add("base", [], PROGRAM + rule + "#show plays/2.\n" + "\n".join([*facts(problem), *ranks, last]))
+    control.ground([("base", [])])
+    found: First = False
+    names = list(numbers)
+    with control.solve(yield_=True) as models:
+        for model in models:
+            pairs = sorted([one.number for one in symbol.arguments] for symbol in model.symbols(shown=True))
+            found = tuple(names[component] for _, component in pairs)
+            if not model.cost:
+                break
+    return found
+
+
+def cp_sat(problem: Problem) -> First:
+    """CP-SAT with a fixed strategy of decisions, and nothing that would lose a solution while it simplifies."""
+    from ortools.sat.python import cp_model
+
+    model, plays = cp_model_of(problem)
+    literals = [literal for some in plays for literal in some]
+    model.add_decision_strategy(literals, cp_model.CHOOSE_FIRST, cp_model.SELECT_MAX_VALUE)
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    solver.parameters.search_branching = cp_model.FIXED_SEARCH
+    solver.parameters.keep_all_feasible_solutions_in_presolve = True
+    solver.parameters.symmetry_level = 0
+    if solver.solve(model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        return False
+    return _named(problem, [[solver.boolean_value(literal) for literal in some] for some in plays])
+
+
+def python_sat(problem: Problem, solver: str = "glucose4") -> First:
+    """python-sat: role after role, earlier candidates are assumed to play until one can."""
+    with clauses_of(problem, solver) as (clauses, plays):
+        if not clauses.solve():
+            return False
+        true = set(clauses.get_model())
+        for literals in plays:
+            for literal in literals:
+                if literal not in true:
+                    if not clauses.solve(assumptions=[literal]):
+                        clauses.add_clause([-literal])
+                        continue
+                    true = set(clauses.get_model())
+                clauses.add_clause([literal])
+                break
+        return _named(problem, [[literal in true for literal in literals] for literals in plays])
+
+
+def _named(problem: Problem, playing: list[list[bool]]) -> First:
+    return tuple(
+        candidate.profile.component
+        for candidates, some in zip(problem.candidates, playing, strict=True)
+        for candidate, plays in zip(candidates, some, strict=True)
+        if plays
+    )
+
+
+ENGINES: dict[str, Callable[[Problem], First]] = {
+    "selfconf": selfconf,
+    "clingo, weights": partial(clingo, rule=WEIGHED),
+    "clingo, heuristic": partial(clingo, rule=IN_ORDER, options=["--heuristic=Domain"]),
+    "CP-SAT": cp_sat,
+    "python-sat": python_sat,
+    "MiniCard": partial(python_sat, solver="minicard"),
+}
