@@ -37,6 +37,8 @@ class Threshold:
 THRESHOLDS = (
     Threshold(solve, "FILL_STEPS", (0, 1, 2, 4, 8, 16)),
     Threshold(filling, "TAKEN", (1, 8, 32, 128)),
+    Threshold(solve, "NEARBY", (0, 1, 2, 3, 4, 6)),
+    Threshold(solve, "SHARE", (1, 2, 3, 4, 6)),
     Threshold(solve, "WALK_PACE", (0.0, 0.15, 0.3, 0.6, 1.2, 2.4, 4.8)),
     Threshold(sat, "SOLVER", ("Minicard", "Minisat22", "MinisatGH", "Glucose4", "MapleCM", "Cadical153", "Cadical195")),
 )
@@ -60,7 +62,7 @@ def instances() -> Iterator[Instance]:
             yield Instance("navigation, impossible", f"{k}, {seed}", k, partial(f.navigation, k, seed, False))
             yield Instance("fleet", f"{k}, {seed}", k, partial(f.fleet, 50, k, seed))
         for kind in ("chain", "tree", "graph"):
-            for roles in (30, 100):
+            for roles in (30, 100, 300):
                 yield Instance(kind, f"{roles}, {seed}", roles, partial(f.graph, kind, roles, 10, 3, seed))
         for variables in (40, 80, 120):
             yield Instance("3-SAT", f"{variables}, {seed}", variables, partial(f.satisfiability, variables, 4.26, seed))

@@ -23,7 +23,7 @@ class Reasoning(str, Enum):
 class Upward:
     """The reflexive and transitive closure of a relation *lies directly below*; cycles are equivalences.
 
-    Closed lazily and remembered per term: an ecology offers few of the terms that an ontology has.
+    Closed lazily and remembered per term of the relation: an ecology offers few of those that an ontology has.
     """
 
     __slots__ = ("_closed", "_parents")
@@ -37,6 +37,8 @@ class Upward:
 
     def above(self, term: IRI) -> frozenset[IRI]:
         """`term` and everything above it."""
+        if term not in self._parents:
+            return frozenset((term,))
         closed = self._closed.get(term)
         if closed is None:
             seen, waiting = {term}, [term]
@@ -61,6 +63,11 @@ class Hierarchy:
         """Edges run from the lower term to the higher one, in any order, cycles allowed."""
         self._classes, self._properties = Upward(classes), Upward(properties)
 
+    @property
+    def flat(self) -> bool:
+        """Whether no class lies below another."""
+        return not self._classes
+
     def superclasses(self, offered: IRI) -> frozenset[IRI]:
         """`offered` and every class above it."""
         return self._classes.above(offered)
@@ -71,7 +78,7 @@ class Hierarchy:
 
     def matches(self, offered: IRI, wanted: IRI) -> bool:
         """Whether a class (of components, signals or parameters) that is offered serves where another is wanted."""
-        return offered == wanted or (bool(self._classes) and wanted in self._classes.above(offered))
+        return offered == wanted or (not self.flat and wanted in self._classes.above(offered))
 
 
 NOTHING_ABOVE = Hierarchy()

@@ -124,12 +124,12 @@ class Problem:
         lacking: dict[IRI, list[str]] = {}
         for name, signal in profile.inputs:
             lacking.setdefault(signal, []).append(name)
-        above = self.hierarchy.superclasses
+        flat, above = self.hierarchy.flat, self.hierarchy.superclasses
         for source, output, only in self.links[role]:
             for candidate in playing[source]:
                 for name, offered, _ in candidate.profile.outputs:
                     if output is None or output == name:
-                        for signal in above(offered):
+                        for signal in (offered,) if flat else above(offered):
                             if signal not in lacking:
                                 continue
                             if only is not None and lacking[signal] != [only]:

@@ -1,8 +1,8 @@
 """Needs, numbered: which inputs are one and the same to the search, and which of them an output serves.
 
 Two inputs of whoever plays a role are the same need if they want the same signal and the same links may feed them;
-their names matter only where an interaction names one. Output types are expanded upward once for each output and
-role, to the needs they serve, so that no pair of an output and an input is ever compared.
+their names matter only where an interaction names one. Output types are expanded upward, for each output of a role,
+to the needs they serve, so that no pair of an output and an input is ever compared.
 """
 
 from __future__ import annotations
@@ -84,29 +84,18 @@ class Wiring:
 
     def served(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
         """The needs that outputs serve, for those of each who may play a role; all inputs must have been told."""
-        told = role in self._told
-        known: dict[Output | IRI, list[int]] = {}
+        flat, above = self.problem.hierarchy.flat, self.problem.hierarchy.superclasses
+        sinks = [(self._wanted[sink], role in self._told or self._named[sink]) for sink in self.problem.sinks[role]]
         found: list[tuple[int, ...]] = []
         for some in outputs:
             numbers: list[int] = []
-            for output in some:
-                key = output if told else output[1]
-                serves = known.get(key)
-                if serves is None:
-                    serves = known[key] = self._serves(role, output)
-                numbers += serves
+            for name, offered, _ in some:
+                for signal in (offered,) if flat else above(offered):
+                    for wanted, names_matter in sinks:
+                        if signal in wanted:
+                            needs = wanted[signal]
+                            numbers += self._fed(needs, role, name) if names_matter else needs
             found.append(tuple(sorted(set(numbers))) if len(numbers) > 1 else tuple(numbers))
-        return found
-
-    def _serves(self, role: int, output: Output) -> list[int]:
-        found: list[int] = []
-        for sink in self.problem.sinks[role]:
-            wanted = self._wanted[sink]
-            names_matter = role in self._told or self._named[sink]
-            for signal in self.problem.hierarchy.superclasses(output.signal):
-                numbers = wanted.get(signal)
-                if numbers is not None:
-                    found += self._fed(numbers, role, output.name) if names_matter else numbers
         return found
 
     def _fed(self, numbers: Sequence[int], role: int, name: str) -> list[int]:
