@@ -95,7 +95,7 @@ class Stage:
 
 def run(given: argparse.Namespace) -> int:
     """Run the scene that the arguments name; 0 if it ends as it should."""
-    for number in (signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     scenes = {"navigate": _navigate, "radio": _radio}
     try:
