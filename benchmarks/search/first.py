@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import accumulate
 
 from benchmarks.search.engines import PROGRAM, clauses_of, cp_model_of, facts
 from selfconf.model.term import IRI
@@ -28,8 +29,15 @@ def selfconf(problem: Problem) -> First:
     return tuple(one.profile.component for (one,) in playing) if isinstance(playing, list) else False
 
 
-WEIGHED = ":~ plays(R,C), rank(R,C,K), last(N). [K@N-R]\n"
-IN_ORDER = "#heuristic plays(R,C) : rank(R,C,K), last(N), most(M). [(N-R)*M-K,true]\n"
+WEIGHED = ":~ plays(R,C), rank(R,C,K). [K@-R]\n"
+IN_ORDER = "#heuristic plays(R,C) : rank(R,C,K), before(R,B), total(T). [T-B-K,true]\n"
+LEVELS = 32_767
+"""How many decisions clingo can be told the order of."""
+
+
+def able(engine: str, problem: Problem) -> bool:
+    """Whether an engine can be asked at all."""
+    return engine != "clingo, heuristic" or sum(map(len, problem.candidates)) <= LEVELS
 
 
 def clingo(problem: Problem, rule: str, options: Sequence[str] = ()) -> First:
@@ -42,9 +50,10 @@ def clingo(problem: Problem, rule: str, options: Sequence[str] = ()) -> First:
         for role, candidates in enumerate(problem.candidates)
         for rank, candidate in enumerate(candidates)
     ]
-    last = f"last({len(problem.roles)}). most({max(map(len, problem.candidates))})."
+    sizes = [0, *accumulate(map(len, problem.candidates))]
+    order = [f"before({role},{size})." for role, size in enumerate(sizes[:-1])] + [f"total({sizes[-1]})."]
     control = asp.Control(["--warn=none", *options])
-    control.add("base", [], PROGRAM + rule + "#show plays/2.\n" + "\n".join([*facts(problem), *ranks, last]))
+    control.add("base", [], PROGRAM + rule + "#show plays/2.\n" + "\n".join([*facts(problem), *ranks, *order]))
     control.ground([("base", [])])
     found: First = False
     names = list(numbers)

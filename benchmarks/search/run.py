@@ -72,7 +72,7 @@ def measured(instance: Instance, engines: Sequence[str], limit: float, times: in
     problem = instance.make()
     hopeful = [e for e in engines if instance.size <= SMALL.get(e, instance.size) and not _hopeless(e, instance)]
     yield _row(instance, {engine: measure(engine, problem, limit, times) for engine in hopeful})
-    asked = [engine for engine in first.ENGINES if engine.partition(",")[0] in engines]
+    asked = [e for e in first.ENGINES if e.partition(",")[0] in engines and first.able(e, problem)]
     ours = measure("selfconf", problem, limit, times, first.ENGINES)
     if ours.answer:
         others = {e: measure(e, problem, limit, times, first.ENGINES) for e in asked if e != "selfconf"}
