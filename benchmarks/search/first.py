@@ -1,9 +1,9 @@
 """The general solvers asked the question that selfconf answers: which configuration is lexicographically the first.
 
-Each is asked as its manual tells its users to. Solvers that can be told to decide on the candidates in order, always
-on the best one left first, meet the first configuration first; clingo can weigh them as well, a level for each role.
-With python-sat one asks for an earlier candidate, role after role, until there is none. All must name the same
-components, so that whoever leaves one out is noticed.
+Each is asked as its users would ask it. clingo can be told to decide on the candidates in order, the first one left
+first, so that it meets the first configuration first; or to weigh them, a level for each role. CP-SAT weighs some
+roles at a time. With python-sat one asks for an earlier candidate, role after role, until there is none. All must name
+the same components.
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ WEIGHED = ":~ plays(R,C), rank(R,C,K). [K@-R]\n"
 IN_ORDER = "#heuristic plays(R,C) : rank(R,C,K), before(R,B), total(T). [T-B-K,true]\n"
 LEVELS = 32_767
 """How many decisions clingo can be told the order of."""
+WEIGHT = 2**40
+"""How much a solution may weigh for CP-SAT."""
 
 
 def able(engine: str, problem: Problem) -> bool:
@@ -67,20 +69,31 @@ def clingo(problem: Problem, rule: str, options: Sequence[str] = ()) -> First:
 
 
 def cp_sat(problem: Problem) -> First:
-    """CP-SAT with a fixed strategy of decisions, and nothing that would lose a solution while it simplifies."""
+    """CP-SAT: as many roles at once as an integer can weigh, what is settled being fixed for the rest."""
     from ortools.sat.python import cp_model
 
     model, plays = cp_model_of(problem)
-    literals = [literal for some in plays for literal in some]
-    model.add_decision_strategy(literals, cp_model.CHOOSE_FIRST, cp_model.SELECT_MAX_VALUE)
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
-    solver.parameters.search_branching = cp_model.FIXED_SEARCH
-    solver.parameters.keep_all_feasible_solutions_in_presolve = True
-    solver.parameters.symmetry_level = 0
-    if solver.solve(model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        return False
-    return _named(problem, [[solver.boolean_value(literal) for literal in some] for some in plays])
+    found: list[list[bool]] = []
+    while len(found) < len(plays):
+        weighed, weight = [], 1
+        for literals in plays[len(found) :]:
+            if weight * len(literals) > WEIGHT:
+                break
+            weighed.append(literals)
+            weight *= len(literals)
+        terms = []
+        for literals in weighed:
+            weight //= len(literals)
+            terms += [weight * rank * literal for rank, literal in enumerate(literals) if rank]
+        model.minimize(cp_model.LinearExpr.sum(terms))
+        if solver.solve(model) != cp_model.OPTIMAL:
+            return False
+        for literals in weighed:
+            found.append([solver.boolean_value(literal) for literal in literals])
+            model.add(literals[found[-1].index(True)] == 1)
+    return _named(problem, found)
 
 
 def python_sat(problem: Problem, solver: str = "glucose4") -> First:
