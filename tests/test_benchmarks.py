@@ -69,7 +69,7 @@ def test_a_goal_that_is_missed_is_said_to_be_missed() -> None:
     assert "met on all" in "\n".join(verdict([good]))
     text = "\n".join(verdict([good, bad]))
     assert "missed on 1 of them: navigation, 1000 per role (2.00)" in text
-    assert "time-outs" in "\n".join(verdict([row(10, 0.1, None)]))
+    assert "1 time-out counts" in "\n".join(verdict([row(10, 0.1, None)]))
     whole = page([good, bad, row(10, 0.1, 0.2, False), row(20, 3.0, None, None)], 3.0)
     assert "**2.00**" in whole
     assert "## Decided by nobody" in whole

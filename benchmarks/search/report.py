@@ -148,7 +148,7 @@ def verdict(everything: Sequence[Row]) -> Iterator[str]:
         if against:
             mean = statistics.geometric_mean(one for one, _ in against)
             late = sum(out for _, out in against)
-            tail = f"; {late} time-outs count as the limit" if late else ""
+            tail = f"; {late} time-out{'s count' if late > 1 else ' counts'} as the limit" if late else ""
             yield f"* {engine} takes {mean:.1f} times as long as selfconf (geometric mean of {len(against)}{tail})."
     large = [
         row for row in rows if row.instance.family.startswith(("navigation", "fleet")) and row.instance.size >= 1000
