@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.search import families, first, sparql
+from benchmarks.search.engines import installed
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row, exponents, page, verdict
 from selfconf.model.term import IRI
@@ -51,10 +52,9 @@ PROBLEMS = {
 
 @pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
 def test_whoever_is_asked_for_the_first_configuration_names_it(problem: Problem) -> None:
-    expected = first.ENGINES["selfconf"](problem)
-    assert {engine: solved(problem) for engine, solved in first.ENGINES.items()} == dict.fromkeys(
-        first.ENGINES, expected
-    )
+    asked = [engine for engine in first.ENGINES if engine.partition(",")[0] in installed()]
+    assert {"selfconf", "clingo, heuristic", "clingo, weights", "MiniCard"} <= set(asked)
+    assert len({first.ENGINES[engine](problem) for engine in asked}) == 1
 
 
 def row(size: int, mine: float, other: float | None, answer: bool | None = True) -> Row:
