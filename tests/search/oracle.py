@@ -139,7 +139,7 @@ class World:
                 bindings[names[variable.parameter]] = variable.domain[min(allowed)]
         settings = []
         for role, chosen in zip(self.roles, grown, strict=True):
-            for setting in role.settings:
+            for setting in role.settings if chosen else ():
                 value = setting.value
                 if isinstance(value, IRI) and value in names:
                     value = bindings[names[value]]
