@@ -71,12 +71,12 @@ def measured(instance: Instance, engines: Sequence[str], limit: float, times: in
     """
     problem = instance.make()
     hopeful = [e for e in engines if instance.size <= SMALL.get(e, instance.size) and not _hopeless(e, instance)]
-    yield _row(instance, {engine: measure(engine, problem, limit, times) for engine in hopeful})
+    row = _row(instance, {engine: measure(engine, problem, limit, times) for engine in hopeful})
+    yield row
+    if not row.answer:
+        return
     asked = [e for e in first.ENGINES if e.partition(",")[0] in engines and first.able(e, problem)]
-    ours = measure("selfconf", problem, limit, times, first.ENGINES)
-    if ours.answer:
-        others = {e: measure(e, problem, limit, times, first.ENGINES) for e in asked if e != "selfconf"}
-        yield _row(instance, {"selfconf": ours, **others})
+    yield _row(instance, {engine: measure(engine, problem, limit, times, first.ENGINES) for engine in asked})
 
 
 def _row(instance: Instance, found: dict[str, Measured]) -> Row:

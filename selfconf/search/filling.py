@@ -102,15 +102,16 @@ class Filling:
         passed, taken, due = 0, self.taken, self._due[place]
         for number, candidate in self.candidates(role, start):
             component = candidate.profile.component
-            if component in taken:
+            plays = component in taken
+            if plays:
                 passed += 1
                 if passed % TAKEN:
                     continue
             if budget.steps is not None:
                 if budget.steps <= 0:
                     return None
-                budget.steps -= 1 if component in taken else work
-            if component in taken:
+                budget.steps -= 1 if plays else work
+            if plays:
                 continue
             narrowed = self.problem.narrowed(values, candidate) if values else values
             if narrowed is None:
