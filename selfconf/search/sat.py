@@ -217,9 +217,10 @@ class Clauses:
         before = self._conflicts()
         found: bool | None = None
         while found is None and budget.steps != 0:
-            # The solver hears no signal inside a call, so that calls have to end for a time limit to be kept.
+            # The solver hears no signal inside a call, so that calls have to end for a time limit to be kept. Were no
+            # interrupt expected, it would catch Ctrl-C itself, and raise an error of its own.
             self._solver.conf_budget(SLICE if budget.steps is None else min(SLICE, budget.steps))
-            found = self._solver.solve_limited(assumptions=list(assumed))
+            found = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
             budget.spend(1 + self._conflicts() - before)
             before = self._conflicts()
         if found is None:
