@@ -19,7 +19,8 @@ from selfconf.model.template import Role
 from selfconf.rdf import spelling
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import CompiledRole
-from selfconf.rdf.partition import Exclusion, Partitioner
+from selfconf.rdf.kept_out import Exclusion, exclusions
+from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.templates import TaskDocument
 
 NAME = "partition"
@@ -57,7 +58,7 @@ def run(given: argparse.Namespace) -> int:
     partition = partitioner.partition(ecology)
     seconds["partition"] = time.perf_counter() - began
     rows = [
-        (role, candidates, partitioner.exclusions(compiled, {c.profile.component for c in candidates}, ecology))
+        (role, candidates, exclusions(partitioner, compiled, {c.profile.component for c in candidates}, ecology))
         for role, compiled, candidates in zip(roles, partitioner.roles, partition.candidates, strict=True)
     ]
     if given.format == "json":
@@ -82,16 +83,14 @@ def _spelt(task: TaskDocument, partitioner: Partitioner, ecology: Sequence[Adver
     return "\n\n".join(f"# {role.iri}\n{spelt(role)}" for role in partitioner.roles)
 
 
-def _lines(
-    role: Role, candidates: Sequence[Candidate], exclusions: Sequence[Exclusion], names: words.Names
-) -> list[str]:
+def _lines(role: Role, candidates: Sequence[Candidate], kept_out: Sequence[Exclusion], names: words.Names) -> list[str]:
     lines = [f"{names(role.iri)}  {len(candidates) or 'nobody is'} eligible"]
     lines += [f"  {number}. {names(c.profile.component)}" for number, c in enumerate(candidates, 1)]
-    if exclusions:
+    if kept_out:
         lines.append("  kept out")
-        lines += [f"    {names(e.component)}: {', '.join(e.obstacles)}" for e in exclusions[:SHOWN]]
-    if len(exclusions) > SHOWN:
-        lines.append(f"    and {len(exclusions) - SHOWN} more; --format json has them all")
+        lines += [f"    {names(e.component)}: {', '.join(e.obstacles)}" for e in kept_out[:SHOWN]]
+    if len(kept_out) > SHOWN:
+        lines.append(f"    and {len(kept_out) - SHOWN} more; --format json has them all")
     return lines
 
 
@@ -104,11 +103,10 @@ def _body(task: TaskDocument, rows: Sequence[Row], seconds: Mapping[str, float])
                 "role": role.iri,
                 "eligible": [candidate.profile.component for candidate in candidates],
                 "excluded": [
-                    {"component": e.component, "of_its_class": e.akin, "obstacles": list(e.obstacles)}
-                    for e in exclusions
+                    {"component": e.component, "of_its_class": e.akin, "obstacles": list(e.obstacles)} for e in kept_out
                 ],
             }
-            for role, candidates, exclusions in rows
+            for role, candidates, kept_out in rows
         ],
         "seconds": {part: round(value, 6) for part, value in seconds.items()},
     }

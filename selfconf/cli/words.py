@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -14,20 +13,13 @@ from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Place
 from selfconf.model.refusal import InputUnfed, Reason, Refusal, Undecided
 from selfconf.model.repair import AcceptNearMiss, Repair
-from selfconf.model.term import IRI, STRING, XSD, Literal, Term
+from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.best import Optimum
 from selfconf.search.whatif import Loss
 
 Where = Callable[[IRI], Place | None]
 """Where a role or component is spoken of, if that is known."""
 _LOCAL = re.compile(r"[A-Za-z0-9_][\w.-]*")
-_BARE = {
-    XSD + "integer": re.compile(r"[+-]?\d+"),
-    XSD + "decimal": re.compile(r"[+-]?\d*\.\d+"),
-    XSD + "double": re.compile(r"[+-]?(\d+\.?\d*|\.\d+)[eE][+-]?\d+"),
-    XSD + "boolean": re.compile("true|false"),
-}
-"""What Turtle takes for a literal of a datatype as it stands."""
 
 
 class Names:
@@ -39,19 +31,11 @@ class Names:
     def __call__(self, term: Term) -> str:
         """As Turtle writes it: a CURIE where a prefix fits, a number as such, a string in quotes."""
         if isinstance(term, Literal):
-            return self._literal(term)
+            return term.turtle(self)
         for prefix, base in self._prefixes:
             if term.startswith(base) and _LOCAL.fullmatch(term[len(base) :]):
                 return f"{prefix}:{term[len(base) :]}"
         return f"<{term}>" if isinstance(term, IRI) else str(term)
-
-    def _literal(self, term: Literal) -> str:
-        if term.datatype in _BARE and _BARE[term.datatype].fullmatch(term.lexical):
-            return term.lexical
-        quoted = json.dumps(term.lexical, ensure_ascii=False)  # its escapes are Turtle's too
-        if term.language:
-            return f"{quoted}@{term.language}"
-        return quoted if term.datatype == STRING else f"{quoted}^^{self(term.datatype)}"
 
 
 def configuration_text(configuration: Configuration, names: Names) -> str:

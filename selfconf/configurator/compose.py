@@ -6,7 +6,7 @@ a failure only the lost components leave it and the search alone runs again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import Enum
 
@@ -14,11 +14,12 @@ from selfconf import certificate
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.partition import ANY_VALUE, Candidate, Partition
+from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
 from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.kept_out import near_misses
 from selfconf.rdf.kinds import Ecology
 from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.templates import TaskDocument
@@ -46,6 +47,17 @@ def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
     wanted = {port.signal for profile in profiles for port in profile.inputs}
     offered = {port.signal for profile in profiles for port in profile.outputs}
     return any(not wanted.isdisjoint(hierarchy.superclasses(signal) - {signal}) for signal in offered)
+
+
+def _admitted(near: NearMiss, variables: Sequence[Variable]) -> tuple[int, ...]:
+    """What a near miss would let the variables be; values that nobody else states are bits beyond the domain."""
+    masks: list[int] = []
+    for variable in variables:
+        allowed = near.allows.get(variable.parameter)
+        known = sum(1 << bit for bit, value in enumerate(variable.domain) if allowed is None or value in allowed)
+        of_its_own = allowed is not None and not allowed <= set(variable.domain)
+        masks.append(ANY_VALUE if allowed is None else known | of_its_own << len(variable.domain))
+    return tuple(masks)
 
 
 class Composer:
@@ -105,7 +117,7 @@ class Composer:
                 yield answer
             elif isinstance(outcome, Refusal):
                 short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
-                misses = self.partitioner.near_misses(self.gathered(ecology), short or None, lost)
+                misses = near_misses(self.partitioner, self.gathered(ecology), short or None, lost)
                 yield replace(outcome, near_misses=tuple(misses))
             else:
                 yield outcome
@@ -151,7 +163,7 @@ class Composer:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
         problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
         near = [
-            (miss, Candidate(ecology[miss.component].profile, tuple(ANY_VALUE for _ in problem.variables)))
+            (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables)))
             for miss in refusal.near_misses[: mend.TRIALS]
         ]
         return mend.with_repairs(problem, refusal, near)

@@ -8,8 +8,8 @@ Candidates can play together iff, for each variable, the conjunction of their ma
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from selfconf.model.profile import Profile, candidate_order
 from selfconf.model.term import IRI, Term
@@ -46,6 +46,8 @@ class NearMiss:
     role: IRI
     component: IRI
     obstacle: str
+    allows: Mapping[IRI, frozenset[Term]] = field(default_factory=dict, compare=False, repr=False)
+    """For each free parameter that it constrains, the values that it would allow."""
 
     def __str__(self) -> str:
         whose = "it" if self.obstacle.startswith(("has ", "is ", "declares ")) else "its"

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 XSD = "http://www.w3.org/2001/XMLSchema#"
@@ -29,6 +32,13 @@ class BlankNode(str):
 
 
 STRING = IRI(XSD + "string")
+_BARE = {
+    XSD + "integer": re.compile(r"[+-]?\d+"),
+    XSD + "decimal": re.compile(r"[+-]?\d*\.\d+"),
+    XSD + "double": re.compile(r"[+-]?(\d+\.?\d*|\.\d+)[eE][+-]?\d+"),
+    XSD + "boolean": re.compile("true|false"),
+}
+"""What Turtle takes for a literal of a datatype as it stands."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +51,15 @@ class Literal:
 
     def __str__(self) -> str:
         return self.lexical
+
+    def turtle(self, name: Callable[[IRI], str]) -> str:
+        """As Turtle writes it: a number or truth value as such, else in quotes; `name` is for the datatype."""
+        if self.datatype in _BARE and _BARE[self.datatype].fullmatch(self.lexical):
+            return self.lexical
+        quoted = json.dumps(self.lexical, ensure_ascii=False)  # its escapes are Turtle's too
+        if self.language:
+            return f"{quoted}@{self.language}"
+        return quoted if self.datatype == STRING else f"{quoted}^^{name(self.datatype)}"
 
 
 Term = IRI | BlankNode | Literal

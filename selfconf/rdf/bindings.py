@@ -129,7 +129,7 @@ def misfits(parameter: Parameter, values: Iterable[Term], document: Document) ->
     for one, value in probes.items():
         subjects.add((rdflib.URIRef(one), rdflib.URIRef(probe), turtle.rdflib_term(value)))
     found = violations(subjects, shapes, probe_shape, list(probes), document.source)
-    return {value: found[one] for one, value in probes.items() if one in found}
+    return {value: found[one][0].message for one, value in probes.items() if one in found}
 
 
 def show(value: Term) -> str:

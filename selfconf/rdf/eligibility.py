@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Profile
-from selfconf.model.term import IRI, Term
+from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.values import ValueTest
 
 
@@ -58,28 +58,31 @@ class PropertyTest:
         return {value for key, value in profile.properties if self.path in hierarchy.superproperties(key)}
 
     def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> str | None:
-        values = self.values(profile, hierarchy)
+        return "; ".join(self._wrong(self.values(profile, hierarchy))) or None
+
+    def _wrong(self, values: set[Term]) -> Iterator[str]:
+        """All that is wrong with some values: one property is one obstacle, with all that it takes to mend it."""
         name = self.path.short
+        if not values and (self.minimum or self.required or self.free_required):
+            yield f"has no {name}"
+            return
         if len(values) < self.minimum:
-            return f"has no {name}" if not values else f"has {len(values)} of {name}, too few"
+            yield f"has {len(values)} of {name}, too few"
         if self.maximum is not None and len(values) > self.maximum:
-            return f"has {len(values)} of {name}, too many"
+            yield f"has {len(values)} of {name}, too many"
         for members in self.allowed:
             if not values <= members:
-                return f"{name} is {words(values - members)}, not {words(members)}"
+                yield f"{name} is {words(values - members)}, not {words(members)}"
         for value in self.required:
             if value not in values:
-                return f"{name} is {words(values)}, not {words({value})}" if values else f"has no {name}"
+                yield f"{name} is {words(values)}, not {words({value})}"
         for test in self.each:
             wrong = {value for value in values if not test.passes(value)}
             if wrong:
-                return f"{name} is {words(wrong)}, not {test}"
+                yield f"{name} is {words(wrong)}, not {test}"
         for parameter, members in self.free_in:
             if len(values - members) > 1:
-                return f"{name} has several values, so that no one {parameter.short} fits"
-        if self.free_required and not values:
-            return f"has no {name}"
-        return None
+                yield f"{name} has several values, so that no one {parameter.short} fits"
 
     def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
         """For each free parameter that this component constrains, the values it allows."""
@@ -163,6 +166,12 @@ class CompiledRole:
 
 
 def words(values: Iterable[Term]) -> str:
-    """Values for people: `Astrid or Pippi`."""
-    names = sorted(value.short if isinstance(value, IRI) else f'"{value}"' for value in values)
+    """Values for people: `Astrid or Pippi`; of literals also what tells them from others, `"1"` from `1`."""
+    names = sorted(_word(value) for value in values)
     return " or ".join(names) if names else "nothing"
+
+
+def _word(value: Term) -> str:
+    if isinstance(value, Literal):
+        return value.turtle(lambda datatype: datatype.short)
+    return value.short if isinstance(value, IRI) else str(value)

@@ -7,6 +7,7 @@ out are near misses too, if the type is written nearly like the one wanted, or r
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from difflib import SequenceMatcher
 from functools import lru_cache
 
@@ -14,6 +15,7 @@ from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI
 from selfconf.rdf.eligibility import ClassTest, CompiledRole
+from selfconf.rdf.kept_out import nearly
 from selfconf.rdf.kinds import Ecology
 from selfconf.rdf.partition import Partitioner
 from selfconf.rdf.vocabulary import SC
@@ -33,10 +35,9 @@ def near_misses(role: CompiledRole, partitioner: Partitioner, ecology: Ecology, 
     kinds = sorted((kinship, kind) for kind, kinship in found.items() if kinship is not None)
     left = MOST
     for (_, obstacle), kind in kinds:
-        tested = partitioner.tested(role, ecology, [kind])
-        near = sorted(a.component for _, alike, verdict in tested if len(verdict.obstacles) == 1 for a in alike)
-        yield from (NearMiss(role.iri, component, obstacle) for component in near[:left])
-        left -= len(near[:left])
+        near = nearly(partitioner, role, ecology, [kind])[:left]
+        yield from (replace(miss, obstacle=obstacle) for miss in near)
+        left -= len(near)
         if not left:
             return
 

@@ -7,7 +7,7 @@ says more than the tests, pySHACL judges those who pass them, all in one call.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
@@ -16,16 +16,16 @@ import rdflib
 
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable, ordered
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable, ordered
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term, sort_key
-from selfconf.rdf import free_values, turtle
+from selfconf.rdf import free_values, shacl, turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.bindings import free_parameters
 from selfconf.rdf.eligibility import CompiledRole
 from selfconf.rdf.kinds import Above, Ecology, Kind, Signature
 from selfconf.rdf.roles import bound_shape, compile_role
-from selfconf.rdf.shacl import violations
+from selfconf.rdf.shacl import Violation
 from selfconf.rdf.templates import TaskDocument, mentions
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import TYPE
@@ -34,7 +34,6 @@ Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
 ANOTHER = IRI("urn:selfconf:another-value")
 """A value that no component has: what it lets pass, any value lets pass."""
 _NOTHING: Mapping[IRI, frozenset[Term]] = {}
-NO_VALUE = "leaves no value for a free parameter that its statements agree on"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,16 +58,6 @@ Tested = tuple[Kind, Sequence[Advertisement], Verdict]
 """Some components that are alike, with their kind and what the tests of a role say of them."""
 
 
-@dataclass(frozen=True, slots=True)
-class Exclusion:
-    """A component that is not eligible for a role, and everything that keeps it out."""
-
-    component: IRI
-    obstacles: tuple[str, ...]
-    akin: bool
-    """Whether it is of the classes that the role asks for."""
-
-
 class Partitioner:
     """Partitions ecologies for one task; compile once, use for each new set of advertisements."""
 
@@ -81,7 +70,7 @@ class Partitioner:
             for role in given.task.template.roles
         )
         self._above = Above(hierarchy)
-        self._suitable = free_values.Suitable(self._parameters, given.document)
+        self.suitable = free_values.Suitable(self._parameters, given.document)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """The same task for roles that see another hierarchy."""
@@ -119,46 +108,6 @@ class Partitioner:
                 obstacles = tuple(role.obstacles(profile, self.hierarchy))
                 yield kind, alike, Verdict(obstacles, {} if obstacles else role.allows(profile, self.hierarchy))
 
-    def near_misses(
-        self, advertisements: Advertisements, roles: Container[IRI] | None = None, lost: Container[IRI] = ()
-    ) -> Iterator[NearMiss]:
-        """For each role the components of its class that exactly one other test keeps out, with that obstacle.
-
-        Of some roles only, where those are given, and without the lost components; for each role by component.
-        """
-        ecology = Ecology.of(advertisements)
-        for role in self.roles:
-            if roles is None or role.iri in roles:
-                near = [
-                    (advertisement.component, verdict.obstacles[0])
-                    for _, alike, verdict in self.tested(role, ecology, self.akin(role, ecology))
-                    if len(verdict.obstacles) == 1
-                    for advertisement in alike
-                ]
-                yield from (NearMiss(role.iri, *one) for one in sorted(near) if one[0] not in lost)
-
-    def exclusions(self, role: CompiledRole, inside: Container[IRI], advertisements: Advertisements) -> list[Exclusion]:
-        """All that keeps out of a role who is not inside; first those of its class, and those with few obstacles."""
-        ecology = Ecology.of(advertisements)
-        akin = set(self.akin(role, ecology))
-        outside = {
-            advertisement: (kind in akin, verdict.obstacles)
-            for kind, alike, verdict in self.tested(role, ecology, ecology.kinds)
-            for advertisement in alike
-            if advertisement.component not in inside
-        }
-        passed = [advertisement for advertisement, (_, obstacles) in outside.items() if not obstacles]
-        if passed and not role.complete:
-            judged = self._violations(role, passed, list(ecology.values()), {})
-            outside |= {a: (outside[a][0], (_clause(judged[a.component]),)) for a in passed if a.component in judged}
-        return sorted(
-            (
-                Exclusion(a.component, reasons or (NO_VALUE,), of_its_class)
-                for a, (of_its_class, reasons) in outside.items()
-            ),
-            key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
-        )
-
     def eligible(self, ecology: Ecology) -> list[list[Eligible]]:
         """For each role the components that conform to it, unordered. Raises TemplateError."""
         everything = [] if all(role.complete for role in self.roles) else list(ecology.values())
@@ -171,11 +120,11 @@ class Partitioner:
                 found.append([Eligible(a.profile, allows, _NOTHING) for alike, allows in passed for a in alike])
                 continue
             survivors = [a for alike, _ in passed for a in alike]
-            if parameter := self._mentioned(role):
+            if parameter := self.mentioned(role):
                 by_value[number] = parameter, survivors
                 found.append([])
             else:
-                outside = self._violations(role, survivors, everything, {})
+                outside = self.violations(role, survivors, everything, {})
                 found.append([Eligible(a.profile, {}, _NOTHING) for a in survivors if a.component not in outside])
         if not self.free:
             return found
@@ -184,17 +133,17 @@ class Partitioner:
             for parameter, values in one.allows.items():
                 stated[parameter] |= values
         for number, (parameter, survivors) in by_value.items():
-            shown = self._visible(survivors if self.roles[number].local else everything)
+            shown = self.visible(survivors if self.roles[number].local else everything)
             stated[parameter] |= free_values.seen(self.document, self.roles[number].iri, shown)
             stated[parameter] |= free_values.enumerated(self.document, parameter)
-        suitable = {parameter: self._suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
+        suitable = {parameter: self.suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
         for number, (parameter, survivors) in by_value.items():
             found[number] = list(
                 self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, everything)
             )
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
 
-    def _mentioned(self, role: CompiledRole) -> IRI | None:
+    def mentioned(self, role: CompiledRole) -> IRI | None:
         """The free parameter that the shape of a role mentions, if it does."""
         parameters = mentions(self.document, role.iri, self.free)
         if len(parameters) > 1:
@@ -216,10 +165,10 @@ class Partitioner:
     ) -> Iterator[Eligible]:
         """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
-        subjects = self._subjects(role, survivors, everything)
+        subjects = self.subjects(role, survivors, everything)
         others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
         for value in (*sorted(values, key=sort_key), *others):
-            outside = self._violations(role, survivors, everything, {parameter: value}, subjects)
+            outside = self.violations(role, survivors, everything, {parameter: value}, subjects)
             for component in allowed.keys() - outside.keys():
                 allowed[component].add(value)
         for advertisement in survivors:
@@ -229,27 +178,28 @@ class Partitioner:
             else:
                 yield Eligible(advertisement.profile, {}, {parameter: values - found})
 
-    def _violations(
+    def violations(
         self,
         role: CompiledRole,
         focus: Sequence[Advertisement],
         everything: Sequence[Advertisement],
         values: Mapping[IRI, Term],
         subjects: rdflib.Graph | None = None,
-    ) -> dict[IRI, str]:
+    ) -> dict[IRI, list[Violation]]:
+        """What pySHACL finds wrong with some components, parameters replaced by their values."""
         if not focus:
             return {}
         shapes = turtle.to_rdflib(bound_shape(self.document, {**self.task.bindings, **values}))
-        seen = self._subjects(role, focus, everything) if subjects is None else subjects
-        return violations(seen, shapes, role.iri, [a.component for a in focus], self.document.source)
+        seen = self.subjects(role, focus, everything) if subjects is None else subjects
+        return shacl.violations(seen, shapes, role.iri, [a.component for a in focus], self.document.source)
 
-    def _subjects(
+    def subjects(
         self, role: CompiledRole, focus: Sequence[Advertisement], everything: Sequence[Advertisement]
     ) -> rdflib.Graph:
         """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
-        return turtle.to_rdflib(self._visible(focus if role.local else everything))
+        return turtle.to_rdflib(self.visible(focus if role.local else everything))
 
-    def _visible(self, advertisements: Sequence[Advertisement]) -> Iterator[Triple]:
+    def visible(self, advertisements: Sequence[Advertisement]) -> Iterator[Triple]:
         """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.
 
         Each speaks for its own component: what it says about another is not seen.
@@ -286,8 +236,3 @@ def _mask(eligible: Eligible, parameter: IRI, bits: Mapping[Term, int]) -> int:
     if allowed is None:
         return ANY_VALUE & ~sum(bits.get(value, 0) for value in eligible.forbids.get(parameter, ()))
     return sum(bits[value] for value in allowed)
-
-
-def _clause(message: str) -> str:
-    """What pySHACL says of a component, as one of its obstacles."""
-    return f"violates: {message}"

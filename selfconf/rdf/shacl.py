@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import rdflib
 from pyparsing import ParseException
@@ -30,7 +31,6 @@ from selfconf.rdf.values import UNORDERED
 SECONDS = 30.0
 """How long one shape may be judged: what a pattern or query of it is matched against is untrusted."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
-_MESSAGE = _SH.resultMessage
 _ASKING = rdflib.URIRef("urn:selfconf:asking")
 _DEEPEST = 16
 """How many shapes within shapes pySHACL follows: its 15, and the one that asks."""
@@ -59,10 +59,17 @@ _ILL_FORMED = (
 """What pySHACL and the libraries behind it raise on a shape that is ill-formed, also in ways they do not look for."""
 
 
+class Violation(NamedTuple):
+    """A constraint that a node violates: in whose words, and over which property, if it is about one."""
+
+    message: str
+    path: IRI | None = None
+
+
 def violations(
     subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
-) -> dict[IRI, str]:
-    """The nodes of `focus` that do not conform to `shape`, each with the message of its first violation.
+) -> dict[IRI, list[Violation]]:
+    """The nodes of `focus` that do not conform to `shape`, each with its violations, one for each property shape.
 
     Conformance is that of SHACL, section 3.4: a result of any severity counts. So does a value that cannot be compared
     with another (4.3, 4.5.3). Raises TemplateError, blaming `source`, where the shape itself is not well-formed.
@@ -90,13 +97,13 @@ def violations(
 
 def _bisected(
     subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
-) -> dict[IRI, str]:
+) -> dict[IRI, list[Violation]]:
     """The same where pySHACL stops at some nodes, as they have values without an order."""
     try:
         return _found(subjects, shapes, shape, focus, source)
     except _NO_ORDER:
         if len(focus) == 1:
-            return {focus[0]: "Value cannot be compared"}
+            return {focus[0]: [Violation("Value cannot be compared")]}
     half = len(focus) // 2
     parts = [_bisected(subjects, shapes, shape, part, source) for part in (focus[:half], focus[half:])]
     return parts[0] | parts[1]
@@ -104,15 +111,27 @@ def _bisected(
 
 def _found(
     subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
-) -> dict[IRI, str]:
+) -> dict[IRI, list[Violation]]:
     report, text = judged(subjects, aimed(shapes, (shape,), focus))
     if isinstance(report, ValidationFailure) or not isinstance(report, rdflib.Graph):
         raise TemplateError(f"the shape {shape!r} cannot be judged: {first_line(text)}", file=source)
-    found: dict[IRI, str] = {}
+    found: dict[IRI, list[Violation]] = {}
     for result in report.objects(predicate=_SH.result):
-        messages = [str(said) for one in report.objects(result, _SH.detail) for said in report.objects(one, _MESSAGE)]
-        found[IRI(str(report.value(result, _SH.focusNode)))] = min(messages, default="does not conform")
+        found[IRI(str(report.value(result, _SH.focusNode)))] = _details(report, result)
     return found
+
+
+def _details(report: rdflib.Graph, result: rdflib.term.Node) -> list[Violation]:
+    """What a node lacks, sorted: of each property shape, and of each constraint on the node itself, one violation."""
+    least: dict[tuple[object, ...], Violation] = {}
+    for detail in report.objects(result, _SH.detail):
+        path = report.value(detail, _SH.resultPath)
+        message = str(report.value(detail, _SH.resultMessage) or "does not conform")
+        one = Violation(message, IRI(str(path)) if isinstance(path, rdflib.URIRef) else None)
+        constraint = (report.value(detail, _SH.sourceConstraintComponent), message) if path is None else ()
+        thing = report.value(detail, _SH.sourceShape), *constraint
+        least[thing] = min(one, least.get(thing, one), key=lambda violation: violation.message)
+    return sorted(least.values(), key=lambda violation: violation.message) or [Violation("does not conform")]
 
 
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:

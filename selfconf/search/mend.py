@@ -3,8 +3,8 @@
 *Components to add.* A component without inputs that issues whatever the roles fed by its own want is the most helpful
 that could be added for a role. Wherever there is no solution, an irreducible set of requirements cannot hold; only a
 component for one of its roles, or for a role that may feed one of its inputs, changes that. So breadth-first search
-over sets of such additions, each extended by these roles alone, finds the fewest; then outputs that are not needed
-are taken away again.
+over sets of such additions, each extended by these roles alone, finds the fewest; then outputs are taken away again
+one by one, as long as there is a solution without them.
 
 *Things to change.* A role that asks for fewer, or for one where it asked for nobody and others need what it would
 issue; one interaction more, where some candidate issues what is lacking; a near miss let in. Each alone.
@@ -184,15 +184,21 @@ def _added(problem: Problem, here: Counter[int], outputs: Sequence[tuple[Output,
 def _trimmed(
     problem: Problem, here: Counter[int], outputs: Sequence[tuple[Output, ...]], playing: list[list[Candidate]]
 ) -> AddComponents:
-    """The same additions with only the outputs that the solution which was found needs."""
+    """The same additions with only the outputs without which there is no solution; `playing` is one with them all."""
     left = list(outputs)
     for role in sorted(here):
         for output in outputs[role]:
             fewer = tuple(one for one in left[role] if one != output)
             # All that is added for the role changes alike, so that one addition can stand for them all.
             changed = [*playing[:role], [_without(c, fewer) for c in playing[role]], *playing[role + 1 :]]
-            if all(problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]):
-                left[role], playing = fewer, changed
+            if not all(
+                problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]
+            ):
+                found = _solution(mended(problem, _added(problem, here, [*left[:role], fewer, *left[role + 1 :]])))
+                if not isinstance(found, list):
+                    continue
+                changed = found
+            left[role], playing = fewer, changed
     return _added(problem, here, left)
 
 

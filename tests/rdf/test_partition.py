@@ -90,18 +90,6 @@ def test_a_free_parameter_is_what_each_candidate_allows_it_to_be() -> None:
     }
 
 
-def test_near_misses_are_those_of_the_class_whom_one_thing_keeps_out() -> None:
-    ads = read([ADVERTISEMENTS["pippi"], ADVERTISEMENTS["encoder"]])
-    text = (
-        ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class rob:MotorDrive ;"
-        " sh:property [ sh:path rob:support ; sh:in ( :Astrid ) ] ."
-    )
-    misses = list(partitioner(text).near_misses(ads))
-    assert [(miss.component.short, miss.obstacle) for miss in misses] == [
-        ("pippi-drive", "support is Pippi, not Astrid")
-    ]
-
-
 def test_what_an_advertisement_says_about_another_component_counts_for_nothing() -> None:
     ads = read(
         [
