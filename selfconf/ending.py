@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from types import FrameType
 
 from selfconf.bus.port import Bus
@@ -35,14 +36,27 @@ def orphaned(parent: int) -> bool:
 
 
 def alive(process: int) -> bool:
-    """Whether a process of this machine is there."""
+    """Whether a process of this machine is there. One that has ended is not, even if its parent has not heard yet."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
         return False
     except PermissionError:
-        return True
-    return True
+        pass
+    return not _zombie(process)
+
+
+def _zombie(process: int) -> bool:
+    try:
+        status = Path(f"/proc/{process}/stat").read_bytes()
+    except OSError:  # it is gone by now, or this system has no such files
+        return False
+    return status.rpartition(b")")[2].split()[:1] in ([b"Z"], [b"X"])
+
+
+def end_as_by_ctrl_c() -> None:
+    """From now on SIGTERM raises KeyboardInterrupt, as SIGINT does; until an `Ending` hears of both."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
 
 
 class Ending:

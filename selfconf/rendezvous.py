@@ -7,6 +7,7 @@ passed over, and removed.
 from __future__ import annotations
 
 import fcntl
+import hashlib
 import json
 import os
 import tempfile
@@ -18,10 +19,12 @@ from pathlib import Path
 from selfconf.bus.zenoh_bus import client
 from selfconf.ending import alive
 from selfconf.errors import NetworkError
-from selfconf.protocol.keys import any_ecology, ecology_of
+from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 
 ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
+PORTS = range(20000, 32768)
+"""Below those that Linux takes for outgoing connections, or who tries to connect again might get the port itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +46,15 @@ def folder() -> Path:
     if runtime and Path(runtime).is_dir():
         return Path(runtime) / "selfconf"
     return Path(tempfile.gettempdir()) / f"selfconf-{os.getuid()}"
+
+
+def usual_endpoint(ecology: str) -> str:
+    """Where a site of this user's ecology listens if nobody else does: the same each time.
+
+    So a site that is started again is where those look for it who were connected to the one before.
+    """
+    digest = hashlib.blake2s(f"{os.getuid()} {ecology}".encode(), digest_size=8).digest()
+    return f"tcp/127.0.0.1:{PORTS[int.from_bytes(digest, 'big') % len(PORTS)]}"
 
 
 @contextmanager
@@ -117,12 +129,14 @@ def meetings(ecology: str | None = None) -> list[Meeting]:
 
 def find(ecology: str | None, connect: list[str]) -> tuple[str, list[str]]:
     """The ecology and the endpoints to connect to; raises NetworkError, saying what to try, if there are none."""
+    if ecology is not None:
+        checked_name(ecology, "an ecology")
     if connect:
         return ecology or _ecology_at(connect), connect
     found = meetings(ecology)
     names = sorted({meeting.ecology for meeting in found})
     if not names:
-        which = f"of the ecology {ecology!r} " if ecology else ""
+        which = "" if ecology is None else f"of the ecology {ecology!r} "
         raise NetworkError(
             f"no site {which}runs on this machine; start one with `selfconf site`, or give --connect ENDPOINT"
         )

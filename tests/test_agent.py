@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from selfconf.agent.calls import CALL
+from selfconf.agent.agent import TRY_AGAIN
+from selfconf.agent.calls import CALL, STARTING
 from selfconf.agent.lives import SETTLING
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.machine import Phase, Policy
@@ -168,6 +169,49 @@ def test_a_component_that_refuses_to_start_is_replaced(lab: Lab) -> None:
     assert lab.acts("declined")[0].facts["detail"] == "the camera is covered"
 
 
+def test_a_component_that_dies_while_it_is_activated_has_crashed(lab: Lab) -> None:
+    class Fragile(Recorder):
+        def started(self) -> None:
+            lab.crash("tracker")
+
+    lab.crash("tracker")
+    lab.component("tracker", Fragile())
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
+    assert agent.state.lost[iri("person-tracker")].cause is Cause.CRASH
+    assert [account.facts["cause"] for account in lab.acts("lost")] == ["crash"]
+
+
+def busy_in_started(lab: Lab, name: str, seconds: float) -> None:
+    """Have the thread of a component be in `started` for so long: all that it is asked is heard afterwards."""
+    body, free = lab.bodies[name], lab.network.time + seconds
+    body._served()
+
+    def hear(request: Request) -> None:
+        body.bus.later(max(0.0, free - lab.network.time), lambda: body._call(request))
+
+    body.bus.serve(lab.keys.call(body.profile.component), hear)
+
+
+def test_a_component_that_takes_long_to_start_is_waited_for_as_long_as_it_lives(lab: Lab) -> None:
+    busy_in_started(lab, "tracker", STARTING - CALL)
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, STARTING + CALL)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["tracker"].said == [("started",)]
+
+
+def test_a_component_that_dies_while_it_takes_long_to_start_is_replaced_at_once(lab: Lab) -> None:
+    busy_in_started(lab, "tracker", STARTING)
+    agent = lab.agent()
+    lab.let_pass(3 * CALL)
+    assert agent.state.phase is Phase.DEPLOYING
+    lab.crash("tracker")
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, CALL)
+    assert agent.state.lost[iri("person-tracker")].cause is Cause.CRASH
+
+
 def test_an_output_that_promised_a_rate_and_stops_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     promising = ADVERTISEMENTS["tracker"].replace(
         "sc:signalType rob:PlanarPose2D", "sc:signalType rob:PlanarPose2D ; sc:rate [ sc:value 10 ; sc:unit unit:HZ ]"
@@ -205,7 +249,7 @@ def test_a_component_that_hangs_is_replaced(lab: Lab) -> None:
     body._served()
     body.bus.serve(lab.keys.call(iri("person-tracker")), lambda _: None)
     agent = lab.agent()
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 4 * CALL)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, STARTING + 2 * CALL)
     assert lab.active() == TASK | {"odometry"}
 
 
@@ -324,7 +368,10 @@ def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) 
     assert first.state.phase is Phase.RUNNING
     assert lab.active() == TASK | {"tracker"}
     assert lab.components["drive"].said == [("started",)]
-    assert any(account.facts["detail"] == "busy" for account in lab.acts("declined"))
+    lab.let_pass(1.0)
+    declined = lab.acts("declined")
+    assert {account.facts["detail"] for account in declined} == {f"the configurator {first.name} holds it"}
+    assert len(declined) == len({account.facts["component"] for account in declined})
 
 
 def test_two_tasks_share_the_ecology_as_long_as_they_need_different_components(lab: Lab) -> None:
@@ -383,7 +430,71 @@ def test_patience_recovers_when_a_lost_component_lives_again(lab: Lab) -> None:
     assert lab.active() == set()
 
 
+def test_patience_goes_on_when_a_component_that_another_configurator_held_is_free(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(patient=True)
+    lab.let_pass(3 * TRY_AGAIN)
+    assert second.state.phase is Phase.REFUSED
+    (waiting,) = lab.acts("waiting")
+    assert set(waiting.facts["lost"].values()) == {f"refused, the configurator {first.name} holds it"}
+    first.stop()
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.bodies["drive"].life.supervisor == second.supervisor
+
+
+def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(patient=True)
+    lab.let_pass(2 * TRY_AGAIN)
+    lab.crash(first)
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_patience_asks_nobody_again_who_has_refused_for_itself(lab: Lab) -> None:
+    lab.components["drive"].refusal = Refused("the battery is empty")
+    agent = lab.agent(patient=True)
+    lab.let_pass(4 * TRY_AGAIN)
+    assert agent.state.phase is Phase.REFUSED
+    assert lab.components["drive"].said.count(("started",)) == 1
+
+
 # Being cut off.
+
+
+def test_a_configurator_that_was_suspended_applies_anew_to_whoever_has_turned_itself_off(lab: Lab) -> None:
+    """It hears at one moment that everybody died and lives; meanwhile nobody has supervised them."""
+    agent = lab.agent(policy=Policy.DISMANTLE)
+    lab.running(agent)
+    for name in TASK | {"tracker"}:
+        lab.bodies[name]._orphaned()
+    epoch = agent.state.epoch
+    lab.isolate(agent)
+    lab.rejoin(agent)
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert agent.state.epoch > epoch
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["control"].said[-2:] == [("started",), ("goal", "(AT BEDROOM)")]
+    assert not lab.acts("lost")
+    assert len(lab.acts("connected")) == 1
+
+
+def test_a_configurator_that_was_suspended_yields_to_the_one_that_has_taken_over(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    for name in TASK | {"tracker"}:
+        lab.bodies[name]._orphaned()
+    second = lab.agent()
+    lab.running(second)
+    lab.isolate(first)
+    lab.rejoin(first)
+    assert lab.until(lambda: first.state.phase is Phase.REFUSED)
+    assert lab.active() == TASK | {"tracker"}
+    assert all(lab.bodies[name].life.supervisor == second.supervisor for name in TASK | {"tracker"})
 
 
 def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_configuration(lab: Lab) -> None:
@@ -594,6 +705,33 @@ def test_what_it_does_is_told_in_the_order_of_the_four_acts(lab: Lab) -> None:
     connected = {(str(a.facts["source"]), str(a.facts["output"])) for a in lab.acts("connecting")}
     assert (str(iri("person-tracker")), "pose") in connected
     json.dumps([{**account.facts, "outcome": None, "configuration": None} for account in lab.accounts], default=list)
+
+
+def test_connections_that_are_made_again_are_told_again(lab: Lab) -> None:
+    agent = lab.agent(patient=True)
+    lab.running(agent)
+    made = len(lab.acts("connecting"))
+    lab.crash("drive")
+    lab.let_pass(1.0)
+    assert lab.active() == set()
+    lab.component("drive")
+    lab.running(agent)
+    assert len(lab.acts("connecting")) == 2 * made
+    lab.isolate(agent)
+    lab.let_pass(GRACE + 0.5)
+    lab.rejoin(agent)
+    lab.let_pass(SETTLING + 1.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert len(lab.acts("connecting")) == 3 * made
+
+
+def test_a_connection_that_is_kept_is_told_once(lab: Lab) -> None:
+    lab.running(lab.agent())
+    made = len(lab.acts("connecting"))
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    (new,) = lab.acts("connecting")[made:]
+    assert (new.facts["source"], new.facts["sink"]) == (iri("absolute-odometry"), iri("thinking-cap"))
 
 
 def test_an_input_follows_every_output_that_feeds_it(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import rendezvous
-from selfconf.errors import NetworkError
+from selfconf.errors import AuthorError, NetworkError
 from selfconf.rendezvous import Meeting
 
 
@@ -50,6 +50,13 @@ def test_of_several_ecologies_one_must_be_named() -> None:
         rendezvous.find(None, [])
 
 
+def test_the_usual_endpoint_of_an_ecology_is_the_same_each_time_and_its_own() -> None:
+    assert rendezvous.usual_endpoint("home") == rendezvous.usual_endpoint("home")
+    assert rendezvous.usual_endpoint("home") != rendezvous.usual_endpoint("office")
+    for name in ("home", "office", "lab"):
+        assert 1024 < int(rendezvous.usual_endpoint(name).rpartition(":")[2]) < 32768
+
+
 def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
     path = rendezvous.announce(meeting(process=dead_process()))
     assert rendezvous.meetings() == []
@@ -68,6 +75,14 @@ def test_where_no_site_runs_it_is_said_what_to_start() -> None:
         rendezvous.find(None, [])
     with pytest.raises(NetworkError, match="of the ecology 'home'"):
         rendezvous.find("home", [])
+
+
+@pytest.mark.parametrize("connect", [[], ["tcp/127.0.0.1:1"]])
+def test_what_cannot_be_a_name_is_no_ecology(connect: list[str]) -> None:
+    rendezvous.announce(meeting())
+    for name in ("", "a/b"):
+        with pytest.raises(AuthorError, match="cannot name an ecology"):
+            rendezvous.find(name, connect)
 
 
 def test_endpoints_that_are_given_need_no_file() -> None:

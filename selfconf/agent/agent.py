@@ -17,7 +17,7 @@ from selfconf.agent.calls import Calls
 from selfconf.agent.lives import Lives
 from selfconf.agent.order import Account, Order
 from selfconf.agent.record import Record
-from selfconf.bus.port import Bus, Sample, Urgency
+from selfconf.bus.port import Bus, Sample, Undo, Urgency
 from selfconf.configurator import machine
 from selfconf.configurator.effects import (
     ApplyTo,
@@ -40,7 +40,7 @@ from selfconf.configurator.events import (
     Failed,
     Stopped,
 )
-from selfconf.configurator.machine import Phase, State
+from selfconf.configurator.machine import Loss, Phase, State
 from selfconf.ecology import Discovery, Ecology
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.model.configuration import Configuration
@@ -59,7 +59,7 @@ log = logging.getLogger(__name__)
 AT_LEISURE = 0.01
 """Seconds for which accounts, and turning off whom nobody waits for, stand back while a configuration is deployed."""
 TRY_AGAIN = 5.0
-"""Seconds after which a patient configurator gives a crashed component that can be started another chance."""
+"""How often, in seconds, a patient configurator looks who may be given another chance."""
 
 
 class Agent:
@@ -84,6 +84,7 @@ class Agent:
         self._events: deque[Event] = deque()
         self._stepping = False
         self._untold: list[Account] = []
+        self._look_again: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
         # One subscription for the FAIL of all: connecting to each as it joins would delay its activation.
         bus.subscribe(self.keys.any_fail(), self._heard_fail, Urgency.EVENT)
@@ -135,18 +136,34 @@ class Agent:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
         if self.state.phase is Phase.REFUSED and self.state.patient:
-            self._tell("waiting", refusal=self.state.refusal)
-            self.bus.later(TRY_AGAIN, self._forgive)
+            self._tell("waiting", refusal=self.state.refusal, lost=self.losses)
+            self._await_another_chance()
+
+    def _await_another_chance(self) -> None:
+        self._look_again()
+        self._look_again = self.bus.later(TRY_AGAIN, self._forgive)
 
     def _forgive(self) -> None:
-        """Somebody who crashed, and whose site can start it, may be tried again when there is no other way."""
-        crashed = {
-            component: ""
-            for component, loss in self.state.lost.items()
-            if loss.cause is Cause.CRASH and (found := self.ecology.discovery.found.get(component)) and found.startable
-        }
-        if crashed and self.state.phase is Phase.REFUSED:
-            self._step(Appeared(crashed))
+        """While there is no other way, whoever may be able to by now is tried again."""
+        if self.state.phase is not Phase.REFUSED:
+            return
+        again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
+        if again:
+            self._step(Appeared(again))
+        else:
+            self._await_another_chance()
+
+    def _may_be_able(self, component: IRI, loss: Loss) -> bool:
+        """Who crashed can be started by its site; who was busy is free since it has obeyed us."""
+        if loss.cause is Cause.CRASH:
+            found = self.ecology.discovery.found.get(component)
+            return found is not None and found.startable
+        return loss.busy and component not in self.state.owed
+
+    @property
+    def losses(self) -> dict[IRI, str]:
+        """Why each component that was lost was lost, for people."""
+        return {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
 
     def _notice(self, event: Failed) -> None:
         held = self.state.held.get(event.component)
@@ -190,8 +207,8 @@ class Agent:
                 self._tell("running", configuration=effect.configuration, epoch=self.state.epoch)
                 self._stand_by(effect.configuration)
             case Finish():
-                lost = {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
-                self._tell("refused" if effect.refusal else "stopped", refusal=effect.refusal, lost=lost)
+                act = "refused" if effect.refusal else "stopped"
+                self._tell(act, refusal=effect.refusal, lost=self.losses)
                 try:
                     self._tell_all()
                 finally:  # the end of a task depends on nobody who listens

@@ -20,13 +20,16 @@ from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import component_chunk
 from selfconf.protocol.messages import Answer, Apply, Release, SetParameters, Verdict, Wake, Wire
 
 log = logging.getLogger(__name__)
 
 CALL = 2.0
-"""How long a component may take to answer a call."""
+"""How long a component may take to answer a call, before it is asked for its state."""
+STARTING = 8.0
+"""How long a component that lives, but says nothing, may take over what it was told: it may be in `started`."""
+PAUSE = 0.1
+"""How long after a question for its state that nobody has answered a component is asked again."""
 ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: a message may have been lost."""
 WAKING = 15.0
@@ -45,10 +48,10 @@ class Calls:
         tell: Tell,
     ) -> None:
         self.bus, self.ecology, self.keys = ecology.bus, ecology, ecology.keys
-        self._supervisor, self._state, self._step, self._tell = supervisor, state, step, tell
+        self.supervisor, self._state, self._step, self._tell = supervisor, state, step, tell
         self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
-        self._connections: dict[IRI, frozenset[Connection]] = {}
-        """The connections that each component was told to have, so that only new ones are told of."""
+        self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
+        """The connections that each component was told to have, in which life, so that only new ones are told of."""
 
     def woken(self, component: IRI) -> None:
         """A component lives; if it was waited for, it hears what it was woken for."""
@@ -60,7 +63,7 @@ class Calls:
 
     def set(self, effect: SetOn) -> None:
         """Give operational parameters their values."""
-        message = SetParameters(effect.epoch, self._supervisor, effect.values)
+        message = SetParameters(effect.epoch, self.supervisor, effect.values)
         self._call(effect.component, Call.SET, message)
 
     def apply(self, effect: ApplyTo) -> None:
@@ -74,13 +77,17 @@ class Calls:
             self._later_answer(effect, "it is advertised, but it does not run")
             return
         inputs = self._with_promises(effect.inputs)
-        self._call(effect.component, Call.APPLY, Apply(effect.epoch, self._supervisor, inputs))
+        self._call(effect.component, Call.APPLY, Apply(effect.epoch, self.supervisor, inputs))
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
-        before = self._connections.get(effect.component, frozenset())
-        for c in sorted(connections - before):
+        known, before = self._connections.get(effect.component, (life, frozenset()))
+        for c in sorted(connections - before if known == life else connections):
             self._tell("connecting", source=c.source, output=c.output, sink=c.sink, input=c.input)
-        self._connections[effect.component] = frozenset(connections)
+        self._connections[effect.component] = life, frozenset(connections)
         self._tell("activating", component=effect.component)
+
+    def forget_connections(self) -> None:
+        """Components may have turned themselves off: whoever is applied to is connected anew."""
+        self._connections.clear()
 
     def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
         return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}
@@ -90,7 +97,7 @@ class Calls:
         wires = machine.wiring(configuration)
         for component, outputs in standby.items():
             inputs, spare = self._with_promises(wires[component]), self._with_promises(outputs)
-            message = Apply(self._state().epoch, self._supervisor, inputs, spare)
+            message = Apply(self._state().epoch, self.supervisor, inputs, spare)
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
 
     def _promised(self, wire: Wire) -> Wire:
@@ -101,6 +108,7 @@ class Calls:
 
     def release(self, effect: ReleaseFrom) -> None:
         """Turn a component off; one that lives but does not answer is told again as long as it is owed that."""
+        self._connections.pop(effect.component, None)
         if self.ecology.life(effect.component) is None:
             off = Answered(effect.component, Call.RELEASE, effect.epoch, None)
             self.bus.wake_up(lambda: self._step(off))
@@ -111,7 +119,7 @@ class Calls:
                 self.release(effect)
 
         self.bus.later(2 * CALL, again)
-        self._call(effect.component, Call.RELEASE, Release(effect.epoch, self._supervisor))
+        self._call(effect.component, Call.RELEASE, Release(effect.epoch, self.supervisor))
 
     def _later_answer(self, effect: ApplyTo, detail: str) -> None:
         answer = Answered(effect.component, Call.APPLY, effect.epoch, None, detail=detail)
@@ -140,6 +148,8 @@ class Calls:
     def _call(
         self, component: IRI, call: Call, message: Apply | SetParameters | Release, attempts: int = ATTEMPTS
     ) -> None:
+        began = self.bus.now()
+
         def answered(replies: Replies) -> None:
             answer = _answer_in(replies)
             if answer is not None:
@@ -148,27 +158,28 @@ class Calls:
                 detail = replies.errors[0]
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
             else:
-                self._inspect(component, call, message, attempts - 1)
+                inspect()
 
-        self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
-
-    def _inspect(self, component: IRI, call: Call, message: Apply | SetParameters | Release, attempts: int) -> None:
-        """A time-out is not an outcome: look at the actual state, then decide."""
+        def inspect() -> None:
+            """A time-out is not an outcome: look at the actual state, then decide."""
+            self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
 
         def seen(replies: Replies) -> None:
             answer = _answer_in(replies)
+            current = message.epoch == self._state().epoch
             obeyed = answer is not None and answer.epoch == message.epoch
+            silent = not replies.samples and not replies.errors
             if obeyed and answer is not None and call is not Call.SET and answer.active == (call is Call.APPLY):
                 self._heard_answer(component, call, message.epoch, answer)
-            elif attempts and answer is not None and message.epoch == self._state().epoch:
-                self._call(component, call, message, attempts)
-            else:
-                if replies == Replies():  # nobody is there to answer, whatever we heard of its life
-                    self.ecology.lives.pop(component_chunk(component), None)
+            elif attempts > 1 and answer is not None and current:
+                self._call(component, call, message, attempts - 1)
+            elif silent and current and call is not Call.RELEASE and self.bus.now() - began < STARTING:
+                self.bus.later(PAUSE, inspect)  # it may be in `started`; if its life ends, it is lost at once
+            elif current or call is Call.RELEASE:
                 self._tell("unreachable", component=component, call=call.value, detail="it does not answer")
                 self._step(Answered(component, call, message.epoch, None))
 
-        self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
+        self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
 
     def look(self, component: IRI, seen: Callable[[Answer | None], None], attempts: int = ATTEMPTS) -> None:
         """Ask a component for its actual state; `seen` hears None if it does not say."""
@@ -185,7 +196,8 @@ class Calls:
     def _heard_answer(self, component: IRI, call: Call, epoch: int, answer: Answer) -> None:
         word = {Call.APPLY: "activated", Call.SET: "set", Call.RELEASE: "released"}[call]
         done = answer.verdict is Verdict.DONE
-        self._tell(word if done else "declined", component=component, detail=answer.detail or answer.verdict.value)
+        if done or call is not Call.RELEASE:  # who is not ours and stays so is told to turn off again and again
+            self._tell(word if done else "declined", component=component, detail=answer.detail or answer.verdict.value)
         self._step(Answered(component, call, epoch, answer.verdict, answer.life, answer.epoch, answer.detail))
 
 

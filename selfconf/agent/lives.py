@@ -90,11 +90,21 @@ class Lives:
             self.bus.later(SECOND_LOOK, look_again)
 
     def _seen(self, component: IRI, life: str, answer: Answer | None) -> None:
-        """Who was cut off for a moment may have failed in it, unheard."""
+        """Who was cut off for a moment may have failed in it, unheard; or we were, and nobody supervised it."""
+        held = self._state().held.get(component)
         if answer is None:
             self._step(Failed(component, life, Cause.CRASH, "it does not answer since it was cut off"))
-        elif not answer.active:
-            self._step(Failed(component, life, Cause.FAIL, "it failed while it was cut off"))
+        elif answer.supervisor == self._calls.supervisor:
+            if not answer.active:
+                self._step(Failed(component, life, Cause.FAIL, "it failed while it was cut off"))
+        elif held is not None and held.confirmed and (answer.supervisor or not answer.active):
+            self._reconnected()
+
+    def _reconnected(self) -> None:
+        """We were cut off, for so long that whatever we believe may be outdated; every connection counts as gone."""
+        self._calls.forget_connections()
+        self._tell("connected")
+        self._step(Reconnected())
 
     def _end_unheard(self) -> None:
         """Who died between the roll-call and the beginning of the watch was called, but has never been heard."""
@@ -128,8 +138,7 @@ class Lives:
                 look()
                 return
             self._link, self._cut_off = self.bus.link, False
-            self._tell("connected")
-            self._step(Reconnected())
+            self._reconnected()
 
         if not self._cut_off:
             self._cut_off = True

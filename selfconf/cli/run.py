@@ -32,7 +32,7 @@ from selfconf.cli.places import Places
 from selfconf.cli.terminal import silence
 from selfconf.cli.why import explained
 from selfconf.configurator.machine import Policy
-from selfconf.ending import Ending, environment
+from selfconf.ending import LOOK, Ending, end_as_by_ctrl_c, environment
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome, Refusal, Undecided
@@ -46,6 +46,8 @@ HELP = "configure, deploy, monitor and configure again, until Ctrl-C takes every
 EXAMPLE = """  selfconf run examples/clock/tell-the-time.ttl --ads examples/clock"""
 SITE_STARTS = 20.0
 """How long, in seconds, a site that `run` starts may take to listen."""
+MISUSE = 2
+"""The exit code of a command that has said in one sentence why it cannot be run."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -66,13 +68,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 when it was taken down as wanted; 1 when there is no configuration (any more); 2 when that was not decided."""
+    """0 when it was taken down as wanted; 1 when there is no configuration (any more); 2 when that was not decided.
+
+    Raises NetworkError when its own site has ended, once everything is taken down.
+    """
+    end_as_by_ctrl_c()
     task = read_task(given)
     composer = composer_of(given, task)
     names = words.Names(task.document.prefixes)
     where = _places(given, task.task.template)
     tell = partial(_tell_json, where) if given.format == "json" else Teller(names, where)
-    with _ecology(given) as (ecology, endpoints):
+    with _ecology(given) as (ecology, endpoints, site):
         bus = client(endpoints)
         ended: list[Refusal | Undecided | None] = []
         alive: dict[IRI, Advertisement] = {}
@@ -104,11 +110,22 @@ def run(given: argparse.Namespace) -> int:
         )
         agent = Agent(bus, ecology, order)
         Ending(bus, agent.stop)
+
+        def look() -> None:
+            """Without its own site nothing of what was given is there, and nobody starts it again."""
+            if site is not None and site.poll() is not None:
+                agent.stop()
+            else:
+                bus.later(LOOK, look)
+
         try:
             agent.start()
+            look()
             bus.run(lambda: bool(ended))
         finally:
             bus.close()
+        if site is not None and site.poll() is not None:
+            raise NetworkError(f"its own site has ended with code {site.returncode}; everything is taken down")
     if agent.trouble is not None:
         raise agent.trouble
     refusal = ended[0] if ended else None
@@ -119,9 +136,14 @@ def run(given: argparse.Namespace) -> int:
         # Everything is down, so there is time to find out what else can be told.
         refusal = explained(composer, alive, refusal, given, budget.Clock(given.seconds))
         complain(words.refusal_text(refusal, names, where))
-        for component, loss in agent.state.lost.items():
-            complain(f"  {names(component)} was lost: {loss.cause.value}, {loss.detail}")
-        if agent.state.lost:
+        lost = agent.state.lost.values()
+        for sentence in _lost_sentences(agent.losses, names):
+            complain(sentence)
+        if any(loss.busy for loss in lost):
+            complain(
+                "run again when it is free, or run with --wait, which goes on then; `selfconf status` shows who has it"
+            )
+        if any(not loss.busy for loss in lost):
             complain("start it again and run again, or run with --wait, which goes on when it is back")
     return 1 if refusal is not None else 0
 
@@ -140,10 +162,10 @@ def _places(given: argparse.Namespace, template: Template) -> words.Where:
 
 
 @contextmanager
-def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
+def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str], subprocess.Popen[bytes] | None]]:
     """The ecology to run in: the one there is, or one with a site of our own for the advertisements given."""
     if given.ads is None:
-        yield rendezvous.find(given.ecology, given.connect)
+        yield *rendezvous.find(given.ecology, given.connect), None
         return
     if STDIN in given.ads:
         raise AuthorError("a site watches the files of its advertisements, so give files to --ads, not -")
@@ -173,7 +195,7 @@ def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
         env={**os.environ, **environment()},
     )
     try:
-        yield name, [_listening(process, name, site), *given.connect]
+        yield name, [_listening(process, name, site), *given.connect], process
     finally:
         process.terminate()
         process.wait()
@@ -189,6 +211,8 @@ def _listening(process: subprocess.Popen[bytes], ecology: str, site: str) -> str
             process.wait(0.02)
         except subprocess.TimeoutExpired:
             continue
+        if process.returncode == MISUSE:
+            raise SystemExit(MISUSE)  # it has said why, to the same reader
         raise NetworkError(f"the site for the advertisements ended with code {process.returncode}")
     raise NetworkError(f"the site for the advertisements does not listen after {SITE_STARTS:.0f} s")
 
@@ -226,6 +250,8 @@ class Teller:
             refusal = account.facts["refusal"]
             undecided = isinstance(refusal, Undecided)
             _say(f"  {refusal}" if undecided else words.refusal_text(refusal, self._names, self._where))
+            for lost in _lost_sentences(account.facts["lost"], self._names):
+                _say(lost)
             sentence = "       waiting for the ecology to change"
         if account.act == "composed":
             sentence = "act 3  {roles} in {milliseconds:.1f} ms"
@@ -246,6 +272,10 @@ class Teller:
         if isinstance(value, tuple):
             return ", ".join(map(str, value)) or "no site"
         return value
+
+
+def _lost_sentences(losses: Mapping[IRI, str], names: words.Names) -> list[str]:
+    return [f"  {names(component)} was lost: {why}" for component, why in losses.items()]
 
 
 def _say(sentence: str) -> None:

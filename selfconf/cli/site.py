@@ -8,10 +8,11 @@ import secrets
 from pathlib import Path
 
 from selfconf import rendezvous
-from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, router
+from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, ZenohBus, router
 from selfconf.cli import words
 from selfconf.cli.inputs import complain, existing
 from selfconf.ending import Ending
+from selfconf.errors import NetworkError
 from selfconf.protocol.keys import checked_name
 from selfconf.rendezvous import Meeting
 from selfconf.site import Shelf, Site
@@ -35,8 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--listen",
         metavar="ENDPOINT",
-        default=ANYWHERE_ON_LOOPBACK,
-        help="where to listen; port 0 is any free one (default: %(default)s)",
+        help="where to listen; port 0 is any free one (default: on 127.0.0.1, at a port that goes with the name of the"
+        " ecology, so that a site that is started again is found by those who were connected; if it is taken, at any)",
     )
     parser.add_argument(
         "--connect",
@@ -56,7 +57,7 @@ def run(given: argparse.Namespace) -> int:
     shelf = Shelf(given.paths, complain)
     with rendezvous.turn():
         others = [meeting.endpoint for meeting in rendezvous.meetings(given.ecology)]
-        bus = router(given.listen, list(dict.fromkeys([*given.connect, *others])))
+        bus = _router(given.listen, given.ecology, list(dict.fromkeys([*given.connect, *others])))
         ending = Ending(bus)
         environment = {"SELFCONF_ECOLOGY": given.ecology, "SELFCONF_CONNECT": bus.endpoint}
         site = Site(bus, given.ecology, name, shelf, environment)
@@ -69,3 +70,12 @@ def run(given: argparse.Namespace) -> int:
         rendezvous.leave(meeting)
         site.close()
     return 0
+
+
+def _router(listen: str | None, ecology: str, connect: list[str]) -> ZenohBus:
+    if listen is not None:
+        return router(listen, connect)
+    try:
+        return router(rendezvous.usual_endpoint(ecology), connect)
+    except NetworkError:  # somebody else has that port
+        return router(ANYWHERE_ON_LOOPBACK, connect)

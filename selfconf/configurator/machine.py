@@ -16,7 +16,7 @@ search runs again. A search that finds nothing counts only if nothing has appear
 it is asked again.
 
 A component that was told to turn off is *owed* a release until it answers: one that was cut off meanwhile may still
-act, and is told again when it is seen again.
+act, and is told again when it is seen again. One that another configurator holds is owed it until it is free.
 
 Invariants, each a test: a component is watched before it is applied to; epochs grow; what is held or owed a release
 is a superset of what may be active because of us; in IDLE, REFUSED and STOPPED nothing is held; an answer to an older
@@ -102,6 +102,8 @@ class Loss:
     cause: Cause
     detail: str = ""
     life: str = ""
+    busy: bool = False
+    """Whether another configurator held it; it is free once it obeys the release that it is owed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,7 +261,8 @@ def _answered(state: State, event: Answered) -> Step:
     if event.verdict is Verdict.STALE and event.newest > event.epoch:
         return _deploy(replace(rest, epoch=max(state.epoch, event.newest)))
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
-    return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life))
+    busy = event.verdict is Verdict.BUSY
+    return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life, busy))
 
 
 def _confirmed(state: State, held: Held, event: Answered) -> Held:

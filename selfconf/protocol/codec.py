@@ -201,7 +201,7 @@ def _verdict(value: object) -> Verdict:
 
 _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "epoch"): _whole for kind in (Apply, SetParameters, Release, Answer, Fail, Status)},
-    **{(kind, "supervisor"): _text for kind in (Apply, SetParameters, Release)},
+    **{(kind, "supervisor"): _text for kind in (Apply, SetParameters, Release, Answer)},
     **{(kind, "component"): _iri for kind in (Answer, Fail, Wake, Stamp)},
     **{(kind, "life"): _text for kind in (Answer, Fail, Stamp)},
     **{(kind, "detail"): _text for kind in (Answer, Fail)},

@@ -90,6 +90,8 @@ class Answer:
     epoch: int = 0
     active: bool = False
     detail: str = ""
+    supervisor: str = ""
+    """The liveliness key of the configurator that holds the component; empty if none does, or if it does not say."""
 
 
 @dataclass(frozen=True, slots=True)

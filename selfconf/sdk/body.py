@@ -31,7 +31,7 @@ from selfconf.model.profile import Profile
 from selfconf.model.term import Literal, Term
 from selfconf.protocol import life as lives
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys, call_of
+from selfconf.protocol.keys import Keys, call_of, owner_of
 from selfconf.protocol.life import Life, Phase
 from selfconf.protocol.life import Step as Told
 from selfconf.protocol.messages import (
@@ -191,6 +191,8 @@ class Body:
         free = self._gone and not isinstance(message, SetParameters)
         before = replace(self.life, supervisor=None) if free else self.life
         life, verdict, told = lives.obey(before, message)
+        if verdict is Verdict.BUSY and self.life.supervisor is not None:
+            return self._said(verdict, f"the configurator {owner_of(self.life.supervisor)} holds it")
         if verdict is not Verdict.DONE:
             return self._said(verdict)
         trouble = self._become(life, told)
@@ -206,7 +208,8 @@ class Body:
         return self._said(Verdict.DONE)
 
     def _said(self, verdict: Verdict, detail: str = "") -> Answer:
-        return Answer(verdict, self.profile.component, self.name, self.life.epoch, self.active, detail)
+        holder = self.life.supervisor or ""
+        return Answer(verdict, self.profile.component, self.name, self.life.epoch, self.active, detail, holder)
 
     def _become(self, life: Life, told: Told) -> str | None:
         """Take on a life and tell the component's code; a text if that refuses or breaks."""

@@ -44,7 +44,11 @@ class Component:
     _body: Body | None = None
 
     def started(self) -> None:
-        """The component has been activated. Raise Refused if it cannot act."""
+        """The component has been activated. Raise Refused if it cannot act.
+
+        It should return soon, for nothing else is heard meanwhile: after 8 seconds without an answer the configurator
+        looks for another component. What takes longer goes on a thread of its own; call `fail` if it comes to nothing.
+        """
 
     def stopped(self) -> None:
         """The component has been turned off; what actuates must be at rest when this returns."""

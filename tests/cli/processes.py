@@ -22,13 +22,14 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Answer
-from tests.lab import NAVIGATE, iri, write_advertisements
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
 PATIENCE = 20.0
 """Seconds that a process may take for anything, on a busy machine."""
 PROGRAM = '''
-"""Components for tests: each acts a little, and fails when a file says so."""
+"""Components for tests: each acts a little, and fails, or dies in `started`, when a file says so."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -41,6 +42,10 @@ class Act(Component):
     """Counts on every output, and writes down what it is told."""
 
     def started(self):
+        order = HERE / f"{self.name}.die"
+        if order.exists():
+            order.unlink()
+            os._exit(3)
         self.count = 0
         self.every(0.05, self.act)
 
@@ -121,6 +126,14 @@ class Program:
                 return account
         raise AssertionError(f"no {act!r} before its end, or in {PATIENCE:.0f} s; stderr: {self.complaints}")
 
+    def send(self, number: int) -> None:
+        """Send a signal to the process."""
+        self._process.send_signal(number)
+
+    def children(self) -> list[int]:
+        """The numbers of the processes that it has started."""
+        return [int(number) for number in Path(f"/proc/{self.number}/task/{self.number}/children").read_text().split()]
+
     def hang_up(self) -> None:
         """Read no more from its stdout."""
         if self._read_end >= 0:
@@ -180,10 +193,10 @@ class Home:
         """Start a command."""
         return self.program(sys.executable, "-m", "selfconf", *arguments)
 
-    def site(self, name: str, *paths: str, connect: tuple[str, ...] = (), listen: str = "tcp/127.0.0.1:0") -> Program:
+    def site(self, name: str, *paths: str, connect: tuple[str, ...] = ()) -> Program:
         """Start a site, and wait until it listens."""
         self._meeting(name).unlink(missing_ok=True)
-        options = ["--listen", listen, *(option for endpoint in connect for option in ("--connect", endpoint))]
+        options = [option for endpoint in connect for option in ("--connect", endpoint)]
         site = self.selfconf("site", *paths, "--ecology", self.ecology, "--name", name, *options)
         assert self.until(lambda: self._meeting(name).exists() or site.over), site.complaints
         assert not site.over, site.complaints
@@ -278,4 +291,12 @@ def component_of(name: str) -> IRI:
             "drive": "astrid-drive",
             "pippi": "pippi-drive",
         }[name]
+    )
+
+
+def dormant(home: Home, name: str) -> None:
+    """Let the site of a component start it, in a process of its own."""
+    command = f"python {home.folder}/components.py {name}"
+    (home.folder / "ads" / f"{name}.ttl").write_text(
+        PREFIXES + ADVERTISEMENTS[name].rstrip(" .") + f' ; sc:grounding [ sc:command "{command}" ] .\n'
     )

@@ -6,7 +6,7 @@ import signal
 from pathlib import Path
 
 from selfconf.sdk.body import GRACE
-from tests.cli.processes import Home, component_of
+from tests.cli.processes import Home, component_of, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
 
 REST = ("sonar", "encoder", "odometry", "control", "drive")
@@ -97,10 +97,7 @@ def test_two_sites_on_two_ports_are_as_two_hosts(home: Home) -> None:
 
 
 def test_a_dormant_component_is_started_by_its_site_and_ends_with_it(home: Home) -> None:
-    command = f"python {home.folder}/components.py tracker"
-    (home.folder / "ads" / "tracker.ttl").write_text(
-        PREFIXES + ADVERTISEMENTS["tracker"].rstrip(" .") + f' ; sc:grounding [ sc:command "{command}" ] .\n'
-    )
+    dormant(home, "tracker")
     site = home.site("peis-home", "ads")
     home.components(*REST)
     assert home.state(component_of("tracker")) is None
@@ -199,14 +196,14 @@ def test_a_reader_that_has_seen_enough_ends_the_run(inhabited: Home) -> None:
 
 def test_a_site_that_is_killed_and_comes_back_finds_its_ecology_running_again(home: Home) -> None:
     site = home.site("peis-home", "ads")
-    endpoint = home.endpoint()
     home.components("tracker", *REST)
     run = home.run()
     run.act("running")
-    site.end(signal.SIGKILL)
-    run.act("cut off")
-    home.site("peis-home", "ads", listen=endpoint)
-    run.act("running")
+    for end in (signal.SIGKILL, signal.SIGTERM):
+        site.end(end)
+        run.act("cut off")
+        site = home.site("peis-home", "ads")
+        run.act("running")
     assert home.active(*EVERYBODY) == TASK | {"tracker"}
     assert run.end(signal.SIGINT) == 0
     assert home.active(*EVERYBODY) == set()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import ZenohBus, router
 from tests.cli.command import run
 from tests.cli.processes import Home
@@ -82,3 +83,14 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
     ):
         assert run(capsys, "site", *arguments).is_one_sentence(words)
     taken.close()
+
+
+def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(home: Home) -> None:
+    somebody_else = router(rendezvous.usual_endpoint(home.ecology))
+    site = home.site("a", "ads")
+    assert home.endpoint() != somebody_else.endpoint
+    somebody_else.close()
+    home.site("b", "ads")
+    assert home.endpoint("b") == rendezvous.usual_endpoint(home.ecology)
+    assert site.end() == 0
+    assert site.complaints.count("\n") == 1

@@ -144,6 +144,7 @@ def test_a_component_that_will_not_be_activated_is_dropped_and_the_search_runs_a
     assert released(effects) == [TRACKER]
     assert effects[-1] == Compose(2, frozenset({TRACKER}), navigation())
     assert history.state.lost[TRACKER].cause is Cause.REFUSED
+    assert history.state.lost[TRACKER].busy == (verdict is Verdict.BUSY)
     effects = history.composed(navigation(ODOMETRY))
     assert sorted(applied(effects)) == sorted([ODOMETRY, CONTROL, DRIVE])
     assert kinds(history.all_answer()) == [Running]
@@ -190,6 +191,23 @@ def test_a_parameter_whose_setting_was_cut_short_is_set_when_the_rest_is_repaire
     assert CONTROL in applied(effects)
     last = [effect for component in (ODOMETRY, CONTROL) for effect in history.answer(component, Call.APPLY)]
     assert last == [SetOn(CONTROL, history.state.epoch, {"goal": GOAL})]
+
+
+def test_a_parameter_is_set_again_on_one_that_began_a_new_life_while_it_was_wired_anew() -> None:
+    history = History().running()
+    history.hear(Failed(TRACKER, "1", Cause.FAIL))
+    history.composed(navigation(ODOMETRY))
+    history.answer(ODOMETRY, Call.APPLY)
+    assert history.answer(CONTROL, Call.APPLY, life="2") == [SetOn(CONTROL, history.state.epoch, {"goal": GOAL})]
+    assert history.answer(CONTROL, Call.SET, life="2") == [Running(navigation(ODOMETRY))]
+
+
+def test_a_parameter_is_not_set_again_on_one_that_lives_on() -> None:
+    history = History().running()
+    history.hear(Failed(TRACKER, "1", Cause.FAIL))
+    history.composed(navigation(ODOMETRY))
+    history.answer(ODOMETRY, Call.APPLY)
+    assert history.answer(CONTROL, Call.APPLY) == [Running(navigation(ODOMETRY))]
 
 
 # Losses.

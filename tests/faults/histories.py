@@ -127,9 +127,12 @@ class History:
         found = {c: a for site in self.sites for c, a in site.shelf.advertisements.items() if c in alive}
         if not isinstance(agent.order.compose(found, frozenset(agent.state.lost), None), Refusal):
             yield f"{agent.name} has given up, although there is a configuration"
+        free = {body.profile.component for body in self.lab.bodies.values() if body.life.supervisor is None}
         for component, loss in agent.state.lost.items():
             if component in alive and loss.cause is Cause.CRASH:
                 yield f"{agent.name} thinks that {component.short} is dead"
+            if component in alive and loss.busy and component in free:
+                yield f"{agent.name} thinks that {component.short} is busy"
 
     # What goes wrong.
 

@@ -111,6 +111,22 @@ def test_a_component_is_idle_until_it_is_activated() -> None:
     assert stage.component.active
 
 
+def test_it_says_who_holds_it_and_a_busy_one_says_so_to_people() -> None:
+    stage = Stage()
+    assert stage.state().supervisor == ""
+    assert stage.call(Apply(1, US)).supervisor == US
+    stage.others.announce(THEM)
+    answer = stage.call(Apply(2, THEM))
+    assert (answer.verdict, answer.supervisor) == (Verdict.BUSY, US)
+    assert answer.detail == "the configurator us holds it"
+    stage.component.fail("lost her")
+    stage.let_pass(0.1)
+    assert (stage.state().active, stage.state().supervisor) == (False, US)
+    stage.leave()
+    stage.let_pass(2 * GRACE)
+    assert (stage.state().active, stage.state().supervisor) == (False, "")
+
+
 def test_an_activation_that_is_repeated_starts_nothing_anew() -> None:
     stage = Stage()
     for epoch in (1, 1, 2):

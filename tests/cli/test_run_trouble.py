@@ -1,0 +1,92 @@
+"""`run` in trouble, with real processes: beside another run, suspended, ended early, or its own site is killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+from selfconf.ending import alive
+from tests.cli.processes import Home, component_of, dormant
+
+EVERYBODY = ("tracker", "sonar", "encoder", "odometry", "control", "drive")
+TASK = {"sonar", "encoder", "control", "drive"}
+
+
+def test_run_with_wait_goes_on_when_another_run_lets_go_of_a_component(inhabited: Home) -> None:
+    first = inhabited.run()
+    first.act("running")
+    second = inhabited.run("--wait")
+    lost = second.act("waiting")["lost"]
+    assert all("the configurator c" in why and why.endswith(" holds it") for why in lost.values())
+    third = inhabited.run()
+    assert third.ended() == 1
+    assert first.end(signal.SIGINT) == 0
+    second.act("running")
+    assert inhabited.active(*EVERYBODY) == TASK | {"tracker"}
+    assert second.end(signal.SIGINT) == 0
+
+
+def test_people_are_told_which_configurator_holds_what_they_need(inhabited: Home) -> None:
+    holder = inhabited.run()
+    holder.act("running")
+    arguments = ("navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x", "--ecology", inhabited.ecology)
+    refused = inhabited.selfconf("run", *arguments)
+    assert refused.ended() == 1
+    assert "was lost: refused, the configurator c" in refused.complaints
+    assert "start it again" not in refused.complaints
+    assert "run again when it is free" in refused.complaints
+    assert holder.end(signal.SIGINT) == 0
+
+
+def test_a_run_that_was_suspended_goes_on_with_those_that_turned_themselves_off_meanwhile(inhabited: Home) -> None:
+    """As Ctrl-Z and `fg` do."""
+    run = inhabited.run()
+    epoch = run.act("running")["epoch"]
+    run.send(signal.SIGSTOP)
+    assert inhabited.until(lambda: inhabited.active(*EVERYBODY) == set())
+    run.send(signal.SIGCONT)
+    assert run.act("running")["epoch"] > epoch
+    assert inhabited.active(*EVERYBODY) == TASK | {"tracker"}
+    assert run.end(signal.SIGINT) == 0
+
+
+def test_a_component_that_dies_while_it_is_activated_is_given_another_chance(home: Home) -> None:
+    dormant(home, "tracker")
+    home.site("peis-home", "ads")
+    home.components("sonar", "encoder", "control", "drive")
+    (home.folder / "tracker.die").touch()
+    run = home.run("--wait")
+    lost = run.act("lost")
+    assert (lost["component"], lost["cause"]) == (component_of("tracker"), "crash")
+    run.act("waiting")
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    assert run.end(signal.SIGINT) == 0
+
+
+def test_a_run_whose_own_site_is_killed_says_so_and_takes_everything_down(home: Home) -> None:
+    for name in ("tracker", "sonar", "encoder", "control", "drive"):
+        dormant(home, name)
+    run = home.run("--ads", "ads")
+    run.act("running")
+    (site,) = run.children()
+    os.kill(site, signal.SIGKILL)
+    assert run.ended() == 2
+    assert "selfconf run: its own site has ended with code -9; everything is taken down\n" in run.complaints
+
+
+def test_a_run_whose_own_site_cannot_start_says_why_in_one_sentence(home: Home) -> None:
+    home.environment["SELFCONF_RUNTIME_DIR"] = "/proc/nope"
+    run = home.run("--ads", "ads")
+    assert run.ended() == 2
+    assert run.complaints.count("\n") == 1
+    assert "cannot write in /proc/nope" in run.complaints
+
+
+def test_sigterm_while_it_begins_leaves_no_site_behind(home: Home) -> None:
+    run = home.run("--ads", "ads")
+    assert home.until(lambda: bool(run.children()))
+    (site,) = run.children()
+    assert run.end(signal.SIGTERM) == 130
+    assert home.until(lambda: not alive(site))
+    assert list(home.runtime.glob("*.json")) == []

@@ -1,0 +1,27 @@
+"""When a program ends: who counts as gone."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+from selfconf.ending import alive
+
+
+def test_a_process_lives_until_it_has_ended_even_if_nobody_has_asked_for_its_exit_code() -> None:
+    process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    try:
+        assert alive(process.pid)
+        process.send_signal(signal.SIGKILL)
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
+        assert not alive(process.pid)
+    finally:
+        process.communicate()
+    assert not alive(process.pid)
+
+
+def test_a_process_of_somebody_else_may_live() -> None:
+    assert alive(os.getpid())
+    assert alive(1)
