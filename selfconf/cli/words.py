@@ -181,6 +181,8 @@ def refusal_text(refusal: Refusal, names: Names, where: Where = nowhere, most: i
         return sentence if place is None else f"{sentence}  [{place}]"
 
     lines = [f"no configuration for {names(refusal.template)}"]
+    if not refusal.reasons:
+        lines.append("  no time was left to find out why; allow more")
     lines += [placed(f"  because {reason}", reason) for reason in refusal.reasons[:most]]
     if len(refusal.reasons) > most:
         lines.append(f"  and {len(refusal.reasons) - most} more reasons")

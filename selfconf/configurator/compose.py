@@ -26,6 +26,7 @@ from selfconf.rdf.templates import TaskDocument
 from selfconf.search import best, mend, paper, repair, solve, whatif
 from selfconf.search.best import Optimum
 from selfconf.search.problem import Problem
+from selfconf.search.walk import Budget
 
 STANDBY = 2
 """How many candidates per role an input is told of in advance."""
@@ -108,6 +109,7 @@ class Composer:
         """
         partition = self.partition(ecology)
         problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
+        misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
         for answer in self._search(problem, running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
             if isinstance(outcome, Configuration):
@@ -115,10 +117,11 @@ class Composer:
                 if wrong:
                     raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
                 yield answer
-            elif isinstance(outcome, Refusal):
-                short = {reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible)}
-                misses = near_misses(self.partitioner, self.gathered(ecology), short or None, lost)
-                yield replace(outcome, near_misses=tuple(misses))
+            elif isinstance(outcome, Refusal) and outcome.reasons:
+                short = frozenset(reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible))
+                if short not in misses:
+                    misses[short] = tuple(near_misses(self.partitioner, self.gathered(ecology), short or None, lost))
+                yield replace(outcome, near_misses=misses[short])
             else:
                 yield outcome
 
@@ -130,16 +133,13 @@ class Composer:
         if found is not None:
             yield found
         elif running is None or self.strategy is Strategy.PAPER:
-            yield self._first(problem)
+            yield from solve.answers(problem, self.steps)
         elif self.steps is None:
             yield repair.search(problem, running)
         else:
-            first = self._first(problem)
+            *_, first = solve.answers(problem, self.steps)
             near = repair.nearest(problem, running, self.steps) if isinstance(first, Configuration) else first
             yield near.configuration if isinstance(near, repair.Repaired) else near
-
-    def _first(self, problem: Problem) -> Outcome:
-        return solve.search(problem) if self.steps is None else solve.decide(problem, self.steps)
 
     def _best(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         most = SLICES[-1] if self.steps is None else self.steps
@@ -149,7 +149,7 @@ class Composer:
             if isinstance(found, Refusal) or (isinstance(found, Optimum) and found.proved):
                 return
         if isinstance(found, Undecided) and self.steps is None:
-            yield self._first(problem)
+            yield from solve.answers(problem)
 
     def possible_under(self, ecology: Mapping[IRI, Advertisement], hierarchy: Hierarchy) -> bool:
         """Whether there would be a configuration where there is none now, if the roles saw another hierarchy."""
@@ -157,7 +157,7 @@ class Composer:
         there = self.partitioner.under(hierarchy).partition(self.gathered(ecology))
         if here == there and not _matches_more(here, hierarchy):
             return False
-        return isinstance(solve.search(Problem(self.task.task, there, hierarchy)), Configuration)
+        return solve.possible(Problem(self.task.task, there, hierarchy), Budget(self.steps))
 
     def mended(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
@@ -166,7 +166,7 @@ class Composer:
             (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables)))
             for miss in refusal.near_misses[: mend.TRIALS]
         ]
-        return mend.with_repairs(problem, refusal, near)
+        return mend.with_repairs(problem, refusal, near, self.steps)
 
     def passed_over(self, configuration: Configuration) -> dict[IRI, list[IRI]]:
         """For each role of a configuration, the eligible components that come before the last one it chose."""

@@ -9,7 +9,7 @@ Candidates can play together iff, for each variable, the conjunction of their ma
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from selfconf.model.profile import Profile, candidate_order
 from selfconf.model.term import IRI, Term
@@ -23,6 +23,8 @@ class Variable:
 
     parameter: IRI
     domain: tuple[Term, ...]
+    listed: bool = False
+    """Whether the parameter lists its values itself (`sh:in`): it may have any of them, and no other."""
 
     def first(self, mask: int) -> Term | None:
         """The first value that a mask allows, or None if it allows values that nobody names."""
@@ -64,7 +66,7 @@ class Partition:
     def without(self, lost: frozenset[IRI]) -> Partition:
         """The same partition after some components have left the ecology, with the values that only they stated."""
         left = tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates)
-        stated = [0] * len(self.variables)
+        stated = [(1 << len(variable.domain)) - 1 if variable.listed else 0 for variable in self.variables]
         for number in range(len(stated)):
             for role in left:
                 for candidate in role:
@@ -85,7 +87,7 @@ class Partition:
                 for role in left
             ),
             tuple(
-                Variable(self.variables[n].parameter, tuple(self.variables[n].domain[place] for place in kept[n]))
+                replace(self.variables[n], domain=tuple(self.variables[n].domain[place] for place in kept[n]))
                 for n in numbers
             ),
         )

@@ -192,6 +192,7 @@ class Refusal:
 
     template: IRI
     reasons: tuple[Reason, ...]
+    """None where no time was left to find any."""
     near_misses: tuple[NearMiss, ...] = ()
     hint: str | None = None
     missing_sites: tuple[str, ...] = field(default=())
@@ -215,7 +216,7 @@ class Undecided:
         if self.seconds is not None:
             return f"not decided within {self.seconds:g} s; allow more by --seconds"
         steps = "1 step" if self.steps == 1 else f"{self.steps} steps"
-        solver = ", or install selfconf[solvers]" if self.unaided else ""
+        solver = ", or install the extra `solvers`" if self.unaided else ""
         return f"not decided within {steps}; allow more by --steps{solver}"
 
 

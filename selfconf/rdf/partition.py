@@ -218,9 +218,10 @@ class Partitioner:
 
     def _variables(self, eligible: list[list[Eligible]]) -> Iterator[Variable]:
         for parameter in sorted(self.free):
-            domain = {value for role in eligible for e in role for value in e.allows.get(parameter, ())}
+            listed = self.suitable.of(parameter, frozenset(free_values.enumerated(self.document, parameter)))
+            domain = listed.union(*(e.allows.get(parameter, ()) for role in eligible for e in role))
             if domain:
-                yield Variable(parameter, tuple(sorted(domain, key=sort_key)))
+                yield Variable(parameter, tuple(sorted(domain, key=sort_key)), bool(listed))
 
 
 def _suited(suitable: Mapping[IRI, frozenset[Term]], eligible: Eligible) -> Eligible:

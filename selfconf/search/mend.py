@@ -11,8 +11,8 @@ issue; one interaction more, where some candidate issues what is lacking; a near
 
 All this is tried on the kernel of the problem (`kernel`): adding, relaxing and linking leave its argument intact,
 since candidates of one kind have the same ports; near misses, who may become eligible for more, are set apart in it. A
-role that asks for nobody is not in the kernel, and is asked for one in the whole problem. The number of trials is
-limited, so that a hard case may end with fewer repairs than there are, never with a wrong one.
+role that asks for nobody is not in the kernel, and is asked for one in the whole problem. The number of trials and of
+their steps is limited, so that a hard case may end with fewer repairs than there are, never with a wrong one.
 """
 
 from __future__ import annotations
@@ -52,24 +52,27 @@ ADDITION = "urn:selfconf:addition:"
 """What the names of components begin with that are not there yet."""
 STEPS = 100_000
 """Steps for each of them."""
+EFFORT = 1_000_000
+"""Steps for all of them together."""
+Near = Sequence[tuple[NearMiss, Candidate]]
 
 
-def with_repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMiss, Candidate]] = ()) -> Refusal:
+def with_repairs(problem: Problem, refused: Refusal, near: Near = (), steps: int | None = None) -> Refusal:
     """The refusal with repairs; `near` are near misses with what they would be as candidates."""
-    return replace(refused, repairs=tuple(repairs(problem, refused, near)))
+    return replace(refused, repairs=tuple(repairs(problem, refused, near, steps)))
 
 
-def repairs(problem: Problem, refused: Refusal, near: Sequence[tuple[NearMiss, Candidate]] = ()) -> Iterator[Repair]:
+def repairs(problem: Problem, refused: Refusal, near: Near = (), steps: int | None = None) -> Iterator[Repair]:
     """Changes that make a refused problem possible, what is easiest to do first."""
-    near = near[:TRIALS]
+    budget, near = Budget(EFFORT if steps is None else min(steps, EFFORT)), near[:TRIALS]
     small = _small(problem, {one.component for one, _ in near})
-    yield from (a for a in itertools.starmap(AcceptNearMiss, near) if _possible(mended(small, a)))
-    yield from (r for r in _asked_for_one(problem, refused) if _possible(mended(problem, r)))
-    added = _additions(small)
+    yield from (a for a in itertools.starmap(AcceptNearMiss, near) if _possible(mended(small, a), budget))
+    yield from (r for r in _asked_for_one(problem, refused) if _possible(mended(problem, r), budget))
+    added = _additions(small, budget)
     if added is not None:
         yield added
-    yield from (r for r in _interactions(small, refused) if _possible(mended(small, r)))
-    yield from _fewer(small, refused)
+    yield from (r for r in _interactions(small, refused) if _possible(mended(small, r), budget))
+    yield from _fewer(small, refused, budget)
 
 
 def mended(problem: Problem, repair: Repair) -> Problem:
@@ -94,12 +97,13 @@ def mended(problem: Problem, repair: Repair) -> Problem:
     return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
 
 
-def _solution(problem: Problem) -> list[list[Candidate]] | Undecided | None:
-    return solve.solution(Prepared(problem), Budget(STEPS + sum(map(len, problem.candidates))))
+def _solution(problem: Problem, budget: Budget) -> list[list[Candidate]] | Undecided | None:
+    with budget.portion(STEPS + sum(map(len, problem.candidates))) as part:
+        return solve.solution(Prepared(problem), part)
 
 
-def _possible(problem: Problem) -> bool:
-    return isinstance(_solution(problem), list)
+def _possible(problem: Problem, budget: Budget) -> bool:
+    return isinstance(_solution(problem, budget), list)
 
 
 def _small(problem: Problem, apart: Collection[IRI]) -> Problem:
@@ -124,7 +128,7 @@ def _newcomer(problem: Problem, role: IRI, number: int, outputs: tuple[Output, .
     return Candidate(Profile(name, ports=Ports(outputs=outputs)), tuple(ANY_VALUE for _ in problem.variables))
 
 
-def _additions(problem: Problem) -> AddComponents | None:
+def _additions(problem: Problem, budget: Budget) -> AddComponents | None:
     """The fewest components to add, if a few are enough."""
     if any(role.maximum is not None and role.maximum < role.minimum for role in problem.roles):
         return None
@@ -138,12 +142,12 @@ def _additions(problem: Problem) -> AddComponents | None:
             return None
         here = waiting[trial]
         changed = mended(problem, _added(problem, here, outputs))
-        playing = _solution(changed) if here else None
+        playing = _solution(changed, budget) if here else None
         if isinstance(playing, list):
-            return _trimmed(problem, here, outputs, playing)
+            return _trimmed(problem, here, outputs, playing, budget)
         if playing is not None:
             return None
-        for number in _helpful(changed):
+        for number in _helpful(changed, budget):
             further = here + Counter({number: 1})
             if frozenset(further.items()) not in seen:
                 seen.add(frozenset(further.items()))
@@ -164,12 +168,13 @@ def wanted_of(problem: Problem, role: int) -> tuple[Output, ...]:
     return tuple(wanted)
 
 
-def _helpful(problem: Problem) -> list[int]:
+def _helpful(problem: Problem, budget: Budget) -> list[int]:
     """The roles for which one more component could resolve the conflict that there is."""
     given = compact(problem)
     if given.short() is not None:
         return []
-    together = core(Questions(given, Budget(STEPS)))
+    with budget.portion(STEPS) as part:
+        together = core(Questions(given, part))
     sources = [s for r in together if isinstance(r, Fed) for s, _ in given.needs[r.need].sources]
     played = set(given.slots)
     # What feeds comes first: a component that needs no inputs where others do is the less likely one to be had.
@@ -182,7 +187,11 @@ def _added(problem: Problem, here: Counter[int], outputs: Sequence[tuple[Output,
 
 
 def _trimmed(
-    problem: Problem, here: Counter[int], outputs: Sequence[tuple[Output, ...]], playing: list[list[Candidate]]
+    problem: Problem,
+    here: Counter[int],
+    outputs: Sequence[tuple[Output, ...]],
+    playing: list[list[Candidate]],
+    budget: Budget,
 ) -> AddComponents:
     """The same additions with only the outputs without which there is no solution; `playing` is one with them all."""
     left = list(outputs)
@@ -194,7 +203,8 @@ def _trimmed(
             if not all(
                 problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]
             ):
-                found = _solution(mended(problem, _added(problem, here, [*left[:role], fewer, *left[role + 1 :]])))
+                asked = _added(problem, here, [*left[:role], fewer, *left[role + 1 :]])
+                found = _solution(mended(problem, asked), budget)
                 if not isinstance(found, list):
                     continue
                 changed = found
@@ -243,13 +253,13 @@ def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction
                 yield AddInteraction(*pair)
 
 
-def _fewer(problem: Problem, refused: Refusal) -> Iterator[AskForFewer]:
+def _fewer(problem: Problem, refused: Refusal, budget: Budget) -> Iterator[AskForFewer]:
     """For each role of the conflict the most that it can ask for."""
     named = [r.role for reason in refused.reasons for r in reason.requirements if isinstance(r, RolePlayed)]
     for iri in list(dict.fromkeys(named))[:RELAXED]:
         role: Role = problem.task.template.role(iri)
         for minimum in reversed(range(max(0, role.minimum - TRIALS), role.minimum)):
             repair = AskForFewer(iri, minimum)
-            if _possible(mended(problem, repair)):
+            if _possible(mended(problem, repair), budget):
                 yield repair
                 break

@@ -68,7 +68,10 @@ class Problem:
         )
         """For each role, the roles that feed it."""
         self.open_values: tuple[int, ...] = tuple(self._open(variable) for variable in self.variables)
-        """What each variable may be before anybody plays; a parameter that is also set needs a value of the domain."""
+        """What each variable may be before anybody plays.
+
+        A parameter that is also set needs a value of the domain, as does one that lists its values.
+        """
 
     @property
     def unvalued(self) -> tuple[tuple[int, str], ...]:
@@ -91,10 +94,8 @@ class Problem:
         return any(self.roles[position].minimum for position, _ in self.unvalued)
 
     def _open(self, variable: Variable) -> int:
-        for parameter in self.task.template.parameters:
-            if parameter.iri == variable.parameter and parameter.is_set:
-                return (1 << len(variable.domain)) - 1
-        return ANY_VALUE
+        is_set = any(p.is_set for p in self.task.template.parameters if p.iri == variable.parameter)
+        return (1 << len(variable.domain)) - 1 if is_set or variable.listed else ANY_VALUE
 
     def feeding(self, role: int, name: str | None) -> Sources:
         """What may feed an input of a role, by its name; None stands for one that no interaction names."""

@@ -39,7 +39,9 @@ from selfconf.search.walk import Budget
 WALK_STEPS = 2_000
 """Steps of depth-first search before clauses are written."""
 STEPS = 20_000
-"""Steps until the search for the nearest configuration is content with a near one."""
+"""Steps at least until the search for the nearest configuration is content with a near one."""
+WORK = 2_000_000
+"""So many, divided by the number of slots, if that is more: a step costs in proportion to them."""
 
 
 _COMPONENT: Callable[[Candidate], IRI] = attrgetter("profile.component")
@@ -63,8 +65,10 @@ def search(problem: Problem, running: Configuration) -> Configuration | Refusal:
     return outcome.configuration if isinstance(outcome, Repaired) else outcome
 
 
-def nearest(problem: Problem, running: Configuration, steps: int = STEPS) -> Repaired | Refusal:
+def nearest(problem: Problem, running: Configuration, steps: int | None = None) -> Repaired | Refusal:
     """The same, with what is kept and whether that is proved to be the most."""
+    if steps is None:
+        steps = max(STEPS, WORK // (1 + sum(role.minimum for role in problem.roles)))
     alive = _alive(problem, running)
     fixed = all(role.minimum == role.maximum for role in problem.roles) and sat.available()
     budget = Budget(min(steps, WALK_STEPS) if fixed else steps)

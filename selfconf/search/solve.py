@@ -27,7 +27,7 @@ itself. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from selfconf.model.configuration import Configuration
@@ -55,20 +55,38 @@ SHARE = 3
 """One in how many slots at most may lie that near, or everything is prepared at once."""
 
 
+def answers(problem: Problem, steps: int | None = None) -> Iterator[Configuration | Refusal | Undecided]:
+    """The lexicographically first configuration; or that it is not decided within a number of steps.
+
+    Or that there is none: at first without a word of why, as finding reasons may take longer than the search.
+    """
+    given = Prepared(problem)
+    playing = solution(given, Budget(steps))
+    if isinstance(playing, list):
+        yield problem.solved(playing)
+    elif isinstance(playing, Undecided):
+        yield Undecided(playing.steps if steps is None else steps, unaided=not sat.available())
+    else:
+        yield Refusal(problem.task.template.iri, ())
+        yield explain.refusal(given) if steps is None else explain.refusal(given, steps)
+
+
 def search(problem: Problem) -> Configuration | Refusal:
     """The lexicographically first configuration, or why there is none."""
-    given = Prepared(problem)
-    playing = solution(given, Budget())
-    return problem.solved(playing) if isinstance(playing, list) else explain.refusal(given)
+    *_, answer = answers(problem)
+    assert not isinstance(answer, Undecided)
+    return answer
 
 
 def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
     """The same within a number of steps, which mean the same on every machine."""
-    given = Prepared(problem)
-    playing = solution(given, Budget(steps))
-    if isinstance(playing, Undecided):
-        return Undecided(steps, unaided=not sat.available())
-    return explain.refusal(given, steps) if playing is None else problem.solved(playing)
+    *_, answer = answers(problem, steps)
+    return answer
+
+
+def possible(problem: Problem, budget: Budget) -> bool:
+    """Whether a configuration is found within the budget."""
+    return isinstance(solution(Prepared(problem), budget), list)
 
 
 def solution(given: Prepared, budget: Budget) -> list[list[Candidate]] | Undecided | None:

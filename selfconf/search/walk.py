@@ -9,6 +9,7 @@ component of their own. No recursion: ten thousand roles are as deep as ten thou
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from selfconf.model.refusal import Undecided
@@ -25,6 +26,14 @@ class Budget:
     def part(self, most: int) -> Budget:
         """A budget of at most so many of the steps that are left."""
         return Budget(most if self.steps is None else min(most, self.steps))
+
+    @contextmanager
+    def portion(self, most: int) -> Iterator[Budget]:
+        """A part of the budget, of which what was spent is taken away in the end."""
+        part = self.part(most)
+        given = part.steps or 0
+        yield part
+        self.spend(given - (part.steps or 0))
 
     def spend(self, steps: int) -> None:
         """Take away steps that were done; at zero the budget is used up."""

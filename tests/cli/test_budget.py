@@ -11,8 +11,10 @@ from selfconf.cli.budget import Clock, composed
 from selfconf.cli.inputs import read_advertisements
 from selfconf.configurator.compose import Composer, Strategy
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Undecided
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.rdf import templates, turtle
+from selfconf.rdf.deadline import TimeUp
+from selfconf.search import explain
 from selfconf.search.best import Optimum
 from tests.cli.command import Outcome, run
 from tests.cli.processes import Home
@@ -118,3 +120,20 @@ def test_when_the_time_is_up_the_best_answer_so_far_remains(team: Path, monkeypa
     assert composed(composer, ecology, frozenset(), None, clock) is proved
     assert isinstance(proved, Optimum)
     assert composed(composer, ecology, frozenset(), None, clock) == Undecided(seconds=0.2)
+
+
+def test_that_there_is_none_is_told_even_if_no_time_is_left_for_reasons(
+    capsys: pytest.CaptureFixture[str], team: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def too_long(*_: object) -> Refusal:
+        raise TimeUp
+
+    monkeypatch.setattr(explain, "refusal", too_long)
+    outcome = configure(capsys, team, "--seconds", "30")
+    assert outcome.code == 1
+    assert "no time was left to find out why" in outcome.out
+
+
+def test_steps_limit_what_is_tried_to_mend_a_refusal_too(capsys: pytest.CaptureFixture[str], team: Path) -> None:
+    assert configure(capsys, team, "--format", "json").body["repairs"]
+    assert not configure(capsys, team, "--format", "json", "--steps", "40").body["repairs"]

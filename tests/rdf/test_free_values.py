@@ -14,10 +14,11 @@ from selfconf.rdf.partition import ANOTHER, Partitioner
 from selfconf.rdf.templates import TaskDocument
 from selfconf.search import solve
 from selfconf.search.problem import Problem
-from tests.lab import PREFIXES
+from tests.lab import PREFIXES, iri
 from tests.rdf.test_partition_agreement import COMPONENTS, ecology
 
 PARAMETER = ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :v . :v a sc:Parameter ; sc:name 'v'"
+SETS = "; sc:sets [ sc:parameterType :T ; sc:value :v ]"
 POSITIVE = (
     "[ sh:path :p ; sh:hasValue :v ]",
     "[ sh:path :q ; sh:in ( :v :y ) ]",
@@ -116,3 +117,14 @@ def test_a_role_that_nobody_has_to_play_may_set_what_has_no_value() -> None:
     found = solve.search(Problem(task.task, partition))
     assert isinstance(found, Configuration)
     assert found.components == ()
+
+
+@pytest.mark.parametrize("shape", ["{}", "sh:and ( [ {} ] )"])
+def test_a_parameter_that_lists_its_values_has_them_though_nobody_states_any(shape: str) -> None:
+    looked_at = shape.format("sh:property [ sh:path :p ; sh:in ( :v ) ]")
+    task = bindings.complete(document(f"{PARAMETER} ; sh:in ( :y :x ) . :r a sc:Role ; {looked_at} {SETS} ."))
+    text = f'{PREFIXES} :a a sc:Component, :A ; sc:hasParameter [ sc:name "k" ; sc:parameterType :T ] .'
+    ads = advertisements.read(turtle.parse(text, "a.ttl"))[0]
+    found = solve.search(Problem(task.task, Partitioner(task).partition(ads)))
+    assert isinstance(found, Configuration)
+    assert [setting.value for setting in found.settings] == list(found.bindings.values()) == [iri("x")]
