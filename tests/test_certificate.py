@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import re
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given
 
+from selfconf import certificate
 from selfconf.certificate import check
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.template import Parameter, Setting, Task
 from selfconf.model.term import Literal
 from selfconf.search import solve
 from selfconf.search.problem import Problem
@@ -47,19 +53,32 @@ def test_what_is_accepted_is_valid_by_enumeration_too(problem: Problem) -> None:
 
 
 def _answer() -> tuple[Problem, Configuration]:
-    given_ = problem(
+    """A camera of Astrid's, who is set on the mind, and a goal that is bound."""
+    plain = problem(
         {
             "eye": [component("camera", outputs="o:Image"), component("spare", outputs="o:Image")],
             "mind": [component("cap", "i:Image")],
         },
         "eye>mind",
+        values={"eye": {"camera": 0b01}},
+        domain=("Astrid", "Pippi"),
     )
+    template = plain.task.template
+    eye, mind = template.roles
+    template = replace(
+        template,
+        roles=(eye, replace(mind, settings=(Setting(iri("Goal"), iri("robot")),))),
+        parameters=(Parameter(iri("robot"), "robot", in_shape=True, is_set=True), Parameter(iri("goal"), "goal")),
+    )
+    given_ = Problem(Task(template, {iri("goal"): GOAL}), plain.partition)
     answer = solve.search(given_)
     assert isinstance(answer, Configuration)
+    assert check(given_.task, given_.partition, answer) == []
     return given_, answer
 
 
-BROKEN = {
+GOAL = Literal("(AT BEDROOM)")
+BROKEN: dict[str, dict[str, Any]] = {
     "is not eligible": {
         "assignments": (Assignment(iri("eye"), (iri("cap"),)), Assignment(iri("mind"), (iri("camera"),)))
     },
@@ -73,6 +92,7 @@ BROKEN = {
     "its roles are not those of the template": {"assignments": ()},
     "it is a configuration of other": {"template": iri("other")},
     "this connection is missing": {"connections": ()},
+    "the input 'i' of cap is not fed": {"connections": ()},
     "no interaction makes this connection": {
         "connections": (
             Connection(iri("camera"), "o", iri("cap"), "i"),
@@ -80,11 +100,42 @@ BROKEN = {
         )
     },
     "there 2 times": {"connections": (Connection(iri("camera"), "o", iri("cap"), "i"),) * 2},
+    "goal is bound to (AT BEDROOM), not to (AT KITCHEN)": {
+        "bindings": {"goal": Literal("(AT KITCHEN)"), "robot": iri("Astrid")}
+    },
+    "goal is bound to (AT BEDROOM), not to None": {"bindings": {"robot": iri("Astrid")}},
+    "robot has no value, and 1 components depend on it": {"bindings": {"goal": GOAL}},
+    "robot is urn:test:Karlsson, which no candidate allows": {"bindings": {"goal": GOAL, "robot": iri("Karlsson")}},
+    "camera does not allow robot to be urn:test:Pippi": {"bindings": {"goal": GOAL, "robot": iri("Pippi")}},
+    "the role mind sets a parameter to something that has no value": {"bindings": {"goal": GOAL}},
     "is not asked for": {"settings": (ParameterSetting(iri("cap"), "goal", Literal("1")),)},
+    "setting 'goal' of cap to urn:test:Astrid is missing": {"settings": ()},
 }
 
 
 @pytest.mark.parametrize("fault", BROKEN)
 def test_a_fault_is_named(fault: str) -> None:
+    assert any(fault in said for said in _said(fault))
+
+
+def _said(fault: str) -> list[str]:
     given_, answer = _answer()
-    assert any(fault in said for said in check(given_.task, given_.partition, replace(answer, **BROKEN[fault])))
+    return check(given_.task, given_.partition, replace(answer, **BROKEN[fault]))
+
+
+def _sentences() -> list[str]:
+    """Every sentence of the certificate, as a pattern."""
+    return [
+        "".join(re.escape(str(part.value)) if isinstance(part, ast.Constant) else ".+" for part in parts)
+        for node in ast.walk(ast.parse(inspect.getsource(certificate)))
+        if isinstance(node, ast.Yield) and isinstance(node.value, ast.Constant | ast.JoinedStr)
+        for parts in [node.value.values if isinstance(node.value, ast.JoinedStr) else [node.value]]
+    ]
+
+
+def test_every_sentence_of_the_certificate_is_earned_by_a_fault() -> None:
+    named = [said for fault in BROKEN for said in _said(fault) if fault in said]
+    sentences = _sentences()
+    assert len(sentences) >= 16
+    for sentence in sentences:
+        assert any(re.fullmatch(sentence, said) for said in named), sentence

@@ -14,7 +14,7 @@ from selfconf.model.cost import CostTerm, cost, number
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, XSD, Literal
-from selfconf.search import best, solve
+from selfconf.search import best, sat, solve
 from selfconf.search.best import Optimum
 from selfconf.search.problem import Problem
 from tests.search.oracle import Players, World
@@ -126,15 +126,36 @@ def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
     assert not isinstance(expected, Optimum) or answer == expected
 
 
-@given(priced_problems(), st.integers(20, 60))
-@agreement(0.2)
-def test_what_is_found_in_few_steps_has_an_honest_bound(problem: Problem, steps: int) -> None:
-    world = World(problem.task, problem.partition, problem.hierarchy)
-    answer = best.search(problem, steps)
-    if isinstance(answer, Optimum) and answer.unknown == 0:
-        least = min(_total(world, players) for players in world.solutions())
-        assert answer.bound <= least[1:] or least[0] < 0
-        assert answer.cost >= least[1:]
+@pytest.mark.parametrize("aided", [False, True])
+def test_what_is_found_in_few_steps_has_an_honest_bound(aided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if aided:
+        pytest.importorskip("pysat")
+        monkeypatch.setattr(best, "WALK_STEPS", 1)
+    else:
+        monkeypatch.setattr(sat, "available", lambda: False)
+    unproved: list[bool] = []
+    """For each answer without a proof whether there is a better one."""
+
+    @given(priced_problems())
+    @agreement(0.3)
+    def search(problem: Problem) -> None:
+        world = World(problem.task, problem.partition, problem.hierarchy)
+        least = min((_total(world, players) for players in world.solutions()), default=None)
+        for steps in range(1, 11):
+            answer = best.search(problem, steps)
+            if isinstance(answer, Optimum):
+                found = (answer.unknown, *answer.cost)
+                assert least is not None
+                assert found >= least
+                assert answer.unknown or answer.bound <= min(answer.cost, least[1:])
+                if answer.proved:
+                    assert found == least
+                else:
+                    unproved.append(found > least)
+
+    search()
+    assert len(unproved) >= 10
+    assert any(unproved)
 
 
 def test_first_takes_the_preferred_and_best_the_cheapest() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations_with_replacement
 
 import pytest
@@ -40,6 +41,11 @@ def test_every_repair_works_and_adds_as_few_as_possible(problem: Problem) -> Non
         if role.minimum == 0 and role.maximum != 0 and _possible(mended(problem, AskForOne(role.iri)))
     }
     added = [repair for repair in mending if isinstance(repair, AddComponents)]
+    for some in [repair.additions for repair in added]:
+        for place, addition in enumerate(some):
+            for output in addition.outputs:
+                less = replace(addition, outputs=tuple(one for one in addition.outputs if one != output))
+                assert not _possible(mended(problem, AddComponents((*some[:place], less, *some[place + 1 :]))))
     fewest = sum(addition.count for addition in added[0].additions) if added else 3
     for size in range(1, min(fewest, 3)):
         for roles in combinations_with_replacement(range(len(problem.roles)), size):
@@ -118,3 +124,47 @@ def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatc
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
     assert str(next(mend.repairs(given_, refused))) == "add one more component for the role r0"
+
+
+def test_an_output_that_is_not_needed_is_not_asked_for() -> None:
+    minds = [component("deaf", "p:Pose b:Bump"), component("cap", "p:Pose")]
+    given_ = problem({"sensor": [], "control": minds}, "sensor>control")
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    assert words[0] == "add one more component for the role sensor that issues Pose"
+
+
+def test_what_one_addition_issues_is_not_asked_of_another() -> None:
+    given_ = problem(
+        {"a": [], "b": [], "control": [component("cap", "p:Pose")], "drive": [component("car", "v:Velocity")]},
+        "a>control b>drive b>control",
+    )
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    both = "one more component for the role a and one more component for the role b that issues Velocity and Pose"
+    assert words[0] == f"add {both}"
+
+
+def test_a_link_by_name_is_not_the_plain_one() -> None:
+    for named in ("eye.picture>mind", "eye>mind.picture", "eye.picture>mind.picture"):
+        given_ = problem(
+            {"eye": [component("camera", outputs="i:Image")], "mind": [component("cap", "i:Image")]}, named
+        )
+        refused = solve.search(given_)
+        assert isinstance(refused, Refusal)
+        assert "let the role eye feed the role mind (sc:feeds)" in [
+            str(repair) for repair in with_repairs(given_, refused).repairs
+        ]
+
+
+def test_a_role_that_allows_nobody_is_not_told_to_ask_for_one() -> None:
+    given_ = problem(
+        {"sonar": [component("ring", outputs="s:Scan")], "control": [component("cap", "s:Scan")]},
+        "sonar>control",
+        {"sonar": (0, 0)},
+    )
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    assert not [one for one in with_repairs(given_, refused).repairs if isinstance(one, AskForOne)]

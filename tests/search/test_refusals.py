@@ -123,6 +123,49 @@ def test_the_cause_comes_first_and_then_what_follows_from_it() -> None:
     assert str(reason).startswith("the input 'scan' (RangeScan) of cap cannot be fed: no candidate of sonar issues")
 
 
+@pytest.mark.parametrize(
+    ("caps", "words"),
+    [
+        (["b"], "b cannot play the role control"),
+        (["b", "c"], "b and one other cannot play the role control"),
+        (["b", "c", "d"], "b and 2 others cannot play the role control"),
+    ],
+)
+def test_those_who_cannot_play_for_the_same_cause_are_counted(caps: list[str], words: str) -> None:
+    given_ = problem(
+        {
+            "sonar": [component("bumper", outputs="o:Bump")],
+            "position": [component("gps", "scan:RangeScan", "p:Pose"), component("clock", outputs="t:Time")],
+            "control": [component(name, "pose:Pose") for name in caps],
+        },
+        "sonar>position position>control",
+    )
+    answer = solve.search(given_)
+    assert isinstance(answer, Refusal)
+    (reason,) = answer.reasons
+    cause = "the input 'scan' (RangeScan) of gps cannot be fed: no candidate of sonar issues a RangeScan for it"
+    assert str(reason) == f"{cause}; so {words}, as nobody left in position issues a Pose"
+
+
+def test_who_cannot_play_for_another_cause_is_not_counted() -> None:
+    given_ = problem(
+        {
+            "sonar": [component("bumper", outputs="o:Bump")],
+            "position": [component("gps", "scan:RangeScan", "p:Pose"), component("clock", outputs="t:Time")],
+            "control": [
+                component("b", "pose:Pose"),
+                component("c", "pose:Pose", "v:Velocity"),
+                component("d", "h:Heat"),
+            ],
+        },
+        "sonar>position position>control",
+    )
+    answer = solve.search(given_)
+    assert isinstance(answer, Refusal)
+    (reason,) = answer.reasons
+    assert "b and one other cannot play the role control, as nobody left in position issues a Pose" in str(reason)
+
+
 def test_a_source_that_is_asked_for_nobody_is_not_said_to_issue_nothing() -> None:
     given_ = problem(
         {

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate, Partition
 from selfconf.model.refusal import Refusal
-from selfconf.search import repair, solve
+from selfconf.search import repair, sat, solve
 from selfconf.search.problem import Problem
 from tests.search.oracle import Players, World
 from tests.search.worlds import agreement, component, problem, problems
@@ -63,6 +63,13 @@ def _after_losses(problem: Problem, running: Configuration, data: st.DataObject)
     return Problem(problem.task, Partition(candidates, left.variables), problem.hierarchy)
 
 
+def _fixed(problem: Problem) -> Problem:
+    """The problem with roles that each ask for a fixed number."""
+    roles = tuple(replace(role, maximum=role.minimum) for role in problem.roles)
+    template = replace(problem.task.template, roles=roles)
+    return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
+
+
 @given(problems(), st.data())
 @agreement(0.5)
 def test_a_repair_keeps_the_most_and_is_the_first_that_does(problem: Problem, data: st.DataObject) -> None:
@@ -79,19 +86,51 @@ def test_a_repair_keeps_the_most_and_is_the_first_that_does(problem: Problem, da
 @agreement(0.4)
 def test_clause_learning_gives_the_same_repair(problem: Problem, data: st.DataObject) -> None:
     pytest.importorskip("pysat")
-    roles = tuple(replace(role, maximum=role.minimum) for role in problem.roles)
-    template = replace(problem.task.template, roles=roles)
-    task = replace(problem.task, template=template)
-    running = solve.search(Problem(task, problem.partition, problem.hierarchy))
+    running = solve.search(_fixed(problem))
     if not isinstance(running, Configuration) or not running.components:
         return
-    left = _after_losses(Problem(task, problem.partition, problem.hierarchy), running, data)
+    left = _after_losses(_fixed(problem), running, data)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(repair, "WALK_STEPS", 0)
         answer = repair.nearest(left, running)
     expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
     assert (answer.configuration if isinstance(answer, repair.Repaired) else None) == expected
     assert isinstance(answer, Refusal) or answer.proved
+
+
+@pytest.mark.parametrize("aided", [False, True])
+def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
+    aided: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if aided:
+        pytest.importorskip("pysat")
+        monkeypatch.setattr(repair, "WALK_STEPS", 0)
+    else:
+        monkeypatch.setattr(sat, "available", lambda: False)
+    unproved: list[bool] = []
+    """For each answer without a proof whether there is a nearer one."""
+
+    @given(problems(), st.data())
+    @agreement(0.3)
+    def search(drawn: Problem, data: st.DataObject) -> None:
+        whole = _fixed(drawn) if aided else drawn
+        running = solve.search(whole)
+        if not isinstance(running, Configuration) or not running.components:
+            return
+        left = _after_losses(whole, running, data)
+        nearest = _nearest(World(left.task, left.partition, left.hierarchy), running)
+        for steps in range(1, 11):
+            answer = repair.nearest(left, running, steps)
+            if isinstance(answer, repair.Repaired):
+                assert (answer.kept, answer.connections) == _score(answer.configuration, running)
+                if answer.proved:
+                    assert answer.configuration == nearest
+                else:
+                    unproved.append(answer.configuration != nearest)
+
+    search()
+    assert len(unproved) >= 10
+    assert aided or any(unproved)
 
 
 def test_who_has_to_change_roles_may_keep_connections_all_the_same() -> None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from itertools import islice
+from string import ascii_lowercase
 
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
@@ -34,7 +37,7 @@ def iri(name: str) -> IRI:
     return IRI(f"urn:test:{name}")
 
 
-def component(name: str, inputs: str = "", outputs: str = "", preference: float = 0.0) -> Profile:
+def component(name: str, inputs: str = "", outputs: str = "", preference: int = 0) -> Profile:
     """A component by its ports: `component("cap", "sonar:Scan pose:Pose", "velocity:Velocity")`."""
     return Profile(
         iri(name),
@@ -43,7 +46,7 @@ def component(name: str, inputs: str = "", outputs: str = "", preference: float 
             tuple(Output(port, iri(signal)) for port, signal in _ports(outputs)),
         ),
         parameters=(OperationalParameter("goal", iri("Goal")),),
-        preference=preference,
+        preference=Decimal(preference),
     )
 
 
@@ -96,10 +99,11 @@ def _mask(values: Mapping[str, Mapping[str, int]] | None, role: str, profile: Pr
 SIGNALS = [iri(name) for name in ("S", "T", "U", "V")]
 CLASSES = [*SIGNALS, iri("Goal")]
 NAMES = ["p", "q", "r"]
-
-
-def _once(ports: Ports, shared: dict[Ports, Ports] | None) -> Ports:
-    return ports if shared is None else shared.setdefault(ports, ports)
+FURTHER = ascii_lowercase[ascii_lowercase.index("s") :]
+"""Names for the outputs that a cast needs beyond those it happens to have."""
+NUMBERS = range(5)
+Cast = Sequence[Sequence[int]]
+"""For each role the numbers of the components that are meant to play it."""
 
 
 @st.composite
@@ -109,50 +113,72 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5) -> Problem:
     Roles share candidates and order them each in their own way; components may share what is equal of their ports;
     cardinalities include none, two and without end; interactions may form cycles, feed a role from itself and name
     ports; free parameters may also be set.
+
+    Every other problem is made around a cast: for each role as many components of their own as it asks for, which
+    issue what their inputs need and allow a common value of each parameter. So it has a solution. All else is noise.
     """
-    signals = st.sampled_from(SIGNALS[: draw(st.integers(1, 4))])
+    solvable = draw(st.booleans())
     shared: dict[Ports, Ports] | None = {} if draw(st.booleans()) else None
-    outputs = st.dictionaries(st.sampled_from(NAMES), signals, max_size=2)
-    inputs = st.one_of(st.just({}), st.dictionaries(st.sampled_from(NAMES), signals, max_size=2))
-    profiles = [
-        Profile(
-            iri(f"c{number}"),
-            ports=_once(
-                Ports(
-                    tuple(Input(*port) for port in sorted(draw(inputs).items())),
-                    tuple(Output(*port) for port in sorted(draw(outputs).items())),
-                ),
-                shared,
-            ),
-            parameters=tuple(
-                OperationalParameter("goal", kind) for kind in draw(st.sets(st.sampled_from(CLASSES[3:]), max_size=1))
-            ),
-        )
-        for number in range(draw(st.integers(0, components)))
-    ]
     count = draw(st.integers(1, roles))
+    signals = st.sampled_from(SIGNALS[: draw(st.integers(1, 4))])
+    some, any_ = (st.dictionaries(st.sampled_from(NAMES), signals, min_size=k, max_size=2) for k in (1, 0))
+    kinds = st.sets(st.sampled_from(CLASSES[3:]), max_size=1)
+    made = [
+        (draw(st.one_of(st.just({}), some)), draw(any_), draw(kinds))
+        for _ in range(draw(st.integers(min(count, components) if solvable else 0, components)))
+    ]
+    number = len(made)
     variables = tuple(
-        Variable(iri(f"v{number}"), tuple(iri(f"value{k}") for k in range(draw(st.integers(1, 3)))))
-        for number in range(draw(st.sampled_from([0, 0, 1, 1, 2])))
+        Variable(iri(f"v{k}"), tuple(iri(f"value{n}") for n in range(draw(st.integers(1, 3)))))
+        for k in range(draw(st.sampled_from([0, 0, 1, 1, 2])))
     )
     parameters = tuple(
         Parameter(v.parameter, v.parameter.short, in_shape=True, is_set=draw(st.booleans())) for v in variables
     )
-    parts = tuple(_role(draw, number, parameters) for number in range(count))
+    parts: list[Role] = []
+    for k in range(count):
+        parts.append(_role(draw, k, parameters, number - sum(p.minimum for p in parts) if solvable else 2))
     pairs = [(a, b) for a in range(count) for b in range(count)]
     chosen = draw(st.lists(st.sampled_from(pairs), min_size=count - 1, max_size=3 * count, unique=True))
     port = st.sampled_from([None, None, None, *NAMES[:2]])
-    interactions = tuple(Interaction(parts[a].iri, parts[b].iri, draw(port), draw(port)) for a, b in chosen)
+    interactions = [Interaction(parts[a].iri, parts[b].iri, draw(port), draw(port)) for a, b in chosen]
     edges = draw(st.lists(st.tuples(st.sampled_from(CLASSES), st.sampled_from(CLASSES)), max_size=3))
     hierarchy = Hierarchy(edges) if draw(st.booleans()) else NOTHING_ABOVE
-    candidates = tuple(_candidates(draw, profiles, variables) for _ in parts)
-    template = Template(iri("template"), parts, interactions, (*parameters, Parameter(iri("goal"), "goal")))
+    cast: Cast = [()] * count
+    if solvable:
+        cast = _cast(draw, parts, number)
+        players = dict(zip([role.iri for role in parts], cast, strict=True))
+        inputs, outputs = [one[0] for one in made], [one[1] for one in made]
+        _feed(draw, players, interactions, inputs, outputs, hierarchy)
+    profiles = [
+        Profile(
+            iri(f"c{k}"),
+            ports=_once(
+                Ports(
+                    tuple(Input(*one) for one in sorted(wanted.items())),
+                    tuple(Output(*one) for one in sorted(issued.items())),
+                ),
+                shared,
+            ),
+            parameters=tuple(OperationalParameter("goal", kind) for kind in set_),
+        )
+        for k, (wanted, issued, set_) in enumerate(made)
+    ]
+    common = [1 << draw(st.integers(0, len(variable.domain) - 1)) for variable in variables]
+    candidates = tuple(_candidates(draw, profiles, variables, players, common) for players in cast)
+    template = Template(
+        iri("template"), tuple(parts), tuple(interactions), (*parameters, Parameter(iri("goal"), "goal"))
+    )
     task = Task(template, {iri("goal"): Literal("(AT BEDROOM)")})
     return Problem(task, Partition(candidates, variables), hierarchy)
 
 
-def _role(draw: st.DrawFn, number: int, parameters: Sequence[Parameter]) -> Role:
-    minimum = draw(st.sampled_from([1, 1, 1, 1, 0, 2]))
+def _once(ports: Ports, shared: dict[Ports, Ports] | None) -> Ports:
+    return ports if shared is None else shared.setdefault(ports, ports)
+
+
+def _role(draw: st.DrawFn, number: int, parameters: Sequence[Parameter], most: int) -> Role:
+    minimum = min(most, draw(st.sampled_from([1, 1, 1, 1, 0, 2])))
     maximum = draw(st.sampled_from([minimum, minimum, minimum + 1, None]))
     value: Term = Literal("1") if draw(st.booleans()) else iri("goal")
     settings_: tuple[Setting, ...] = (Setting(iri("Goal"), value),) if draw(st.booleans()) else ()
@@ -162,17 +188,74 @@ def _role(draw: st.DrawFn, number: int, parameters: Sequence[Parameter]) -> Role
     return Role(iri(f"r{number}"), minimum, maximum, settings_)
 
 
-def _candidates(draw: st.DrawFn, profiles: Sequence[Profile], variables: Sequence[Variable]) -> tuple[Candidate, ...]:
-    chosen = draw(st.permutations(profiles)) if draw(st.booleans()) else list(profiles)
-    left_out = draw(st.sets(st.sampled_from(NUMBERS), max_size=1))
+def _cast(draw: st.DrawFn, roles: Sequence[Role], number: int) -> Cast:
+    """As many components of their own for each role as it asks for."""
+    order = iter(draw(st.permutations(range(number))))
+    return [list(islice(order, role.minimum)) for role in roles]
+
+
+def _feed(
+    draw: st.DrawFn,
+    players: Mapping[IRI, Sequence[int]],
+    interactions: list[Interaction],
+    inputs: Sequence[Mapping[str, IRI]],
+    outputs: Sequence[dict[str, IRI]],
+    hierarchy: Hierarchy,
+) -> None:
+    """Give a cast the outputs that its inputs need, and a plain interaction where there is none that could do."""
+    for role, some in players.items():
+        for wanted, signal in [port for player in some for port in inputs[player].items()]:
+            below = [one for one in SIGNALS if hierarchy.matches(one, signal)]
+            ways = [
+                way
+                for interaction in interactions
+                if interaction.sink == role and interaction.input in (None, wanted)
+                for way in _ways(interaction, players, outputs, below)
+            ]
+            if not ways:
+                source = draw(st.sampled_from([one for one, others in players.items() if others]))
+                interactions.append(Interaction(source, role))
+                ways = _ways(interactions[-1], players, outputs, below)
+            issued, name = draw(st.sampled_from(ways))
+            issued.setdefault(name, draw(st.sampled_from(below)))
+
+
+def _ways(
+    interaction: Interaction,
+    players: Mapping[IRI, Sequence[int]],
+    outputs: Sequence[dict[str, IRI]],
+    signals: Sequence[IRI],
+) -> list[tuple[dict[str, IRI], str]]:
+    """The outputs, there or not yet, by which a player may issue one of some signals along an interaction."""
+    ways = []
+    for issued in [outputs[player] for player in players[interaction.source]]:
+        name = interaction.output or next(one for one in FURTHER if one not in issued)
+        if issued.get(name) in (None, *signals):
+            ways.append((issued, name))
+    return ways
+
+
+def _candidates(
+    draw: st.DrawFn,
+    profiles: Sequence[Profile],
+    variables: Sequence[Variable],
+    players: Sequence[int],
+    common: Sequence[int],
+) -> tuple[Candidate, ...]:
+    """The candidates of a role in an order of its own; whoever is meant to play it is one and allows what is common."""
+    order = draw(st.permutations(range(len(profiles)))) if draw(st.booleans()) else range(len(profiles))
+    left_out = draw(st.sets(st.sampled_from(NUMBERS), max_size=1)) - set(players)
     return tuple(
-        Candidate(profile, tuple(_allowed(draw, variable) for variable in variables))
-        for index, profile in enumerate(chosen)
-        if index not in left_out
+        Candidate(
+            profiles[number],
+            tuple(
+                _allowed(draw, variable) | (bit if number in players else 0)
+                for variable, bit in zip(variables, common, strict=True)
+            ),
+        )
+        for number in order
+        if number not in left_out
     )
-
-
-NUMBERS = range(5)
 
 
 def _allowed(draw: st.DrawFn, variable: Variable) -> int:
