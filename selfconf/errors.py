@@ -55,3 +55,9 @@ class NetworkError(SelfconfError):
 
 class InstallationError(SelfconfError):
     """This installation lacks something that the command needs; the text says what to install."""
+
+
+def reason(error: OSError) -> str:
+    """What the system says of an error, and of which file, without the number of the error."""
+    said = error.strerror or str(error)
+    return f"{error.filename}: {said}" if error.filename else said

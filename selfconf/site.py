@@ -16,14 +16,14 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from selfconf import ending
+from selfconf import ending, files
 from selfconf.bus.port import Bus, Request, Urgency
-from selfconf.errors import PeerError, TurtleError
+from selfconf.errors import AuthorError, PeerError, reason
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import Cause, Fail, Page, Wake
-from selfconf.rdf import advertisements, turtle
+from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.write import ntriples
 
@@ -46,14 +46,12 @@ class Shelf:
     def __init__(self, paths: Sequence[Path], complain: Complaint) -> None:
         self._paths, self._complain = paths, complain
         self._seen: dict[Path, tuple[int, int]] = {}
+        self._told: frozenset[str] = frozenset()
         self.advertisements: dict[IRI, Advertisement] = {}
 
     def files(self) -> list[Path]:
         """Every Turtle file of the shelf, sorted."""
-        found: set[Path] = set()
-        for path in self._paths:
-            found.update(path.rglob("*.ttl") if path.is_dir() else [path])
-        return sorted(found)
+        return sorted({file for path in self._paths for file in files.within(path)})
 
     def refresh(self) -> bool:
         """Read the files again if any has changed, come or gone; whether the advertisements are others now."""
@@ -68,26 +66,29 @@ class Shelf:
             return False
         self._seen = stamps
         found: dict[IRI, Advertisement] = {}
+        complaints: list[str] = []
         for path in stamps:
-            for advertisement in self._read(path):
+            try:
+                good, bad = advertisements.read(files.document(path))
+            except AuthorError as error:
+                complaints.append(f"left out: {error}")
+                continue
+            complaints += [f"{path}: left out {one.component}: {one.problems[0]}" for one in bad]
+            for advertisement in good:
                 component = advertisement.profile.component
-                if component in found:
-                    self._complain(f"{path}: {component} is advertised twice; the first advertisement counts")
-                else:
-                    found[component] = advertisement
+                if found.setdefault(component, advertisement) is not advertisement:
+                    complaints.append(f"{path}: {component} is advertised twice; the first advertisement counts")
+        self._tell(complaints)
         changed = found != self.advertisements
         self.advertisements = found
         return changed
 
-    def _read(self, path: Path) -> list[Advertisement]:
-        try:
-            good, bad = advertisements.read(turtle.parse(path.read_bytes(), str(path)))
-        except (TurtleError, OSError) as error:
-            self._complain(f"left out: {error}")
-            return []
-        for malformed in bad:
-            self._complain(f"{path}: left out {malformed.component}: {malformed.problems[0]}")
-        return good
+    def _tell(self, complaints: Sequence[str]) -> None:
+        """Complain of what was not wrong the last time already."""
+        for complaint in dict.fromkeys(complaints):
+            if complaint not in self._told:
+                self._complain(complaint)
+        self._told = frozenset(complaints)
 
 
 class Site:
@@ -187,8 +188,10 @@ class Site:
             self._processes[component] = subprocess.Popen(
                 words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=STDERR
             )
-        except (OSError, ValueError) as error:
-            raise PeerError(f"the command of {component} does not start: {error}") from None
+        except OSError as error:
+            raise PeerError(f"the command of {component} does not start: {reason(error)}") from None
+        except ValueError as error:
+            raise PeerError(f"the command of {component} cannot be read: {error}") from None
         log.info("started %s: %s", component, command)
         self._follow(component)
 

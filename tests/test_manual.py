@@ -29,5 +29,11 @@ def test_a_command_says_what_its_page_says(
     assert code == (1 if output.startswith("no configuration") else 2 if "not decided" in output else 0)
 
 
+def test_nothing_is_said_to_come_from_an_index_on_which_it_is_not() -> None:
+    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "selfconf").rglob("*.py")]
+    promise = re.compile(r"install '?\"?selfconf(\[|['\"`]|\s*$)", re.MULTILINE)
+    assert [page for page in pages if promise.search(page.read_text("utf-8"))] == []
+
+
 def test_the_page_has_examples() -> None:
     assert len(EXAMPLES) == 5

@@ -12,6 +12,7 @@ import pytest
 
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Sample
+from selfconf.cli.inputs import read_advertisements
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
@@ -64,6 +65,45 @@ def test_a_file_that_comes_changes_or_goes_is_noticed(tmp_path: Path) -> None:
     (tmp_path / "drive.ttl").unlink()
     assert shelf.refresh()
     assert set(shelf.advertisements) == {iri("person-tracker")}
+
+
+def test_a_file_means_what_it_means_to_a_command(tmp_path: Path) -> None:
+    lamp = PREFIXES + "<#lamp> a sc:Component, :Lamp ."
+    (tmp_path / "marked.ttl").write_bytes(b"\xef\xbb\xbf" + lamp.encode())
+    complaints: list[str] = []
+    shelf = Shelf([tmp_path], complaints.append)
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {IRI(f"{(tmp_path / 'marked.ttl').as_uri()}#lamp")}
+    assert shelf.advertisements.keys() == read_advertisements([tmp_path]).keys()
+    assert complaints == []
+
+
+def test_a_folder_that_is_called_like_a_file_is_a_folder(tmp_path: Path) -> None:
+    write_advertisements(tmp_path / "lamps.ttl", "tracker")
+    complaints: list[str] = []
+    shelf = Shelf([tmp_path], complaints.append)
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {iri("person-tracker")}
+    assert complaints == []
+
+
+def test_a_complaint_is_made_once_until_it_changes(tmp_path: Path) -> None:
+    complaints: list[str] = []
+    shelf = Shelf([write_advertisements(tmp_path, "tracker")], complaints.append)
+    (tmp_path / "lamp.ttl").write_text("no turtle")
+    shelf.refresh()
+    assert len(complaints) == 1
+    write_advertisements(tmp_path, "drive")
+    assert shelf.refresh()
+    assert len(complaints) == 1
+    touch(tmp_path / "lamp.ttl", "\nno turtle")
+    shelf.refresh()
+    assert len(complaints) == 2
+    touch(tmp_path / "lamp.ttl", PREFIXES)
+    shelf.refresh()
+    touch(tmp_path / "lamp.ttl", "\nno turtle")
+    shelf.refresh()
+    assert len(complaints) == 3
 
 
 def test_a_file_that_is_broken_is_named_and_the_others_stay(tmp_path: Path) -> None:
@@ -273,8 +313,8 @@ def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_told(
 @pytest.mark.parametrize(
     ("command", "reason"),
     [
-        ("/no/such/program --really", "does not start"),
-        ("'unbalanced", "does not start"),
+        ("/no/such/program --really", "does not start: /no/such/program: No such file or directory"),
+        ("'unbalanced", "cannot be read: No closing quotation"),
         ("", "has no sc:command"),
     ],
 )

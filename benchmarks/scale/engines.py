@@ -6,6 +6,7 @@ import argparse
 import resource
 import time
 from collections.abc import Callable, Mapping, Sequence
+from decimal import Decimal
 from pathlib import Path
 from typing import TypeVar
 
@@ -146,7 +147,7 @@ def profiles(graph: rdflib.Graph) -> list[Profile]:
                 parameters=tuple(
                     OperationalParameter(*one) for one in ports(component, "hasParameter", "parameterType")
                 ),
-                preference=float(str(graph.value(component, sc.preference) or 0)),
+                preference=Decimal(str(graph.value(component, sc.preference) or 0)),
             )
         )
     return found

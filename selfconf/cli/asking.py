@@ -89,12 +89,16 @@ def main() -> int:
     try:
         with _answering(question) as found:
             text, cut = shown(found, question.form, names, question.rows)
-        sys.stderr.write(_remark(question))
+        _say(_remark(question))
     except SelfconfError as error:
-        sys.stderr.write(str(error))
+        _say(str(error))
         return _UNREACHED if isinstance(error, NetworkError) else _REFUSED
     sys.stdout.buffer.write(text.encode())
     return _CUT if cut else 0
+
+
+def _say(sentence: str) -> None:
+    sys.stderr.buffer.write(sentence.encode(errors="backslashreplace"))
 
 
 @contextlib.contextmanager

@@ -53,7 +53,8 @@ def run(given: argparse.Namespace) -> int:
         )
     if importlib.util.find_spec("pybullet") is None:
         raise InstallationError(
-            "PyBullet is missing; it has wheels for Python 3.10 and 3.11 on Linux x86_64: pip install 'selfconf[sim]'"
+            "PyBullet is missing; it has wheels for Python 3.10 and 3.11 on Linux x86_64; "
+            "in the checkout, pip install '.[sim]'"
         )
     if given.gui and not _display(os.environ.get("DISPLAY", "")):
         raise InstallationError("--gui opens a window, and there is no display; leave it out, the pictures need none")

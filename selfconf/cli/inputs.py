@@ -7,13 +7,12 @@ import gc
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import lru_cache
 from pathlib import Path
 
-from selfconf import entailment, library
+from selfconf import entailment, files, library
 from selfconf.cli.terminal import show
 from selfconf.configurator.compose import Composer, Strategy
-from selfconf.errors import AuthorError, BindingError, TemplateError, TurtleError
+from selfconf.errors import AuthorError, BindingError, TemplateError
 from selfconf.model.diagnostic import Severity
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
@@ -25,7 +24,6 @@ from selfconf.rdf.pieces import Pieces
 from selfconf.rdf.templates import TaskDocument
 from selfconf.rdf.turtle import Document
 
-BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 STDIN = Path("-")
 """What stands for standard input where a file can be given."""
 
@@ -187,7 +185,7 @@ def read_advertisements(paths: Sequence[Path]) -> Ecology:
     pieces = Pieces()
     with collector_at_rest():
         for path in turtle_files(paths):
-            good, bad = stream.read(_bytes(path), _name(path), _base(path), pieces)
+            good, bad = stream.read(_text(path), _name(path), files.base(path), pieces)
             for malformed in bad:
                 complain(f"{_name(path)}: left out {malformed.component}: {malformed.problems[0]}")
             for advertisement in good:
@@ -222,7 +220,7 @@ def turtle_files(paths: Sequence[Path]) -> list[Path]:
     for path in paths:
         if path != STDIN:
             existing(path)
-        found.update(path.rglob("*.ttl") if path.is_dir() else [path])
+        found.update(files.within(path))
     return sorted(found, key=Path.absolute)
 
 
@@ -238,7 +236,7 @@ def parse_file(path: Path, predicates: Iterable[IRI] | None = None) -> Document:
 
     Raises AuthorError for what is not there, cannot be read, or is not Turtle.
     """
-    return turtle.parse(_bytes(path), _name(path), _base(path), predicates)
+    return turtle.parse(_text(path), _name(path), files.base(path), predicates)
 
 
 def _name(path: Path) -> str:
@@ -246,27 +244,6 @@ def _name(path: Path) -> str:
     return "<stdin>" if path == STDIN else str(path)
 
 
-def _base(path: Path) -> str:
-    """The IRI that relative IRIs in a file are relative to."""
-    whole = _resolved(path.parent.absolute()) / path.name
-    return (whole.resolve() if whole.is_symlink() else whole).as_uri()
-
-
-@lru_cache(maxsize=64)
-def _resolved(folder: Path) -> Path:
-    """A folder without links; what a thousand files in it have in common."""
-    return folder.resolve()
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        octets = sys.stdin.buffer.read() if path == STDIN else path.read_bytes()
-    except IsADirectoryError:
-        raise AuthorError(f"{path} is a folder; a file is needed here") from None
-    except FileNotFoundError:
-        raise AuthorError(f"there is no file or folder {path}") from None
-    except OSError as error:
-        raise AuthorError(f"cannot read {path}: {error.strerror}") from None
-    if b"\0" in octets:
-        raise TurtleError("not Turtle: this is a binary file", file=_name(path))
-    return octets.removeprefix(BYTE_ORDER_MARK)
+def _text(path: Path) -> bytes:
+    """What is to be parsed of a file, or of standard input."""
+    return files.text(sys.stdin.buffer.read() if path == STDIN else files.octets(path), _name(path))

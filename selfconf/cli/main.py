@@ -14,11 +14,13 @@ from collections.abc import Sequence
 from types import ModuleType
 from typing import NoReturn
 
-from selfconf.cli.terminal import guard, show, silence
-from selfconf.errors import SelfconfError
+from selfconf.cli.terminal import for_programs, guard, show, silence
+from selfconf.errors import SelfconfError, reason
 
 COMMANDS = ("new", "validate", "partition", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
 INTERRUPTED = 130
+FOR_PEOPLE = ("text", "table")
+"""The formats that no program reads."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -73,6 +75,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given, unknown = parser([name for name in typed[:1] if name in COMMANDS] or COMMANDS).parse_known_args(typed)
     if unknown:
         given.misused(f"unrecognized arguments: {' '.join(unknown)}")
+    if getattr(given, "format", "text") not in FOR_PEOPLE:
+        for_programs()
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)
     code: int = 0
     try:
@@ -90,7 +94,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         if given.debug:
             traceback.print_exc()
-        show(f"selfconf {given.command}: {error}", sys.stderr)
+        show(f"selfconf {given.command}: {reason(error)}", sys.stderr)
         silence(sys.stdout)
         return 2
     except KeyboardInterrupt:

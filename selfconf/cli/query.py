@@ -21,7 +21,7 @@ from selfconf.cli.inputs import (
 )
 from selfconf.cli.live import add_connection_arguments, ask, connected, discover
 from selfconf.cli.sources import one_ecology
-from selfconf.errors import AuthorError, TurtleError
+from selfconf.errors import AuthorError, TurtleError, reason
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.dataset import PREFIXES, Dataset
@@ -105,7 +105,9 @@ def _text(given: str) -> str:
     if given.endswith(".rq") or (len(given) < 255 and "\n" not in given and Path(given).is_file()):
         try:
             return existing(Path(given)).read_text(encoding="utf-8-sig")
-        except (OSError, UnicodeDecodeError) as error:
+        except OSError as error:
+            raise AuthorError(f"cannot read {reason(error)}") from None
+        except UnicodeDecodeError as error:
             raise AuthorError(f"cannot read {given}: {error}") from None
     return given
 

@@ -64,6 +64,15 @@ def guard() -> None:
                 setattr(sys, name, Terminal(stream))
 
 
+def for_programs() -> None:
+    """Standard output holds what programs read, such as JSON or Turtle: that is UTF-8, whatever text is here.
+
+    A terminal keeps its encoding; what it does not have is for people to look at.
+    """
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(encoding="utf-8", errors="backslashreplace")
+
+
 def show(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
     """Print a result, or what else there is to say, to a reader who may have seen enough."""
     stream = stream or sys.stdout

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from selfconf import library
+from selfconf import files, library
 from selfconf.cli.close_looks import Remembered, shared
 from selfconf.cli.reports import FORMATS, text
 from selfconf.cli.terminal import show
@@ -22,7 +22,7 @@ LARGEST = 64 << 20
 """A file of more bytes is not read."""
 NAME = "validate"
 HELP = "check advertisements, templates, tasks and ontologies"
-EXAMPLE = "selfconf validate advertisements/ navigate.ttl --ontology my-robots.ttl"
+EXAMPLE = """  selfconf validate examples/navigate.ttl examples/peis-home --ontology ontology/peis-home.ttl"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -153,7 +153,7 @@ def _files(given: str) -> Iterator[str]:
     if given == "-" or not path.is_dir():
         yield given
     else:
-        yield from sorted(str(file) for file in path.rglob("*.ttl") if file.is_file())
+        yield from map(str, files.within(path))
 
 
 def _read(name: str) -> Source:

@@ -296,6 +296,14 @@ CODES: tuple[Code, ...] = (
         ),
     ),
     Code(
+        "SC-T15", "A role sets the parameters of one type to one value.",
+        "A parameter of a component has one value at a time. For two values, two components play two roles.",
+        f'{_PAIR}\n:source sc:sets [ sc:parameterType rob:Station ; sc:value "89.3" ] ,\n'
+        '    [ sc:parameterType rob:Station ; sc:value "99.9" ] .',
+        f'{_PAIR}\n:source sc:sets [ sc:parameterType rob:Station ; sc:value "89.3" ] .',
+        ("SettingsAgree",),
+    ),
+    Code(
         "SC-K01", "A task has exactly one template, given by its IRI.",
         "A task is a template with bindings.",
         ":music a sc:Task .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
@@ -537,6 +545,15 @@ CODES: tuple[Code, ...] = (
         ':room a sc:Parameter ; sc:name "room" .',
         f'{_PAIR}\n:radio sc:parameter :room .\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n'
         ':room a sc:Parameter ; sc:name "room" .',
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L16", "A parameter does not stand in the text of a query.",
+        "A value takes the place of a parameter where it is a node of the shape; the text of a query is taken as it "
+        "stands, so that there the parameter is only a thing of that name.",
+        f'{_BOUND}:sink sh:sparql [ sh:select """SELECT $this WHERE {{\n'
+        '    FILTER NOT EXISTS { $this ?property <https://example.org/home#room> } }""" ] .',
+        _BOUND.rstrip(),
         severity=Severity.WARNING,
     ),
 )  # fmt: skip

@@ -7,6 +7,7 @@ component types and the properties. Operational parameters set or tune the runni
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from decimal import Decimal
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -48,6 +49,7 @@ class Ports(NamedTuple):
 
 
 NO_PORTS = Ports()
+NO_PREFERENCE = Decimal(0)
 
 
 @lru_cache(maxsize=10_000)
@@ -73,7 +75,7 @@ class Profile:
     properties: tuple[tuple[IRI, Term], ...] = ()
     ports: Ports = NO_PORTS
     parameters: tuple[OperationalParameter, ...] = ()
-    preference: float = 0.0
+    preference: Decimal = NO_PREFERENCE
     command: str | None = None
     place: Place | None = field(default=None, compare=False)
 
@@ -96,6 +98,6 @@ class Profile:
         return tuple(value for key, value in self.properties if key == predicate)
 
 
-def candidate_order(profile: Profile) -> tuple[float, str]:
+def candidate_order(profile: Profile) -> tuple[Decimal, str]:
     """The order in which candidates are tried: higher preference first, then by IRI, never by time of arrival."""
-    return -profile.preference, profile.component
+    return profile.preference.copy_negate(), profile.component  # a minus sign would round

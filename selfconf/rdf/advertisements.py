@@ -15,8 +15,9 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
 
-from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile, shared_ports
+from selfconf.model.profile import NO_PREFERENCE, Input, OperationalParameter, Output, Place, Profile, shared_ports
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
@@ -218,15 +219,18 @@ class _Reader:
         if problem not in self.problems:
             self.problems.append(problem)
 
-    def _preference(self) -> float:
+    def _preference(self) -> Decimal:
         values = self.document.values(self.component, SC.preference)
         if not values:
-            return 0.0
+            return NO_PREFERENCE
         number = _number(values[0])
         if len(values) > 1 or number is None:
             self._problem("sc:preference is one number, if it is there at all")
-            return 0.0
-        return number
+            return NO_PREFERENCE
+        try:
+            return Decimal(str(values[0]))  # as it is written, so that of two the higher is the higher
+        except InvalidOperation:
+            return Decimal(number)  # the exponent is beyond all bounds
 
     def _rate(self, port: Term, name: str) -> float | None:
         rates = self.document.values(port, SC.rate)
@@ -249,9 +253,9 @@ class _Reader:
             self._problem('a component has at most one sc:grounding, such as [ sc:command "..." ]')
         elif commands:
             command = commands[0]
-            if isinstance(command, Literal) and command.datatype == STRING and command.lexical:
+            if isinstance(command, Literal) and command.datatype == STRING and command.lexical.strip():
                 return command.lexical
-            self._problem("sc:command is a string that is not empty, without a language")
+            self._problem("sc:command is a string that is not blank, without a language")
         return None
 
 

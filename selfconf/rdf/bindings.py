@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Iterable, Mapping
+from functools import partial
 
 import pyoxigraph as ox
 import rdflib
@@ -16,9 +18,10 @@ from selfconf.rdf.shacl import violations
 from selfconf.rdf.shape_terms import LITERAL
 from selfconf.rdf.templates import TaskDocument, shape_statements
 from selfconf.rdf.turtle import Document
-from selfconf.rdf.vocabulary import SH, TYPE
+from selfconf.rdf.vocabulary import SH, TYPE, XSD
 
 _CURIE = re.compile(r"([A-Za-z][\w.-]*)?:[^\s\"'<>()]*")
+_LOCAL = re.compile(r"[A-Za-z]\w*")
 _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
 _NUMBER_OR_BOOLEAN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|true|false")
 
@@ -101,10 +104,32 @@ def _rigid(given: TaskDocument, parameter: Parameter) -> IRI | None:
 
 def _check(parameter: Parameter, value: Term, document: Document) -> None:
     for problem in misfits(parameter, (value,), document).values():
+        name = partial(_curie, prefixes=document.prefixes)
+        said = value.turtle(name) if isinstance(value, Literal) else f"<{value}>"
         hint = ""
         if isinstance(value, Literal) and "IRI" in problem:
             hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
-        raise BindingError(f"{show(value)} cannot stand for the parameter {parameter.name!r}: {_plain(problem)}{hint}")
+        elif (meant := _meant(parameter, value, document)) is not None:
+            hint = f"; write --bind {parameter.name}={shlex.quote(meant.turtle(name))}"
+        raise BindingError(f"{said} cannot stand for the parameter {parameter.name!r}: {_plain(problem)}{hint}")
+
+
+def _meant(parameter: Parameter, value: Term, document: Document) -> Literal | None:
+    """The literal of the datatype that a parameter asks for, if it would do instead of one of another."""
+    datatype = document.value(parameter.iri, SH.datatype)
+    if not isinstance(value, Literal) or not isinstance(datatype, IRI) or value.datatype in (datatype, XSD.double):
+        return None
+    whole = datatype == XSD.decimal and value.datatype == XSD.integer
+    meant = Literal(f"{value.lexical}.0" if whole else value.lexical, datatype)
+    return None if misfits(parameter, (meant,), document) else meant
+
+
+def _curie(iri: IRI, prefixes: Mapping[str, str]) -> str:
+    """An IRI as the command line takes it."""
+    for name, base in prefixes.items():
+        if iri.startswith(base) and _LOCAL.fullmatch(iri[len(base) :]):
+            return f"{name}:{iri[len(base) :]}"
+    return f"<{iri}>"
 
 
 def misfits(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
@@ -130,13 +155,6 @@ def misfits(parameter: Parameter, values: Iterable[Term], document: Document) ->
         subjects.add((rdflib.URIRef(one), rdflib.URIRef(probe), turtle.rdflib_term(value)))
     found = violations(subjects, shapes, probe_shape, list(probes), document.source)
     return {value: found[one][0].message for one, value in probes.items() if one in found}
-
-
-def show(value: Term) -> str:
-    """A term as an author would write it."""
-    if isinstance(value, IRI):
-        return f"<{value}>"
-    return f'"{value}"'
 
 
 def _plain(message: str) -> str:

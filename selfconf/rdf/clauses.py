@@ -6,14 +6,16 @@ a subject. Such a line with its objects is a *clause* here. Equal text means equ
 from a clause alone is worked out once.
 
 Blank nodes become part of the clause that leads to them: `sc:hasInput [ sc:name "pose" ; ... ]`, as their author
-wrote them. That is sound where every blank node of a document is written in brackets, so that exactly one statement
-leads to it. A document that gives labels to blank nodes, has lists, or leaves any blank node over, is not folded.
+wrote them. That is sound where every blank node is written in brackets or as a list, so that exactly one statement
+leads to it. Labels of blank nodes have become names before (`selfconf.rdf.pieces`).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from decimal import Decimal
 from itertools import islice
 from operator import attrgetter
 
@@ -23,7 +25,7 @@ from selfconf.model.profile import Input, OperationalParameter, Output, Ports, P
 from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import advertisements, turtle
 from selfconf.rdf.advertisements import STRUCTURE, allowed
-from selfconf.rdf.vocabulary import FIRST, RDF, REST, SC, TYPE, XSD
+from selfconf.rdf.vocabulary import FIRST, NIL, RDF, REST, SC, TYPE, UNIT, XSD
 
 CHUNK = 512
 """Triples per piece of text: the text of so many stays in the processor's cache."""
@@ -33,10 +35,18 @@ _NAME = attrgetter("name")
 _SPOKEN_FOR = IRI("urn:selfconf:component")
 _KIND = IRI("urn:selfconf:kind")
 _NOTHING = Profile(_SPOKEN_FOR)
-_BEYOND = re.compile(f"<({SC.Component}|{FIRST}|{REST})>")
-"""What a blank node may not say if it is to be folded: that it is a component itself, or a cell of a list."""
+_NO_TYPES: frozenset[IRI] = frozenset()
+_BEYOND = f"<{SC.Component}>"
+"""What a blank node may not say if it is to be folded: that it is a component itself."""
+_DEPTH = 30
+"""How deep blank nodes may lie in blank nodes."""
+LINKS = frozenset((SC.hasInput, SC.hasOutput, SC.hasParameter, SC.grounding, SC.rate))
+"""What leads from a component to what else its profile is made of."""
 _STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
-_GROUNDING = f"<{SC.grounding}>"
+_SILENT = {f"<{predicate}>" for predicate in (SC.name, SC.signalType)}
+"""What says nothing of a component itself."""
+_CELL = [f"<{FIRST}>", f"<{REST}>"]
+_OBJECT = re.compile(r'<[^<>]*>|"(?:[^"\\]|\\.)*"(?:@[A-Za-z0-9-]+|\^\^<[^<>]*>)?|[^\s",<>]+')
 _SIMPLE = re.compile(
     r"<(?P<predicate>[^<>]*)> (?:"
     r"<(?P<iri>[^<>]*)>"
@@ -45,31 +55,58 @@ _SIMPLE = re.compile(
     r"|(?P<decimal>[+-]?[0-9]*\.[0-9]+)"
     r")"
 )
+_LINK = {f"<{predicate}>" for predicate in LINKS}
+_LINKS = re.compile(r"<[^<>]*>(?: , <[^<>]*>)*")
+_KINDS = r"a <[^<>]*>(?: , <[^<>]*>)*"
+_VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)?|[+-]?[0-9]+|[+-]?[0-9]*\.[0-9]+)'
+_NAMED, _TYPED = f"<{SC.name}> ", f"<{SC.base}(?P<kind>signalType|parameterType)> "
+_RATED = f"<{SC.rate}> \\[ <{SC.value}> (?P<rate>[0-9]{{1,9}}(?:\\.[0-9]{{1,9}})?){NEXT}<{SC.unit}> <{UNIT.HZ}> \\]"
 _PORT = re.compile(
-    rf"<{SC.base}(?P<link>hasInput|hasOutput|(?P<set>hasParameter))> \["
-    rf" (?:a <{SC.base}(?:Input|Output|OperationalParameter)>{NEXT})?"
-    rf'<{SC.name}> "(?P<name>[^"\\]+)"{NEXT}<{SC.base}(?(set)parameterType|signalType)> <(?P<type>[^<>]*)> \]'
+    rf"<{SC.base}(?P<link>hasInput|hasOutput|hasParameter)> \[ "
+    rf'(?:(?:{_KINDS}|{_NAMED}"(?P<name>[^"\\]+)"|{_TYPED}<(?P<type>[^<>]*)>|{_RATED}|<[^<>]*> {_VALUE})'
+    rf"(?:{NEXT}| (?=\])))+\]"
 )
+"""A port in brackets; it is well-formed if name and type are there once, and a rate at most."""
+_RATE = f"<{SC.rate}> "
+_NUMBER = re.compile(rf"<{SC.preference}> (?P<number>[+-]?[0-9]{{1,9}}(?:\.[0-9]{{1,9}})?)")
+_COMMAND = re.compile(rf'<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?<{SC.command}> "(?P<command>[^"\\]+)" \]')
 _TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
 
 
-class Clause:
+class Clause(ABC):
     """A predicate with its objects, as Turtle: what one or many components say."""
 
-    __slots__ = ("bracketed", "keyed", "part", "predicate", "slot", "text", "types")
+    __slots__ = ("keyed", "part", "slot")
+    types: frozenset[IRI] = frozenset()
+    """The types that it gives."""
 
-    def __init__(self, predicate: str, text: str) -> None:
-        self.predicate, self.text = predicate, text
-        self.bracketed = text.endswith("]")
-        """Whether its object is a blank node."""
+    def __init__(self) -> None:
         self.part: Profile | None = None
         """What it adds to a profile, once that is known."""
-        self.keyed: list[tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]] = []
+        self.keyed: Sequence[tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]] = ()
         """Its properties behind what properties are ordered by, once that is known."""
-        self.types: frozenset[IRI] = frozenset()
-        """The types that it gives."""
         self.slot: object = self
         """What a component can have only one of: a port of that name, a preference."""
+
+    @property
+    @abstractmethod
+    def predicate(self) -> str:
+        """Its predicate, in angle brackets, or `a`."""
+
+    @property
+    @abstractmethod
+    def text(self) -> str:
+        """All of it."""
+
+    @property
+    @abstractmethod
+    def bracketed(self) -> bool:
+        """Whether its object is a blank node of its own."""
+
+    @property
+    def links(self) -> Sequence[str]:
+        """The names of ports, or of a grounding, that are described elsewhere."""
+        return links(self.predicate, self.text)
 
     @property
     def properties(self) -> tuple[tuple[IRI, Term], ...]:
@@ -80,8 +117,8 @@ class Clause:
     def read(self) -> Profile:
         """What it adds to a profile."""
         if self.part is None:
-            port = _PORT.fullmatch(self.text)
-            self.part = _port(port) if port else self.carefully()[0]
+            port = port_of(self.text)
+            self.part = _ported(port) if port else self.carefully()[0]
         return self.part
 
     def carefully(self) -> tuple[Profile, bool]:
@@ -91,14 +128,49 @@ class Clause:
         return profile or Profile(_SPOKEN_FOR), bool(problems)
 
 
-def _port(found: re.Match[str]) -> Profile:
-    """The part of a clause with one port, or one operational parameter, that says nothing but name and type."""
+def bracketed(predicate: str, said: Iterable[str]) -> str:
+    """The text of a clause whose object is a blank node that says something."""
+    return f"{predicate} [ {NEXT.join(said)} ]"
+
+
+def links(predicate: str, text: str) -> Sequence[str]:
+    """The names of ports, or of a grounding, to which a clause links, if it does that alone."""
+    said = text[len(predicate) + 1 :]
+    return list(dict.fromkeys(said.split(" , "))) if predicate in _LINK and _LINKS.fullmatch(said) else ()
+
+
+def port_of(text: str) -> re.Match[str] | None:
+    """A clause with one port, or one operational parameter, that is in order and of a common form."""
+    if text.count(_NAMED) != 1 or text.count("Type> <") != 1 or text.count(_RATE) > 1:
+        return None
+    found = _PORT.fullmatch(text)
+    if found is None or found["name"] is None or found["type"] is None or found["type"].startswith(turtle.SKOLEM):
+        return None
+    if (found["kind"] == "parameterType") != (found["link"] == "hasParameter"):
+        return None
+    if _RATE in text and (found["rate"] is None or found["link"] != "hasOutput" or not float(found["rate"])):
+        return None
+    return found
+
+
+def _ported(found: re.Match[str]) -> Profile:
+    """The part of such a clause."""
     name, type_ = found["name"], IRI(found["type"])
     if found["link"] == "hasInput":
         return Profile(_SPOKEN_FOR, ports=Ports(inputs=(Input(name, type_),)))
     if found["link"] == "hasOutput":
-        return Profile(_SPOKEN_FOR, ports=Ports(outputs=(Output(name, type_),)))
+        rate = found["rate"] and float(found["rate"])
+        return Profile(_SPOKEN_FOR, ports=Ports(outputs=(Output(name, type_, rate or None),)))
     return Profile(_SPOKEN_FOR, parameters=(OperationalParameter(name, type_),))
+
+
+def setting_of(text: str) -> Profile | None:
+    """The part of a clause with a preference or a command, in order and of a common form."""
+    command = _COMMAND.fullmatch(text)
+    if command is not None and command["command"].strip():
+        return Profile(_SPOKEN_FOR, command=command["command"])
+    number = _NUMBER.fullmatch(text)
+    return None if number is None else Profile(_SPOKEN_FOR, preference=Decimal(number["number"]))
 
 
 def _property(text: str) -> tuple[IRI, Term] | None:
@@ -109,7 +181,7 @@ def _property(text: str) -> tuple[IRI, Term] | None:
     predicate, iri, lexical, datatype, language, integer, decimal = found.groups()
     value: Term
     if iri is not None:
-        value = IRI(iri)
+        value = turtle.resource(iri)
     elif lexical is None:
         value = Literal(integer, XSD.integer) if integer else Literal(decimal, XSD.decimal)
     elif language:
@@ -117,6 +189,20 @@ def _property(text: str) -> tuple[IRI, Term] | None:
     else:
         value = Literal(lexical, IRI(datatype) if datatype else STRING)
     return IRI(predicate), value
+
+
+class Written(Clause):
+    """A clause as it was written."""
+
+    __slots__ = ("bracketed", "predicate", "text", "types")
+    bracketed: bool
+    predicate: str
+    text: str
+
+    def __init__(self, predicate: str, text: str) -> None:
+        super().__init__()
+        self.predicate, self.text, self.types = predicate, text, _NO_TYPES
+        self.bracketed = text.endswith(("]", ")"))
 
 
 class BeyondFoldingError(Exception):
@@ -135,9 +221,9 @@ class Clauses(dict[str, Clause]):
 
     def __missing__(self, text: str) -> Clause:
         predicate, _, said = text.partition(" ")
-        if said.startswith("[") and _BEYOND.search(said):
+        if said[0] in "[(" and _BEYOND in said:
             raise BeyondFoldingError
-        clause = self[text] = Clause(self._predicates.setdefault(predicate, predicate), text)
+        clause = self[text] = Written(self._predicates.setdefault(predicate, predicate), text)
         if predicate == "a":
             self._types(clause)
         elif predicate in _STRUCTURE:
@@ -156,8 +242,8 @@ class Clauses(dict[str, Clause]):
             said[said.index(kinds[0])] = self["a " + " , ".join(clause.text[len("a ") :] for clause in kinds)]
             said[:] = [clause for clause in said if clause not in kinds]
 
-    def _types(self, clause: Clause) -> None:
-        if _TYPES.fullmatch(clause.text):
+    def _types(self, clause: Written) -> None:
+        if _TYPES.fullmatch(clause.text) and turtle.SKOLEM not in clause.text:
             types: set[Term] = {IRI(type_) for type_ in clause.text[len("a <") : -1].split("> , <")}
         else:
             types = set(turtle.parse(f"<{_SPOKEN_FOR}> {clause.text}{END}", "").values(_SPOKEN_FOR, TYPE))
@@ -167,27 +253,49 @@ class Clauses(dict[str, Clause]):
             self.suspects.add(clause)
 
     def _structure(self, clause: Clause, predicate: str) -> None:
-        port = _PORT.fullmatch(clause.text)
+        port = port_of(clause.text)
+        if port is None and clause.links:
+            self.suspects.add(clause)
+            return
+        names: list[str] = []
         if port is not None:
             names = [port["name"]]
+        elif predicate in _SILENT:
+            clause.part = _NOTHING
         else:
-            clause.part, faulty = clause.carefully()
+            clause.part, faulty = setting_of(clause.text), False
+            if clause.part is None:
+                clause.part, faulty = clause.carefully()
             part = clause.part
             names = [*map(_NAME, part.inputs), *map(_NAME, part.outputs), *map(_NAME, part.parameters)]
-            elsewhere = predicate == _GROUNDING and not clause.bracketed  # what it says is said of a thing with a name
-            if faulty or elsewhere or len(names) > 1:
+            if faulty or len(names) > 1:
                 self.suspects.add(clause)
-        clause.slot = self._slots.setdefault((predicate, *names), object())  # compared by identity: quicker
+        clause.slot = self.slot(predicate, *names)
+
+    def slot(self, predicate: str, *names: str) -> object:
+        """What only one clause of a component can have; compared by identity, which is quicker."""
+        return self._slots.setdefault((predicate, *names), object())
 
 
 def fold(text: bytes, source: str, base: str | None, clauses: Clauses) -> dict[str, list[Clause]] | None:
-    """What a document says of each named subject, blank nodes folded into the clauses that lead to them.
+    """What a document without labels of blank nodes says of each named subject, blank nodes folded into the clauses.
 
-    None where that cannot be done: labelled blank nodes, lists, blank nodes that nobody leads to, or that are
-    components. Raises TurtleError.
+    None where that cannot be done: blank nodes that nobody leads to, or that are components. Raises TurtleError.
     """
-    if b"_:" in text:
+    try:
+        try:
+            subjects = _soon(text, base, clauses)
+        except BeyondFoldingError:
+            subjects = None
+        return _late(text, base, clauses) if subjects is None else subjects
+    except (SyntaxError, MemoryError) as error:
+        raise turtle.not_turtle(error, source) from None
+    except BeyondFoldingError:
         return None
+
+
+def _soon(text: bytes, base: str | None, clauses: Clauses) -> dict[str, list[Clause]] | None:
+    """The same while reading; None where what brackets say does not come just before or after them, as in lists."""
     triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
     subjects: dict[str, list[Clause]] = {}
     nodes: dict[str, str] = {}
@@ -195,51 +303,100 @@ def fold(text: bytes, source: str, base: str | None, clauses: Clauses) -> dict[s
     said: list[Clause] = []
     add, last = said.append, ""
     predicate = node = content = ""
-    try:
-        # Every microsecond in this loop is one twentieth of what an advertisement costs.
-        while piece := ox.serialize(islice(triples, CHUNK), format=ox.RdfFormat.TURTLE):
-            for lines in piece[: -len(END)].decode().split(END):
-                subject, _, rest = lines.partition(" ")
-                if subject != last:
-                    if subject[0] == "_":
-                        if "_:" in rest:
-                            rest = NEXT.join([_folded(line, take) for line in rest.split(NEXT)])
-                        if subject == node:  # a string at the end of the brackets comes after them
-                            content = f"{content}{NEXT}{rest}" if content else rest
-                            line = f"{predicate} [ {content} ]"
-                            said[-1] = known(line) or clauses[line]
-                        else:
-                            nodes[subject] = f"{nodes[subject]}{NEXT}{rest}" if subject in nodes else rest
-                        continue
-                    last = subject
-                    said = subjects[subject] if subject in subjects else subjects.setdefault(subject, [])
-                    add = said.append
-                for line in rest.split(NEXT):
-                    clause = known(line)
+    # Every microsecond in this loop is one twentieth of what an advertisement costs.
+    while piece := ox.serialize(islice(triples, CHUNK), format=ox.RdfFormat.TURTLE):
+        for lines in piece[: -len(END)].decode().split(END):
+            subject, _, rest = lines.partition(" ")
+            if subject != last:
+                if subject[0] == "_":
+                    if "_:" in rest:
+                        rest = NEXT.join([_folded(line, take) for line in rest.split(NEXT)])
+                    if subject == node:  # a string at the end of the brackets comes after them
+                        content = f"{content}{NEXT}{rest}" if content else rest
+                        line = f"{predicate} [ {content} ]"
+                        said[-1] = known(line) or clauses[line]
+                    else:
+                        nodes[subject] = f"{nodes[subject]}{NEXT}{rest}" if subject in nodes else rest
+                    continue
+                last = subject
+                said = subjects[subject] if subject in subjects else subjects.setdefault(subject, [])
+                add = said.append
+            for line in rest.split(NEXT):
+                clause = known(line)
+                if clause is None:
+                    if "_:" in line and _leads(line):
+                        predicate, _, node = line.partition(" ")
+                        content = take(node, "")
+                        line = f"{predicate} [ {content} ]"
+                        clause = known(line)
                     if clause is None:
-                        if "_:" in line:
-                            predicate, _, node = line.partition(" ")
-                            content = take(node, "")
-                            if not content and " " in node:
-                                return None  # several objects in one line
-                            line = f"{predicate} [ {content} ]"
-                            clause = known(line)
-                        if clause is None:
-                            clause = clauses[line]
-                    add(clause)
-    except SyntaxError as error:
-        raise turtle.not_turtle(error, source) from None
-    except BeyondFoldingError:
-        return None
+                        clause = clauses[line]
+                add(clause)
     return None if nodes else subjects
+
+
+def _leads(line: str) -> bool:
+    """Whether the object of a clause is a blank node. Raises BeyondFoldingError if it has others besides."""
+    said = line[line.index(" ") + 1 :]
+    if said.startswith("_:") and " " not in said:
+        return True
+    if any(found.startswith("_:") for found in _OBJECT.findall(said)):
+        raise BeyondFoldingError
+    return False
 
 
 def _folded(line: str, take: Callable[[str], str]) -> str:
     """A clause of a blank node, with what its own blank node says in brackets."""
-    if "_:" not in line:
+    if "_:" not in line or not _leads(line):
         return line
     predicate, _, node = line.partition(" ")
     try:
         return f"{predicate} [ {take(node)} ]"
     except KeyError:
         raise BeyondFoldingError from None
+
+
+def _late(text: bytes, base: str | None, clauses: Clauses) -> dict[str, list[Clause]]:
+    """The same once all is read, with lists, and each blank node of several objects in a clause of its own."""
+    triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
+    lines: dict[str, list[str]] = {}
+    while piece := ox.serialize(islice(triples, CHUNK), format=ox.RdfFormat.TURTLE):
+        for block in piece[: -len(END)].decode().split(END):
+            subject, _, rest = block.partition(" ")
+            lines.setdefault(subject, []).extend(rest.split(NEXT))
+    names = [subject for subject in lines if subject[0] != "_"]
+    subjects = {name: [clauses[line] for line in _nested(lines.pop(name), lines, 0)] for name in names}
+    if lines:
+        raise BeyondFoldingError
+    return subjects
+
+
+def _nested(said: Iterable[str], lines: dict[str, list[str]], depth: int) -> Iterator[str]:
+    """Clauses with what blank nodes say in the place of these, which are taken out of `lines`."""
+    if depth > _DEPTH:
+        raise BeyondFoldingError
+    for line in said:
+        predicate, _, objects = line.partition(" ")
+        if "_:" not in objects:
+            yield line
+            continue
+        for found in _OBJECT.findall(objects):
+            yield f"{predicate} {_written(found, lines, depth)}"
+
+
+def _written(found: str, lines: dict[str, list[str]], depth: int) -> str:
+    """An object; a blank node as a list, where it is the first cell of one, or in brackets."""
+    if not found.startswith("_:"):
+        return found
+    members: list[str] = []
+    at = found
+    while [line.partition(" ")[0] for line in sorted(lines.get(at, ()))] == _CELL:
+        first, rest = sorted(lines.pop(at))
+        (member,) = _nested([first], lines, depth + 1)
+        members.append(member.partition(" ")[2])
+        at = rest.partition(" ")[2]
+    if not members:
+        return bracketed("", _nested(lines.pop(at, ()), lines, depth + 1)).lstrip()
+    if at != f"<{NIL}>":
+        raise BeyondFoldingError
+    return f"( {' '.join(members)} )"

@@ -14,6 +14,7 @@ from selfconf.errors import QueryError
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.queries import only_reads, says
+from selfconf.rdf.query_mistakes import mistake
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import PROV, RDF, RDFS, ROB, SC, SH, XSD
 from selfconf.rdf.write import ox_term
@@ -58,11 +59,8 @@ class Dataset:
     def query(self, text: str, prefixes: Mapping[str, str] | None = None) -> Answer:
         """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it."""
         only_reads(text)
+        lent = {**PREFIXES, **(prefixes or {})}
         try:
-            return self._store.query(
-                text,
-                prefixes={**PREFIXES, **(prefixes or {})},
-                use_default_graph_as_union=not says(text, "FROM"),
-            )
+            return self._store.query(text, prefixes=lent, use_default_graph_as_union=not says(text, "FROM"))
         except (SyntaxError, ValueError, OSError) as error:
-            raise QueryError(f"not a SPARQL query: {' '.join(str(error).split())}") from None
+            raise QueryError(f"not a SPARQL query: {mistake(text, str(error), lent)}") from None

@@ -26,6 +26,7 @@ from selfconf.rdf.flow_lints import idle_loops, starving_inputs
 from selfconf.rdf.screening import TERM_POSITIONS
 from selfconf.rdf.template_lints import (
     impossible_roles,
+    queried_parameters,
     typed_roles,
     unlisted_parameters,
     unlisted_roles,
@@ -164,6 +165,7 @@ TEMPLATES = (
     typed_roles,
     unused_parameters,
     unlisted_parameters,
+    queried_parameters,
     impossible_roles,
     idle_loops,
     starving_inputs,

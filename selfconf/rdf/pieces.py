@@ -2,25 +2,30 @@
 
 Recognising text that has been read before takes a hundredth of the time of reading it. So a document is cut, by one
 regular expression, behind each subject and at the semicolons and full stops between its clauses; only the pieces that
-are new are read, each under a subject of its own, all in one call (`selfconf.rdf.clauses.fold`).
+are new are read, each under a subject of its own, all in one call (`selfconf.rdf.clauses.fold`). Of these, many differ
+from others in nothing but strings and digits: labels, serial numbers, coordinates, names of ports. Their common form
+is read once, and filled in for each (`selfconf.rdf.forms`).
 
 Cutting must know which semicolons and full stops separate, so it knows strings, IRIs, comments and brackets: each
 piece consists of whole tokens, with balanced brackets. Therefore the pieces, one by one, say what the document says,
-and none can reach into the next; if one is no clause, then the document is no Turtle. Whatever the expression does not
-follow (directives further down, escapes in names, deep brackets), and whatever turns out to be wrong, is left
+and none can reach into the next; if one is no clause, then the document is no Turtle. Labels of blank nodes hold in the
+whole document: they become names that no other document has (RDF 1.1 Concepts, section 3.5). Whatever the expression
+does not follow (directives further down, escapes in names, deep brackets), and whatever turns out to be wrong, is left
 to `fold`, which reads the whole document and knows the lines and columns. So is a document in which most is new.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
-from selfconf.rdf.clauses import Clause, Clauses, fold
+from selfconf.rdf.clauses import BeyondFoldingError, Clause, Clauses, fold
+from selfconf.rdf.forms import Forms, shaped
+from selfconf.rdf.turtle import SKOLEM
 
 WINDOW = 1 << 17
 """Octets that are cut in one call: their pieces stay in the processor's cache."""
@@ -54,12 +59,23 @@ _CUT = re.compile(
 )
 _BEGIN = re.compile(_SPACE + rb"(?:[^\s#<>\"'\[\]();,\\]+|<[^<>\"{}|^`\\\s]*>)(?=\s)")
 _NAMED = re.compile(rb"%b((?:[A-Za-z][\w-]*)?):((?:\w[\w-]*)?)" % _SPACE)
-_ABSOLUTE = re.compile(rb"%b(<https?://[A-Za-z][\w-]*(?:\.[A-Za-z][\w-]*)*(?:/(?:\w[\w.-]*)?)*(?:#[\w.-]*)?>)" % _SPACE)
+_ABSOLUTE = re.compile(
+    rb"%b(<(?:https?://[A-Za-z][\w-]*(?:\.[A-Za-z][\w-]*)*(?:/(?:\w[\w.-]*)?)*(?:#[\w.-]*)?|%b[\w.-]*)>)"
+    % (_SPACE, SKOLEM.encode())
+)
+_NEAR = re.compile(rb"%b<(#?)(\w[\w-]*)>" % _SPACE)
+"""A name in the same folder, or in the same document."""
 _DIRECTIVE = rb"@(?:prefix\s+[^\s:<>#]*:|base)\s*<[^<>\s\\]*>\s*\.|(?i:prefix\s+[^\s:<>#]*:|base)\s*<[^<>\s\\]*>"
 _HEAD = re.compile(rb"(?:%b(?:%b))*" % (_SPACE, _DIRECTIVE))
 _HEAD_PARTS = re.compile(rb"#[^\n\r]*|(%b)" % _DIRECTIVE)
 _RELATIVE = re.compile(rb"<(?![A-Za-z][A-Za-z0-9+.-]*:)")
 _BLANK = re.compile(rb"(?:\s+|#[^\n\r]*[\n\r])*")
+_LABEL = re.compile(
+    rb"%b|(?<![^\s,(\0])_:(?P<label>\w(?:[\w.-]*[\w-])?)(?=[\s;,.)\]\0]|\Z)|_(?P<other>:)" % _TOKEN, re.ASCII
+)
+"""A label where an object or a subject may stand; or the sign of one, elsewhere."""
+_MISPLACED = re.compile(rb"(?:[;\[\0]|\^\^)\s*<%b[^>]*>(?!\Z|\0)" % SKOLEM.encode())
+"""A blank node as a predicate or a datatype."""
 _END, _SEMICOLON = b".;"
 
 
@@ -71,6 +87,10 @@ class Context:
     prefixes: dict[bytes, str]
     known: dict[bytes, tuple[Clause, ...]] = field(default_factory=dict)
     """Of each piece that has been read, what it says."""
+    near: dict[bytes, str] = field(default_factory=dict)
+    """What goes before names in the same folder, and behind `#` in the same document."""
+    forms: Forms = field(default_factory=Forms)
+    """What pieces have in common that differ in strings and digits."""
 
 
 class Pieces(Clauses):
@@ -103,31 +123,82 @@ class Pieces(Clauses):
         unknown = set(cut).difference(context.known)
         new = [piece for piece in unknown if piece[-1] in (_END, _SEMICOLON)]
         self.seen += len(cut) - len(unknown) + len(new)  # the others are subjects
-        self.new += len(new)
-        if not new or not self.pays:
+        if not new:
             return self.pays
-        lines = [b"<%b%d>%b%b" % (PIECE.encode(), k, p, b"\n" if p[-1] == _END else b".\n") for k, p in enumerate(new)]
         try:
-            said = fold(context.head + b"".join(lines), source, base, self)
-        except TurtleError:
+            shapes = shaped(new)
+            samples = context.forms.wanted(shapes)
+            said = self._read(list(samples.values()), context, source, base)
+            for shape, sample in samples.items():
+                context.forms.learn(shape, said[sample], self)
+            odd: list[bytes] = []
+            for piece, shape in zip(new, shapes, strict=True):
+                clauses = context.forms.fill(shape, piece, self)
+                if clauses:
+                    context.known[piece] = clauses
+                else:
+                    odd.append(piece)
+            self.new += len(odd)
+            if self.pays:
+                for piece, found in self._read(odd, context, source, base).items():
+                    context.known[piece] = tuple(found)
+        except (TurtleError, UnicodeDecodeError, BeyondFoldingError):
             return False
-        if said is None or len(said) != len(new):
-            return False
-        for number, piece in enumerate(new):
-            found = said.get(f"<{PIECE}{number}>")
-            if found is None:
-                return False
-            self.typed(found)
-            context.known[piece] = tuple(found)
-        return True
+        return self.pays
+
+    def _read(
+        self, pieces: Sequence[bytes], context: Context, source: str, base: str | None
+    ) -> Mapping[bytes, list[Clause]]:
+        """What pieces say, each read by itself. Raises TurtleError or BeyondFoldingError."""
+        if not pieces:
+            return {}
+        text = [
+            b"<%b%d>%b%b" % (PIECE.encode(), k, p, b"\n" if p[-1] == _END else b".\n") for k, p in enumerate(pieces)
+        ]
+        said = fold(context.head + b"".join(text), source, base, self)
+        if said is None or len(said) != len(pieces):
+            raise BeyondFoldingError
+        found = {}
+        for number, piece in enumerate(pieces):
+            found[piece] = said.get(f"<{PIECE}{number}>") or []
+            if not found[piece]:
+                raise BeyondFoldingError
+            self.typed(found[piece])
+        return found
 
 
 def folded(text: bytes, source: str, base: str | None, pieces: Pieces) -> dict[str, list[Clause]] | None:
-    """What `fold` makes of a document, sooner where much of it is known. Raises TurtleError."""
-    if b"_:" in text:
+    """What a document says of each named subject, from its pieces where much is known; None where `fold` cannot tell.
+
+    Blank nodes with labels have the names of `selfconf.rdf.turtle.SKOLEM`. Raises TurtleError.
+    """
+    cuttable = PIECE.encode() not in text and SKOLEM.encode() not in text
+    found = _assembled(text, source, base, pieces) if pieces.pays and cuttable else None
+    if found is None and b"_:" not in text:
+        found = fold(text, source, base, pieces)
+    return found
+
+
+def _unlabelled(cut: list[bytes], name: bytes) -> list[bytes] | None:
+    """Pieces with names for the labels of blank nodes; None if one has a label where none may stand."""
+    labelled = [number for number, piece in enumerate(cut) if b"_:" in piece]
+    elsewhere: list[bytes] = []
+
+    def named(at: re.Match[bytes]) -> bytes:
+        if at["label"] is not None:
+            return b"<%b%b>" % (name, at["label"])
+        if at["other"] is not None:
+            elsewhere.append(at[0])
+        return b" " if at[0].startswith(b"#") else at[0]
+
+    text = b"\0".join([b"", *[cut[number] for number in labelled]])
+    text = _LABEL.sub(named, text)
+    pieces = text.split(b"\0")[1:]
+    if elsewhere or _MISPLACED.search(text) or len(pieces) != len(labelled):
         return None
-    found = _assembled(text, source, base, pieces) if pieces.pays and PIECE.encode() not in text else None
-    return fold(text, source, base, pieces) if found is None else found
+    for number, piece in zip(labelled, pieces, strict=True):
+        cut[number] = piece
+    return cut
 
 
 def _assembled(text: bytes, source: str, base: str | None, pieces: Pieces) -> dict[str, list[Clause]] | None:
@@ -144,7 +215,10 @@ def _assembled(text: bytes, source: str, base: str | None, pieces: Pieces) -> di
     subjects: dict[str, list[Clause]] = {}
     said: list[Clause] = []
     known, ended = context.known.get, True
+    name = f"{SKOLEM}{ox.BlankNode().value}.".encode() if b"_:" in text else b""
     for cut in _windows(text, head.end()):
+        if cut is not None and name:
+            cut = _unlabelled(cut, name)
         if cut is None or not pieces.learn(cut, context, source, base):
             return None
         for piece in cut:
@@ -197,6 +271,17 @@ def _subject(piece: bytes, context: Context, base: str | None) -> str | None:
     found = _ABSOLUTE.fullmatch(piece)
     if found is not None:
         return found[1].decode()
+    found = _NEAR.fullmatch(piece)
+    if found is None:
+        return _resolved(piece, context, base)
+    kind = found[1]
+    if kind not in context.near:
+        context.near[kind] = (_resolved(b"<%bx>" % kind, context, base) or "")[: -len("x>")]
+    return f"{context.near[kind]}{found[2].decode()}>" if context.near[kind] else None
+
+
+def _resolved(piece: bytes, context: Context, base: str | None) -> str | None:
+    """The same, as Oxigraph understands it."""
     text = b"%b%b a %b." % (context.head, piece, b"<urn:a>")
     try:
         (triple,) = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)

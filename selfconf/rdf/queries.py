@@ -31,8 +31,13 @@ _STRINGS_IRIS_COMMENTS = re.compile(
 
 def says(text: str, word: str) -> bool:
     """Whether a query has a word as a keyword, not in a string, an IRI, a comment, a variable or a name."""
-    bare = _STRINGS_IRIS_COMMENTS.sub(" ", text)
+    bare = without(text, "#", '"', "'", "<")
     return re.search(rf"(?<![\w?$:@.-]){word}(?![\w:-])", bare, re.IGNORECASE) is not None
+
+
+def without(text: str, *marks: str) -> str:
+    """A query with a blank for each of its strings, IRIs or comments that begins with one of some marks."""
+    return _STRINGS_IRIS_COMMENTS.sub(lambda token: " " if token[0].startswith(marks) else token[0], text)
 
 
 def only_reads(text: str) -> None:

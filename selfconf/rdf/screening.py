@@ -254,7 +254,8 @@ class _Advertisements:
         if len(groundings) > 1 or any(isinstance(node, Lexical) for node in groundings):
             return False
         described = [self._of(node) for node in groundings]
-        return all(_text(_only(node, SC.command)) for node in described if SC.command in node)
+        commands = [_only(node, SC.command) for node in described if SC.command in node]
+        return all(isinstance(text, Lexical) and _text(text) and text.form.strip() for text in commands)
 
 
 def _only(properties: Properties, predicate: str) -> Term | None:

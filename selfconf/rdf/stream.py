@@ -4,24 +4,26 @@ A component is its IRI and a tuple of clauses that it shares with others (`selfc
 triples are made from them when somebody asks, which for a component that no role wants is never. A document that
 cannot be folded into clauses is read by `advertisements.read` instead, and so is each component about which anything
 is unusual: the careful reader is the authority on what conforms, and on how to say what does not.
+
+A port may have a name of its own, and be described elsewhere. What is said of it there says as much of the port as if
+it stood in brackets, so that is how it is read: `sc:hasInput :in` as `sc:hasInput [ sc:name "in" ; ... ]`, which most
+components have in common. In the triples it keeps its name.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from functools import cached_property
+from collections.abc import Collection, Container, Iterable, Mapping
 from hashlib import blake2s
-from itertools import starmap
 from operator import attrgetter
 
-from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile, shared_ports
-from selfconf.model.term import IRI, BlankNode, Term
+from selfconf.model.profile import NO_PREFERENCE, Input, OperationalParameter, Output, Place, Profile, shared_ports
+from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import advertisements, turtle
 from selfconf.rdf.advertisements import Advertisement, Malformed, about
-from selfconf.rdf.clauses import END, NEXT, Clause
+from selfconf.rdf.clauses import END, LINKS, NEXT, BeyondFoldingError, Clause, Clauses, bracketed
 from selfconf.rdf.pieces import Pieces, folded
-from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.turtle import SKOLEM, Document, Node, Triple
+from selfconf.rdf.vocabulary import SC, TYPE
 
 Keyed = tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]
 _NAME = attrgetter("name")
@@ -62,6 +64,28 @@ class Streamed(Advertisement):
     __hash__ = Advertisement.__hash__
 
 
+class Linked(Streamed):
+    """A streamed advertisement with ports that have names of their own, read as if they stood in brackets."""
+
+    __slots__ = ("_said",)
+
+    def __init__(
+        self,
+        component: IRI,
+        types: frozenset[IRI],
+        clauses: tuple[Clause, ...],
+        origin: Origin,
+        said: tuple[Clause, ...],
+    ) -> None:
+        super().__init__(component, types, clauses, origin)
+        self._said = said
+
+    @property
+    def triples(self) -> tuple[Triple, ...]:
+        """What it says, in RDF, with the names of its ports."""
+        return self._origin.triples(self.component, self._said)
+
+
 class Judged(Streamed):
     """A streamed advertisement about which something was unusual, with the profile that the careful reader made."""
 
@@ -83,7 +107,7 @@ def _merged(component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], 
     inputs: list[Input] = []
     outputs: list[Output] = []
     parameters: list[OperationalParameter] = []
-    preference, command = 0.0, None
+    preference, command = NO_PREFERENCE, None
     for clause in clauses:
         if clause.slot is clause:
             properties += clause.keyed or _keyed(clause, component)
@@ -117,9 +141,9 @@ def _merged(component: IRI, types: frozenset[IRI], clauses: tuple[Clause, ...], 
 def _keyed(clause: Clause, component: IRI) -> list[Keyed]:
     """The properties that a clause states, each behind what they are ordered by; remembered if all may share them."""
     pairs = clause.properties
-    own = [(p, _own(v, component) if isinstance(v, BlankNode) else v) for p, v in pairs]
+    own = [(p, _own(v, component) if isinstance(v, BlankNode) and clause.bracketed else v) for p, v in pairs]
     keyed = [(advertisements.property_order(pair), pair) for pair in own]
-    if not any(isinstance(value, BlankNode) for _, value in pairs):
+    if not clause.bracketed:
         clause.keyed = keyed
     return keyed
 
@@ -135,22 +159,49 @@ class Origin:
     def __init__(self, source: str) -> None:
         self.place = Place(source)
         self.things: dict[str, list[Clause]] = {}
+        self._parsed: dict[str, Mapping[Node, list[tuple[IRI, Term]]]] = {}
 
-    @cached_property
-    def surroundings(self) -> Document:
-        """All that is said about other things than components."""
-        return turtle.parse("".join(starmap(_written, self.things.items())), self.place.source)
+    def linked(self, said: Iterable[Clause], known: Clauses) -> tuple[Clause, ...] | None:
+        """What a component says, with what things it links to say of themselves; None where that cannot be told."""
+        found: list[Clause] = []
+        for clause in said:
+            names = clause.links if clause in known.suspects else ()
+            if not names:
+                found.append(clause)
+            for name in names:
+                if name not in self.things:
+                    return None
+                try:
+                    found.append(known[bracketed(clause.predicate, [part.text for part in self.things[name]])])
+                except BeyondFoldingError:
+                    return None
+        return tuple(found)
 
-    def document(self, component: IRI, clauses: Iterable[Clause]) -> Document:
-        """What is said about one component and about everything that is no component."""
-        document = turtle.parse(_written(f"<{component}>", clauses), self.place.source)
-        if self.things:
-            document.statements.update(self.surroundings.statements)
+    def document(self, component: str, clauses: Iterable[Clause], links: Container[IRI] | None = None) -> Document:
+        """What is said about one component, and about the things that can be reached from it, by some links or all."""
+        document = turtle.parse(_written(component, clauses), self.place.source)
+        waiting = list(document.statements.values())
+        while waiting:
+            for predicate, value in waiting.pop():
+                if predicate == TYPE or isinstance(value, Literal) or value in document.statements:
+                    continue
+                if links is None or predicate in links:
+                    thing = self._thing(turtle.named(value))
+                    document.statements.update(thing)
+                    waiting += thing.values()
         return document
+
+    def _thing(self, name: str) -> Mapping[Node, list[tuple[IRI, Term]]]:
+        """What is said about a thing: always with the same blank nodes, whoever asks."""
+        if name not in self.things:
+            return {}
+        if name not in self._parsed:
+            self._parsed[name] = turtle.parse(_written(name, self.things[name]), self.place.source).statements
+        return self._parsed[name]
 
     def triples(self, component: IRI, clauses: Iterable[Clause]) -> tuple[Triple, ...]:
         """The statements that the advertisement of a component makes."""
-        return tuple(about(self.document(component, clauses), component, frozenset()))
+        return tuple(about(self.document(f"<{component}>", clauses), component, frozenset()))
 
 
 def _written(subject: str, clauses: Iterable[Clause]) -> str:
@@ -170,7 +221,7 @@ def read(
         return advertisements.read(turtle.parse(text, source, base))
     del text  # as large as what is made of it
     origin = Origin(source)
-    found: list[Advertisement | tuple[IRI, list[Clause]]] = []
+    found: list[Advertisement | tuple[str, list[Clause]]] = []
     suspects, slot, component_type = pieces.suspects, attrgetter("slot"), SC.Component
     unusual = False
     for subject, said in subjects.items():
@@ -183,29 +234,46 @@ def read(
             found.append(Streamed(IRI(subject[1:-1]), types, tuple(said), origin))
             said.clear()
         elif types and any(component_type in clause.types for clause in said):
-            found.append((IRI(subject[1:-1]), said))
+            found.append((subject, said))
             unusual = True
         else:
             origin.things[subject] = said
     if not unusual:
         return [one for one in found if isinstance(one, Advertisement)], []
-    return _judged(found, origin)
+    return _judged(found, origin, pieces)
 
 
 def _judged(
-    found: Iterable[Advertisement | tuple[IRI, list[Clause]]], origin: Origin
+    found: Iterable[Advertisement | tuple[str, list[Clause]]], origin: Origin, known: Clauses
 ) -> tuple[list[Advertisement], list[Malformed]]:
-    """The same advertisements, after the careful reader has looked at those about which something is unusual."""
+    """The same advertisements, after a second look at those about which something is unusual."""
     good: list[Advertisement] = []
     bad: list[Malformed] = []
     for one in found:
         if isinstance(one, Advertisement):
             good.append(one)
             continue
-        component, said = one
-        ((_, profile, problems),) = advertisements.profiles(origin.document(component, said))
+        subject, said = one
+        clauses = origin.linked(said, known)
+        if clauses is not None and _plain(subject, clauses, known):
+            types = next(clause.types for clause in clauses if clause.types)
+            good.append(Linked(IRI(subject[1:-1]), types, clauses, origin, tuple(said)))
+            continue
+        ((component, profile, problems),) = advertisements.profiles(origin.document(subject, said, LINKS))
         if profile is None or problems:
             bad.append(Malformed(component, origin.place, problems))
         else:
             good.append(Judged(profile, tuple(said), origin))
     return good, bad
+
+
+def _plain(subject: str, clauses: Collection[Clause], known: Clauses) -> bool:
+    """Whether nothing is unusual about what a component says."""
+    types = [clause.types for clause in clauses if clause.slot is TYPE]
+    return (
+        not subject.startswith(f"<{SKOLEM}")
+        and len(types) == 1
+        and len(types[0]) > 1
+        and len({clause.slot for clause in clauses}) == len(clauses)
+        and known.suspects.isdisjoint(clauses)
+    )

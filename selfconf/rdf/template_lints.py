@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from rdflib import RDF, SH, BNode, URIRef
@@ -12,7 +13,11 @@ from selfconf.rdf.contradictions import Conflict, conflicts
 from selfconf.rdf.demands import Demands
 from selfconf.rdf.file import File
 from selfconf.rdf.findings import at
+from selfconf.rdf.queries import without
 from selfconf.rdf.vocabulary import SC
+
+_NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
+"""An IRI in a query, or a prefix and what follows it."""
 
 
 def unlisted_roles(file: File) -> Iterator[Diagnostic]:
@@ -54,6 +59,31 @@ def unused_parameters(file: File) -> Iterator[Diagnostic]:
             offset = min(file.positions.triples[owner, URIRef(SC.parameter), parameter].object for owner in owners)
             message = f"No role mentions the parameter {file.short(str(parameter))}."
             yield at(file.positions, offset, "SC-L10", message)
+
+
+def queried_parameters(file: File) -> Iterator[Diagnostic]:
+    """Parameters in the text of a query, which is taken as it stands."""
+    parameters = {str(one) for one in file.graph.objects(None, URIRef(SC.parameter)) if isinstance(one, URIRef)}
+    for predicate in (SH.select, SH.ask) if parameters else ():
+        for subject, query in file.graph.subject_objects(predicate):
+            named = _named(file, without(str(query), "#", '"', "'"))
+            for parameter in sorted(parameters & named):
+                short = file.short(parameter)
+                message = f"The parameter {short} stands for itself in a query, and never for a value."
+                hint = f"Ask for its value beside the query, as by sh:in ( {short} )."
+                offset = file.positions.triples[subject, predicate, query].object
+                yield at(file.positions, offset, "SC-L16", message, hint=hint)
+
+
+def _named(file: File, query: str) -> set[str]:
+    """The IRIs that a query names, by the prefixes of its file and those that shapes declare for it."""
+    declared = {
+        str(file.graph.value(one, SH.prefix)): str(file.graph.value(one, SH.namespace))
+        for one in file.graph.objects(None, SH.declare)
+    }
+    known = {prefix: base for prefix, base, _ in file.positions.prefixes} | declared
+    names = _NAME.findall(query)
+    return {iri or f"{known.get(prefix, '')}{local}" for iri, prefix, local in names}
 
 
 def impossible_roles(file: File) -> Iterator[Diagnostic]:

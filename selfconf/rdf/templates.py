@@ -149,15 +149,18 @@ class _Reader:
         most = 1 if minimum is None and maximum is None else maximum
         if most is not None and least > most:
             raise self._error(f"the role {_show(name)} asks for at least {least} and at most {most} components")
-        settings = tuple(
+        settings = dict.fromkeys(
             Setting(
                 self._iri(node, SC.parameterType, f"what {_show(name)} sets needs one sc:parameterType, an IRI"),
                 self._only(node, SC.value, f"what {_show(name)} sets needs exactly one sc:value"),
             )
             for node in self.document.values(name, SC.sets)
         )
+        for kind, times in Counter(setting.type for setting in settings).items():
+            if times > 1:
+                raise self._error(f"the role {_show(name)} sets {_show(kind)} to {times} different values")
         types = tuple(value for value in self.document.values(name, SH["class"]) if isinstance(value, IRI))
-        return Role(name, least, most, settings, types, Place(self.document.source))
+        return Role(name, least, most, tuple(settings), types, Place(self.document.source))
 
     def _shape(self, role: IRI) -> None:
         """Raises where the shape of a role is certainly no shape."""

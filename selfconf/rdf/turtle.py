@@ -20,15 +20,27 @@ from selfconf.rdf.vocabulary import FIRST, NIL, REST, TYPE
 
 Node = IRI | BlankNode
 Triple = tuple[Node, IRI, Term]
+SKOLEM = "urn:selfconf:blank:"
+"""What IRIs begin with that stand for blank nodes with labels (RDF 1.1 Concepts, section 3.5)."""
 
 
 def term(node: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> Term:
     """One of Oxigraph's terms as a value of the model."""
     if isinstance(node, ox.NamedNode):
-        return IRI(node.value)
+        return resource(node.value)
     if isinstance(node, ox.Literal):
         return Literal(node.value, IRI(node.datatype.value), node.language)
     return BlankNode(str(node))
+
+
+def resource(iri: str) -> Node:
+    """What an IRI names: a blank node, if it stands for one."""
+    return BlankNode(f"_:{iri[len(SKOLEM) :]}") if iri.startswith(SKOLEM) else IRI(iri)
+
+
+def named(node: Node) -> str:
+    """The name of a resource in Turtle: of a blank node, the IRI that would stand for it."""
+    return f"<{SKOLEM}{node[2:]}>" if isinstance(node, BlankNode) else f"<{node}>"
 
 
 @dataclass(slots=True)
@@ -94,13 +106,18 @@ def parse(text: str | bytes, source: str, base: str | None = None, predicates: I
                 if node not in known:
                     known[node] = term(node)
             statements[known[subject]].append((known[predicate], known[value]))
-    except SyntaxError as error:
+    except (SyntaxError, MemoryError) as error:
         raise not_turtle(error, source) from None
     return Document(source, dict(statements), dict(reader.prefixes), base)
 
 
-def not_turtle(error: SyntaxError, source: str) -> TurtleError:
-    """Oxigraph's complaint as selfconf's: its message without the position, which the error carries on its own."""
+def not_turtle(error: SyntaxError | MemoryError, source: str) -> TurtleError:
+    """Oxigraph's complaint as selfconf's: its message without the position, which the error carries on its own.
+
+    The parser keeps a token in a buffer of 16 MiB, and lacks memory for one that is larger.
+    """
+    if isinstance(error, MemoryError):
+        return TurtleError("a literal in it is over 16 MiB, which is more than can be read", file=source)
     head, found, tail = str(error.msg).partition(": ")
     message = tail if found and head.startswith("Parser error") else str(error.msg)
     return TurtleError(f"not Turtle: {message}", file=source, line=error.lineno, column=error.offset)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from selfconf import files
 from selfconf.bus.port import Bus
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.protocol.keys import Keys
-from selfconf.rdf import advertisements, turtle
+from selfconf.rdf import advertisements
 from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component
 
@@ -46,7 +47,7 @@ def profile_of(kind: type[Component]) -> Profile:
     path = kind.advertisement_path()
     if not path.is_file():
         raise ProgrammerError(f"the advertisement of {kind.__name__} is not there: {path}")
-    good, bad = advertisements.read(turtle.parse(path.read_bytes(), str(path)))
+    good, bad = advertisements.read(files.document(path))
     for malformed in bad:
         raise AuthorError(f"{malformed.component}: {malformed.problems[0]}", file=str(path))
     wanted = [a.profile for a in good if not kind.component or a.profile.component == kind.component]

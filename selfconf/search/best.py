@@ -101,8 +101,10 @@ def search(problem: Problem, steps: int = STEPS, running: Configuration | None =
         for candidate in some
         for wanted in unknown(problem.task.template.cost, role.iri, candidate.profile, problem.hierarchy)
     ]
+    # What comes before the levels and could be less leaves no more to be said of them than what candidates cost.
+    bounds = least if least[:BEFORE] == spent[:BEFORE] else prices.unfolded(0, len(part.slots))
     configuration = problem.solved(playing, running)
-    return Optimum(configuration, spent[BEFORE:], least[BEFORE:], tuple(missing), proved=spent == least)
+    return Optimum(configuration, spent[BEFORE:], bounds[BEFORE:], tuple(missing), proved=spent == least)
 
 
 class Prices:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.main import COMMANDS, main
+from selfconf.cli.main import COMMANDS, command, main
 from tests.cli.command import run
 
+ROOT = Path(__file__).resolve().parents[2]
 LOADED = """
 import sys
 from selfconf.cli.main import main
@@ -43,6 +44,17 @@ def test_every_command_has_help_with_an_example(name: str, capsys: pytest.Captur
         main([name, "--help"])
     assert ended.value.code == 0
     assert "example:\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_files_of_an_example_are_there(name: str) -> None:
+    lines = command(name).EXAMPLE.splitlines()
+    assert all(line.startswith("  ") for line in lines)
+    if name != "new":
+        words = [
+            word for line in lines for word in line.split() if word.endswith(".ttl") or word.startswith("examples")
+        ]
+        assert [word for word in words if not (ROOT / word).exists()] == []
 
 
 def test_a_command_that_there_is_not_is_misuse(capsys: pytest.CaptureFixture[str]) -> None:

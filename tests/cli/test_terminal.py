@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from io import StringIO
+from pathlib import Path
 
 import pytest
 
 from selfconf.cli.terminal import Terminal, guard, plain, show
+from tests.lab import PREFIXES
 
 
 def test_what_steers_is_spelt_out_and_what_does_not_stays() -> None:
@@ -43,3 +46,30 @@ def test_what_nobody_reads_ends_nothing_and_what_cannot_be_encoded_is_escaped(mo
         show("and yet more")
         with sys.stderr as nowhere:
             show("nothing", nowhere)
+
+
+def test_what_programs_read_is_utf_8_whatever_the_terminal_would_have(tmp_path: Path) -> None:
+    (tmp_path / "lamp.ttl").write_text(PREFIXES + ":lämp a sc:Component, :Lamp .", encoding="utf-8")
+    role = ":r a sc:Role ; sh:class :Lamp ."
+    (tmp_path / "t.ttl").write_text(f"{PREFIXES} :t a sc:Template ; sc:roles ( :r ) . {role}", encoding="utf-8")
+    lamps = "query", "SELECT ?c WHERE { ?c a sc:Component }", "--ads", "lamp.ttl"
+    configured = "configure", "t.ttl", "--ads", "lamp.ttl"
+
+    def written(*command: str) -> bytes:
+        environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+        started = [sys.executable, "-m", "selfconf", *command]
+        return subprocess.run(started, cwd=tmp_path, env=environment, capture_output=True, check=True).stdout
+
+    for command, forms in ((lamps, ("json", "csv", "tsv")), (configured, ("json", "turtle", "mermaid"))):
+        for form in forms:
+            assert "lämp" in written(*command, "--format", form).decode(), form
+        assert b"l\\xe4mp" in written(*command)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+def test_what_the_system_says_is_told_without_its_number(tmp_path: Path) -> None:
+    (tmp_path / "lamp.ttl").write_text(PREFIXES + ":lamp a sc:Component, :Lamp .")
+    command = [sys.executable, "-m", "selfconf", "query", "ASK {}", "--ads", "lamp.ttl"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "selfconf query: No space left on device\n")

@@ -217,7 +217,7 @@ def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["validate", "--help"])
     assert ended.value.code == 0
-    assert "selfconf validate advertisements/" in capsys.readouterr().out
+    assert "\n  selfconf validate examples/" in capsys.readouterr().out
 
 
 def test_an_unknown_format_is_misuse(capsys: pytest.CaptureFixture[str]) -> None:

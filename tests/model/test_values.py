@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -41,7 +43,8 @@ def test_iris_come_before_blank_nodes_and_these_before_literals() -> None:
 
 
 def test_candidates_are_tried_by_preference_and_then_by_iri() -> None:
-    profiles = [Profile(IRI(f"urn:{name}"), preference=p) for name, p in (("b", 0), ("a", 0), ("z", 10), ("y", -1))]
+    wishes = ("b", 0), ("a", 0), ("z", 10), ("y", -1)
+    profiles = [Profile(IRI(f"urn:{name}"), preference=Decimal(wish)) for name, wish in wishes]
     in_order = [candidate.profile.component for candidate in ordered([Candidate(profile) for profile in profiles])]
     assert in_order == ["urn:z", "urn:a", "urn:b", "urn:y"]
     assert candidate_order(profiles[2]) < candidate_order(profiles[0])

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.model.profile import Input, OperationalParameter, Output
+from selfconf.model.profile import Input, OperationalParameter, Output, candidate_order
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf import advertisements, stream, turtle
 from selfconf.rdf.advertisements import Advertisement, Malformed
@@ -47,6 +47,21 @@ def test_the_profile_of_the_thinking_cap_is_that_of_the_paper() -> None:
     assert profile.outputs == (Output("set.velocity", ROB.Velocity2D),)
     assert profile.parameters == (OperationalParameter("goal", ROB.BehaviouralGoal),)
     assert (profile.preference, profile.command) == (0.0, None)
+
+
+@pytest.mark.parametrize(
+    ("low", "high"),
+    [
+        ("0.1", "0.10000000000000000001"),
+        ("9007199254740992", "9007199254740993"),
+        ("-0.10000000000000000000000000000000002", "-0.10000000000000000000000000000000001"),
+        ("1e-99999999999999999999", "1e-1999999999999999997"),
+    ],
+)
+def test_preferences_are_compared_exactly(low: str, high: str) -> None:
+    lamps = [one(f":a a sc:Component, :Lamp ; sc:preference {wish} .").profile for wish in (low, high)]
+    assert lamps[1].preference > lamps[0].preference
+    assert candidate_order(lamps[1]) < candidate_order(lamps[0])
 
 
 def test_properties_are_what_is_neither_a_type_nor_a_port() -> None:

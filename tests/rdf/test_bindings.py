@@ -93,6 +93,26 @@ def test_a_value_that_does_not_fit_is_refused(bound: tuple[tuple[str, str], ...]
         completed(*bound)
 
 
+@pytest.mark.parametrize(
+    ("bound", "shown", "hint"),
+    [
+        (("speed", "2"), "2 cannot stand", "; write --bind speed=2.0"),
+        (("speed", "2e0"), "2e0 cannot stand", None),
+        (("speed", '"2"'), '"2" cannot stand', """; write --bind speed='"2"^^xsd:decimal'"""),
+        (("speed", "fast"), '"fast" cannot stand', None),
+        (("goal", "5"), "5 cannot stand", """; write --bind goal='"5"'"""),
+        (("robot", "Astrid"), '"Astrid" cannot stand', "; write a CURIE such as :Astrid, or an <IRI>"),
+    ],
+)
+def test_a_value_of_another_datatype_is_shown_as_it_is_with_what_would_do(
+    bound: tuple[str, str], shown: str, hint: str | None
+) -> None:
+    with pytest.raises(BindingError) as told:
+        completed(*dict([("goal", "x"), bound]).items())
+    assert str(told.value).startswith(shown)
+    assert str(told.value).endswith(hint) if hint else "; write" not in str(told.value)
+
+
 def test_a_task_binds_for_itself_and_may_not_be_contradicted() -> None:
     text = TEMPLATE + ':k a sc:Task ; sc:template :t ; sc:binding [ sc:parameter :goal ; sc:value "y" ] .'
     task = templates.read(turtle.parse(PREFIXES + text, "t.ttl"))

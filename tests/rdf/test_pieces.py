@@ -91,7 +91,7 @@ def test_what_has_been_read_once_is_not_read_again() -> None:
 def test_where_most_is_new_documents_are_read_whole() -> None:
     known = Pieces()
     text = PREFIXES + "".join(
-        f":c{number} {GOOD} ; :serial {number} ; :label 'c{number}' .\n" for number in range(ENOUGH)
+        f":c{number} {GOOD} ; :serial '{number}' ; :label 'c{number}' .\n" for number in range(ENOUGH)
     )
     found = folded(text.encode(), "a.ttl", None, known)
     assert found is not None

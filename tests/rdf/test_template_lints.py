@@ -22,6 +22,27 @@ def test_a_parameter_that_no_template_lists_is_noticed() -> None:
 
 
 @pytest.mark.parametrize(
+    ("condition", "noticed"),
+    [
+        ("$this rob:place home:p", True),
+        ("$this rob:place <https://example.org/home#p>", True),
+        ("$this rob:place home:place, ?p, 'home:p' # home:p", False),
+    ],
+)
+def test_a_parameter_in_the_text_of_a_query_is_noticed(condition: str, noticed: bool) -> None:
+    prefixes = " ".join(
+        f"[ sh:prefix '{name}' ; sh:namespace '{iri}'^^<http://www.w3.org/2001/XMLSchema#anyURI> ]"
+        for name, iri in (("home", "https://example.org/home#"), ("rob", "https://w3id.org/selfconf/robotics#"))
+    ).replace("] [", "] , [")
+    text = (
+        f"{TEMPLATE} :t sc:parameter :p . :p a sc:Parameter ; sc:name 'p' . :prefixes sh:declare {prefixes} .\n"
+        ":r sh:property [ sh:path rob:place ; sh:in ( :p ) ] ; sh:sparql [ sh:prefixes :prefixes ;\n"
+        f'sh:select """SELECT $this WHERE {{ FILTER NOT EXISTS {{ {condition}\n}} }}""" ] .'
+    )
+    assert [found.code for found in lints(text)] == ["SC-L16"] * noticed
+
+
+@pytest.mark.parametrize(
     "shape",
     [
         "sh:minCount 2 ; sh:maxCount 1",

@@ -84,6 +84,14 @@ def test_a_task_is_a_template_with_values() -> None:
     assert (task.iri, task.bindings, task.by_name()) == (iri("k"), {iri("p"): Literal("x")}, {"p": Literal("x")})
 
 
+def test_the_same_setting_twice_is_one() -> None:
+    settings = ":r sc:sets [ sc:parameterType :P ; sc:value 1 ] , [ sc:parameterType :P ; sc:value 1 ] ."
+    (role,) = read(f":t a sc:Template ; sc:roles ( :r ) . {ROLE} {settings}").template.roles
+    assert [setting.type for setting in role.settings] == [iri("P")]
+    with pytest.raises(TemplateError, match="2 different values"):
+        read(f":t a sc:Template ; sc:roles ( :r ) . {ROLE} {settings.replace('1', '1.0', 1)}")
+
+
 def test_of_several_templates_one_must_be_named() -> None:
     text = f":t a sc:Template ; sc:roles ( :r ) . :u a sc:Template ; sc:roles ( :r ) . {ROLE}"
     with pytest.raises(TemplateError, match="several"):

@@ -36,6 +36,11 @@ def test_of_several_components_in_one_file_the_class_says_which_it_is(tmp_path: 
         profile_of(kind(path, iri("nobody")))
 
 
+def test_an_advertisement_may_begin_with_a_mark_and_have_relative_iris(tmp_path: Path) -> None:
+    (tmp_path / "lamp.ttl").write_bytes(b"\xef\xbb\xbf" + f"{PREFIXES} <#lamp> a sc:Component, :Lamp .".encode())
+    assert profile_of(kind(tmp_path / "lamp.ttl")).component == f"{(tmp_path / 'lamp.ttl').as_uri()}#lamp"
+
+
 def test_an_advertisement_that_is_missing_or_wrong_is_said_to_be(tmp_path: Path) -> None:
     with pytest.raises(ProgrammerError, match="needs an `advertisement`"):
         profile_of(Component)

@@ -1,0 +1,66 @@
+"""Turtle files as every program of selfconf reads them: which there are, what is in them, and what that means.
+
+A mark of the byte order is no part of the text, and a relative IRI counts from the file (RFC 3986, section 5.1.3): a
+file means the same to whoever reads it, be it a command, a site or a component.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from selfconf.errors import AuthorError, TurtleError
+from selfconf.model.term import IRI
+
+if TYPE_CHECKING:
+    from selfconf.rdf.turtle import Document
+
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+
+def within(path: Path) -> list[Path]:
+    """The files that a path stands for, sorted: all *.ttl below a folder, or else itself."""
+    return sorted(file for file in path.rglob("*.ttl") if file.is_file()) if path.is_dir() else [path]
+
+
+def document(path: Path, predicates: Iterable[IRI] | None = None) -> Document:
+    """A Turtle file, or its triples with some predicates.
+
+    Raises AuthorError for what is not there, cannot be read, or is not Turtle.
+    """
+    from selfconf.rdf import turtle  # loads rdflib, which a list of files does not need
+
+    return turtle.parse(text(octets(path), str(path)), str(path), base(path), predicates)
+
+
+def octets(path: Path) -> bytes:
+    """What is in a file. Raises AuthorError."""
+    try:
+        return path.read_bytes()
+    except IsADirectoryError:
+        raise AuthorError(f"{path} is a folder; a file is needed here") from None
+    except FileNotFoundError:
+        raise AuthorError(f"there is no file or folder {path}") from None
+    except OSError as error:
+        raise AuthorError(f"cannot read {path}: {error.strerror}") from None
+
+
+def text(found: bytes, name: str) -> bytes:
+    """What is to be parsed of the octets of a source. Raises TurtleError where that cannot be text."""
+    if b"\0" in found:
+        raise TurtleError("not Turtle: this is a binary file", file=name)
+    return found.removeprefix(BYTE_ORDER_MARK)
+
+
+def base(path: Path) -> str:
+    """The IRI that relative IRIs in a file are relative to."""
+    whole = _resolved(path.parent.absolute()) / path.name
+    return (whole.resolve() if whole.is_symlink() else whole).as_uri()
+
+
+@lru_cache(maxsize=64)
+def _resolved(folder: Path) -> Path:
+    """A folder without links; what a thousand files in it have in common."""
+    return folder.resolve()

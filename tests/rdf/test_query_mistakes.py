@@ -1,0 +1,46 @@
+"""What is wrong with a SPARQL query: the likely cause, and never a list of what the parser would have liked."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.errors import QueryError
+from selfconf.rdf.dataset import Dataset
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "it is empty"),
+        ("  # nothing but this\n", "it is empty"),
+        ("SELECT ?c { ?c a wh:Arm }", "the prefix wh: is not declared; begin with PREFIX wh: <...>"),
+        ("SELECT ?c { ?c a :Arm }", "the prefix : is not declared"),
+        ("PREFIX a: <urn:a> SELECT ?c { ?c a:b 'x:y', <b:c> ; ^wh:is _:b } # d:e", "the prefix wh: is not declared"),
+        ('ASK { ?x <urn:a> "a"^^wh:b }', "the prefix wh: is not declared"),
+        (
+            "INSERT DATA { <a:a> <a:b> <a:c> }",
+            "begins with 'INSERT'; a query only asks, by SELECT, ASK, CONSTRUCT or DESCRIBE",
+        ),
+        ("prefix x: <urn:x#> DELETE WHERE { ?s ?p ?o }", "begins with 'DELETE'"),
+        ("SELEC ?c {}", "begins with 'SELEC'"),
+        ("PREFIX wh <urn:x> ASK {}", "at 1:10 something is wrong before"),
+        ("{ ?s ?p ?o }", "begins with '{'"),
+        ("rob:Arm", "begins with 'rob:Arm'"),
+        ("SELECT ?c { ?c a", "at 1:17 it ends too soon"),
+        ("SELECT ?c WHERE ?c a ?t }", "at 1:17 something is wrong before '?c'"),
+        ("SELECT ?c\n{ ?c a ?t } LIMIT x", "at 2:19 something is wrong before 'x'"),
+        ("SELECT ?x { ?s ?p ?o } GROUP BY ?s", "The SELECT contains a variable that is unbound"),
+        ("SELECT * { ?s ?p ?o } GROUP BY ?s", "SELECT * is not authorized with GROUP BY"),
+        ("ASK { ?s a <http://x y> }", "IRI parsing failed"),
+    ],
+)
+def test_the_cause_is_told_in_a_few_words(text: str, words: str) -> None:
+    with pytest.raises(QueryError) as told:
+        Dataset().query(text)
+    assert words in str(told.value)
+    assert len(str(told.value)) < 120
+
+
+def test_prefixes_that_are_lent_need_no_declaration() -> None:
+    with pytest.raises(QueryError, match="it ends too soon"):
+        Dataset().query("SELECT ?c { ?c a rob:Arm ; my:is 1", {"my": "urn:my#"})
