@@ -12,6 +12,7 @@ from selfconf.agent.agent import TRY_AGAIN
 from selfconf.agent.calls import CALL, STARTING
 from selfconf.agent.lives import SETTLING
 from selfconf.bus.port import Replies, Request, Urgency
+from selfconf.configurator.events import Failed
 from selfconf.configurator.machine import Phase, Policy
 from selfconf.errors import TemplateError
 from selfconf.model.refusal import TooFewEligible
@@ -167,6 +168,23 @@ def test_a_component_that_refuses_to_start_is_replaced(lab: Lab) -> None:
     assert lab.running(agent)
     assert lab.active() == TASK | {"odometry"}
     assert lab.acts("declined")[0].facts["detail"] == "the camera is covered"
+    (lost,) = lab.acts("lost")
+    assert (lost.facts["cause"], lost.facts["detail"]) == ("refused", "the camera is covered")
+    record = turtle.parse(agent._record.turtle(), "record.ttl")
+    (failure,) = record.instances(SC.Failure)
+    assert [str(cause) for cause in record.values(failure, SC.cause)] == ["refused"]
+
+
+def test_what_changes_nothing_is_no_loss(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.DEPLOYING)
+    agent._step(Failed(iri("person-tracker"), "", Cause.SILENCE, "no signal"))  # it may not have begun
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+    agent.stop()
+    lab.crash("tracker")
+    assert lab.until(lambda: bool(lab.ended))
+    assert lab.acts("lost") == []
 
 
 def test_a_component_that_dies_while_it_is_activated_has_crashed(lab: Lab) -> None:

@@ -8,7 +8,7 @@ import secrets
 import socket
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -111,10 +111,10 @@ class Agent:
         self._stepping = True
         try:
             while self._events:
-                next_event, before = self._events.popleft(), self.state.phase
-                if isinstance(next_event, Failed):
-                    self._notice(next_event)
+                next_event, before, known = self._events.popleft(), self.state.phase, self.state.lost
                 self.state, effects = machine.step(self.state, next_event)
+                if self.state.lost is not known:
+                    self._notice(known)
                 for effect in effects:
                     self._do(effect)
                 returned = isinstance(next_event, Appeared) and bool(next_event.lives)
@@ -165,11 +165,12 @@ class Agent:
         """Why each component that was lost was lost, for people."""
         return {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
 
-    def _notice(self, event: Failed) -> None:
-        held = self.state.held.get(event.component)
-        if held is not None and not (event.life and held.life and event.life != held.life):
-            self._record.lost(event.component, event.cause.value, event.detail, self.clock())
-            self._tell("lost", component=event.component, cause=event.cause.value, detail=event.detail)
+    def _notice(self, known: Mapping[IRI, Loss]) -> None:
+        """Note and tell of every component that the machine has just given up, for whatever cause."""
+        for component, loss in self.state.lost.items():
+            if known.get(component) is not loss:
+                self._record.lost(component, loss.cause.value, loss.detail, self.clock())
+                self._tell("lost", component=component, cause=loss.cause.value, detail=loss.detail)
 
     def _tell(self, act: str, **facts: Any) -> None:
         """Note an account now, and tell it when there is nothing more urgent to do."""
