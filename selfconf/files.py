@@ -6,7 +6,8 @@ file means the same to whoever reads it, be it a command, a site or a component.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,9 +21,22 @@ if TYPE_CHECKING:
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
-def within(path: Path) -> list[Path]:
-    """The files that a path stands for, sorted: all *.ttl below a folder, or else itself."""
-    return sorted(file for file in path.rglob("*.ttl") if file.is_file()) if path.is_dir() else [path]
+def within(path: Path, left_out: Callable[[AuthorError], None] | None = None) -> list[Path]:
+    """The files that a path stands for, sorted: all *.ttl below a folder, or else itself.
+
+    A folder that cannot be read raises AuthorError, or is `left_out`, where somebody hears of that.
+    """
+    if not path.is_dir():
+        return [path]
+
+    def unreadable(error: OSError) -> None:
+        wrong = AuthorError(f"cannot read the folder {error.filename}: {error.strerror}")
+        if left_out is None:
+            raise wrong
+        left_out(wrong)
+
+    found = [Path(folder, name) for folder, _, names in os.walk(path, onerror=unreadable) for name in names]
+    return sorted(file for file in found if file.suffix == ".ttl" and file.is_file())
 
 
 def document(path: Path, predicates: Iterable[IRI] | None = None) -> Document:

@@ -49,24 +49,28 @@ class Shelf:
         self._told: frozenset[str] = frozenset()
         self.advertisements: dict[IRI, Advertisement] = {}
 
-    def files(self) -> list[Path]:
-        """Every Turtle file of the shelf, sorted."""
-        return sorted({file for path in self._paths for file in files.within(path)})
+    def _files(self, complaints: list[str]) -> list[Path]:
+        """Every Turtle file of the shelf that can be found, sorted."""
+
+        def left_out(error: AuthorError) -> None:
+            complaints.append(f"left out: {error}")
+
+        return sorted({file for path in self._paths for file in files.within(path, left_out)})
 
     def refresh(self) -> bool:
         """Read the files again if any has changed, come or gone; whether the advertisements are others now."""
         stamps: dict[Path, tuple[int, int]] = {}
-        for path in self.files():
+        complaints: list[str] = []
+        for path in self._files(complaints):
             try:
                 status = path.stat()
             except OSError:
                 continue
             stamps[path] = status.st_mtime_ns, status.st_size
-        if stamps == self._seen:
+        if stamps == self._seen and self._told.issuperset(complaints):
             return False
         self._seen = stamps
         found: dict[IRI, Advertisement] = {}
-        complaints: list[str] = []
         for path in stamps:
             try:
                 good, bad = advertisements.read(files.document(path))

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.advertisements import STRUCTURE
 from selfconf.rdf.eligibility import ClassTest, CompiledRole, Count, ParameterTest, PropertyTest, SelfTest, Test
@@ -63,10 +64,16 @@ def compile_role(
     bindings: Mapping[IRI, Term],
     free: frozenset[IRI],
 ) -> CompiledRole:
-    """Compile the shape of a role, with bound parameters replaced by their values; `settings` are the types it sets."""
+    """Compile the shape of a role, with bound parameters replaced by their values; `settings` are the types it sets.
+
+    Raises TemplateError for shapes within shapes without end, or nearly so.
+    """
     compiler = _Compiler(document, bindings, free)
-    tests = (*compiler.shape(role), *map(ParameterTest, settings))
-    return CompiledRole(role, tests, not compiler.rest, local(document, role))
+    try:
+        tests = (*compiler.shape(role), *map(ParameterTest, settings))
+        return CompiledRole(role, tests, not compiler.rest, local(document, role))
+    except RecursionError:
+        raise TemplateError(f"the shape of the role {role!r} nests too deeply", file=document.source) from None
 
 
 def bound_shape(document: Document, bindings: Mapping[IRI, Term]) -> list[Triple]:

@@ -103,6 +103,22 @@ def test_what_an_advertisement_says_about_another_component_counts_for_nothing()
             assert names(partitioner(text).partition(ads)) == [[]]
 
 
+def test_a_shape_that_nests_without_end_is_refused_in_a_sentence() -> None:
+    shape = f"{'sh:not [ ' * 2000} sh:class :A {']' * 2000}"
+    with pytest.raises(TemplateError, match="nests too deeply"):
+        partitioner(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; {shape} .")
+
+
+def test_a_shape_that_sees_others_is_shown_all_of_them() -> None:
+    ads = read([":lamp a sc:Component, :Lamp ; :near :x .", ":map a sc:Component, :Map ; :knows :x . :x a :Place ."])
+    for shape in ("[ sh:path :near ; sh:class :Place ]", "[ sh:path :near ; sh:class :Place ; sh:in ( :x :y ) ]"):
+        assert names(
+            partitioner(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:property {shape} .").partition(ads)
+        ) == [["lamp", "map"]]
+    text = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:property [ sh:path :near ; sh:class :Place ; "
+    assert names(partitioner(f"{text} sh:minCount 1 ] .").partition(ads)) == [["lamp"]]
+
+
 def test_a_hierarchy_counts_for_types_and_for_properties() -> None:
     ads = read([":a a sc:Component, :Lamp ; :hangsIn :hall ."])
     text = (
