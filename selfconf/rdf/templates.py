@@ -180,7 +180,9 @@ class _Reader:
         value = values[0]
         whole = isinstance(value, Literal) and value.datatype in WHOLE and _COUNT.fullmatch(value.lexical)
         if len(values) > 1 or not isinstance(value, Literal) or not whole:
-            raise self._error(f"sc:{predicate.short} of the role {_show(role)} is one whole number, zero or more")
+            raise self._error(
+                f"sc:{predicate.short} of the role {_show(role)} is one whole number from 0 on, of at most 18 digits"
+            )
         return int(value.lexical)
 
     def _feeds(self, roles: tuple[Role, ...], known: frozenset[IRI]) -> Iterator[Interaction]:

@@ -50,9 +50,13 @@ def compact(
 
     `order` is another order of the candidates of each role, by number: then the first and the least are by that.
     With `roles` it is the kernel of what is asked of the first so many of them alone: where that has no solution, the
-    problem has none.
+    problem has none. A role that asks for more than there are has one slot more than there are, which is as impossible.
     """
-    slots = tuple(role for role, asked in enumerate(problem.roles[:roles]) for _ in range(asked.minimum))
+    slots = tuple(
+        role
+        for role, (asked, candidates) in enumerate(zip(problem.roles[:roles], problem.candidates, strict=False))
+        for _ in range(min(asked.minimum, 1 + len(candidates)))
+    )
     minima = Counter(slots)
     wiring = Wiring(problem, roles)
     numbers, shared = _enough(problem, apart, order, minima)

@@ -48,6 +48,8 @@ TRIALS = 24
 """How many changed problems are looked at for each sort of repair."""
 RELAXED = 8
 """How many roles of a conflict are tried with a smaller count; where more clash, that is no advice."""
+ADDED = 200
+"""How many components are asked for at most; who lacks more has asked for too many."""
 ADDITION = "urn:selfconf:addition:"
 """What the names of components begin with that are not there yet."""
 STEPS = 100_000
@@ -135,6 +137,8 @@ def _additions(problem: Problem, budget: Budget) -> AddComponents | None:
     lacking: Counter[int] = Counter()
     for number, (role, candidates) in enumerate(zip(problem.roles, problem.candidates, strict=True)):
         lacking[number] = max(0, role.minimum - len(candidates))
+    if sum(lacking.values()) > ADDED:
+        return None
     outputs = [wanted_of(problem, role) for role in range(len(problem.roles))]
     waiting, seen = [+lacking], {frozenset((+lacking).items())}
     for trial in range(TRIALS):
@@ -258,7 +262,8 @@ def _fewer(problem: Problem, refused: Refusal, budget: Budget) -> Iterator[AskFo
     named = [r.role for reason in refused.reasons for r in reason.requirements if isinstance(r, RolePlayed)]
     for iri in list(dict.fromkeys(named))[:RELAXED]:
         role: Role = problem.task.template.role(iri)
-        for minimum in reversed(range(max(0, role.minimum - TRIALS), role.minimum)):
+        enough = min(role.minimum, 1 + len(problem.candidates[problem.roles.index(role)]))
+        for minimum in reversed(range(max(0, enough - TRIALS), enough)):
             repair = AskForFewer(iri, minimum)
             if _possible(mended(problem, repair), budget):
                 yield repair

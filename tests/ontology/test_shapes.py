@@ -32,6 +32,7 @@ COMPONENTS = {
     SH["in"]: SH.InConstraintComponent,
     SH["not"]: SH.NotConstraintComponent,
     SH["or"]: SH.OrConstraintComponent,
+    SH.maxInclusive: SH.MaxInclusiveConstraintComponent,
     SH.sparql: SH.SPARQLConstraintComponent,
 }
 STRUCTURE = {SH.property, SH.path, SH.message, SH.severity, SH.declare, SH.targetClass, SH.targetSubjectsOf,

@@ -168,3 +168,11 @@ def test_a_role_that_allows_nobody_is_not_told_to_ask_for_one() -> None:
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
     assert not [one for one in with_repairs(given_, refused).repairs if isinstance(one, AskForOne)]
+
+
+def test_who_asks_for_far_too_many_is_told_how_many_there_are() -> None:
+    given_ = problem({"speaker": [component("left"), component("right")]}, counts={"speaker": (10**12, None)})
+    refused = solve.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    assert words == ["let the role speaker ask for 2 (sc:minCount 2)"]
