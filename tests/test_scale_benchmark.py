@@ -35,7 +35,7 @@ def test_rdflib_reads_the_same_profiles() -> None:
 
 def test_other_forms_of_an_advertisement_are_advertisements() -> None:
     head, *advertisements = worlds.ecology(20)
-    for form in (worlds.labelled, worlds.unlike):
+    for form in (worlds.labelled, worlds.linked, worlds.topical, worlds.unlike):
         text = head + "".join(form(text, number) for number, text in enumerate(advertisements))
         good, bad = stream.read(text.encode(), "a.ttl")
         assert (len(good), bad) == (20, [])

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from benchmarks.scale.engines import ENGINES, Found
 from benchmarks.scale.report import page
-from benchmarks.scale.worlds import ecology, labelled, unlike
+from benchmarks.scale.worlds import ecology, labelled, linked, topical, unlike
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "scale.md"
 SIZES = (1_000, 10_000, 100_000)
@@ -75,6 +75,8 @@ def measure(bench: Bench, sizes: tuple[int, ...], rdflib_most: int, form_size: i
         "alike": bench.ecology("alike", form_size),
         "labelled": bench.ecology("labelled", form_size, labelled),
         "files": bench.files("files", form_size),
+        "linked": bench.ecology("linked", form_size, linked),
+        "topical": bench.ecology("topical", form_size, topical),
         "unlike": bench.ecology("unlike", form_size, unlike),
     }
     forms = {form: bench.measured("loading", path, 5) for form, path in paths.items()}

@@ -19,6 +19,8 @@ FORMS = {
     "alike": "as above",
     "labelled": "each with a label, a comment and a serial number of its own",
     "files": "as above, each in a file of its own",
+    "linked": "as the first, with named ports that are described in statements of their own",
+    "topical": "as the first, with port names of its own robot (`/robot7/out0`), and a rate for each output",
     "unlike": "each with types, signals, modes and places that no other has",
 }
 
@@ -115,8 +117,8 @@ the process grew by at its peak, for each advertisement. A few milliseconds of a
 
 ## By what recurs
 
-Load parses each piece of text once, however many components say it. So it depends on how much components have in
-common; {form_size:,} components.{beyond}
+Load parses each piece of text once, however many components say it, and pieces that differ in strings and digits alone
+once for all of them. So it depends on how much components have in common; {form_size:,} components.{beyond}
 
 {table(("advertisements", "load / parse", "octets each"), formed)}
 

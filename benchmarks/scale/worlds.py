@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from selfconf.rdf import bindings, templates, turtle
 from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf.vocabulary import UNIT
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix rob: <https://w3id.org/selfconf/robotics#> .
@@ -25,6 +26,7 @@ ROLES = {
 }
 KINDS = 200
 ROBOTS = 5
+_PORT = re.compile(r'sc:has(?P<link>Input|Output) \[ sc:name "(?P<name>\w+)" ; sc:signalType (?P<type>\S+) \]')
 
 
 def ecology(size: int, seed: int = 0, wanted: bool = True) -> Iterator[str]:
@@ -73,3 +75,26 @@ def labelled(text: str, number: int) -> str:
 def unlike(text: str, number: int) -> str:
     """The same advertisement with types, signals and values that occur in no other."""
     return re.sub(r"(:Kind|:Mode|Signal|:robot|:room)\d+", rf"\g<1>{number}x", text)
+
+
+def linked(text: str, number: int) -> str:
+    """The same advertisement with ports that have names, and are described in statements of their own."""
+    ports: list[str] = []
+
+    def described(port: re.Match[str]) -> str:
+        name = f":c{number}-{port['name']}"
+        ports.append(f'{name} sc:name "{port["name"]}" ; sc:signalType {port["type"]} .\n')
+        return f"sc:has{port['link']} {name}"
+
+    return _PORT.sub(described, text) + "".join(ports)
+
+
+def topical(text: str, number: int) -> str:
+    """The same advertisement with ports that are called after its robot, and outputs that promise a rate."""
+    rate = f" ; sc:rate [ sc:value 10.0 ; sc:unit <{UNIT.HZ}> ]"
+
+    def topic(port: re.Match[str]) -> str:
+        said = f'sc:name "/robot{number}/{port["name"]}" ; sc:signalType {port["type"]}'
+        return f"sc:has{port['link']} [ {said}{rate if port['link'] == 'Output' else ''} ]"
+
+    return _PORT.sub(topic, text)

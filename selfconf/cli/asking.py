@@ -22,7 +22,7 @@ import pyoxigraph as ox
 
 from selfconf.cli import endpoint, words
 from selfconf.cli.answers import shown
-from selfconf.errors import NetworkError, QueryError, SelfconfError
+from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
 from selfconf.rdf import queries, remote
 from selfconf.rdf.dataset import PREFIXES, Answer, Dataset
 
@@ -32,7 +32,7 @@ ROWS = 100_000
 """How many rows are shown by default."""
 MEMORY = 4 << 30
 """How many bytes of address space the process may take."""
-_REFUSED, _CUT, _UNREACHED = 2, 3, 4
+_REFUSED, _CUT, _UNREACHED, _EXHAUSTED = 2, 3, 4, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,11 @@ def answer(dataset: Dataset, question: Question) -> Shown:
         raise NetworkError(said)
     if done.returncode == -signal.SIGSEGV:
         raise QueryError("the query is nested too deeply")
-    raise QueryError(f"the query takes more than {question.memory / (1 << 30):.1f} GiB of memory; ask for less")
+    if done.returncode in (_EXHAUSTED, -signal.SIGABRT, -signal.SIGKILL):
+        raise QueryError(f"the query takes more than {question.memory / (1 << 30):.1f} GiB of memory; ask for less")
+    raise ProgrammerError(
+        f"the process that answers queries has broken: {said.splitlines()[-1] if said else 'no word'}"
+    )
 
 
 def main() -> int:
@@ -93,6 +97,8 @@ def main() -> int:
     except SelfconfError as error:
         _say(str(error))
         return _UNREACHED if isinstance(error, NetworkError) else _REFUSED
+    except MemoryError:
+        return _EXHAUSTED
     sys.stdout.buffer.write(text.encode())
     return _CUT if cut else 0
 

@@ -1,34 +1,23 @@
 """Turtle as clauses: a predicate with its objects, as text, kept once however many components say it.
 
-Making an object of every triple costs more than parsing it. So Oxigraph's parser is connected to Oxigraph's own
-serialiser, a few hundred triples at a time, and what comes out is text of one form only: a line for each predicate of
-a subject. Such a line with its objects is a *clause* here. Equal text means equal statements, so all that follows
-from a clause alone is worked out once.
-
-Blank nodes become part of the clause that leads to them: `sc:hasInput [ sc:name "pose" ; ... ]`, as their author
-wrote them. That is sound where every blank node is written in brackets or as a list, so that exactly one statement
-leads to it. Labels of blank nodes have become names before (`selfconf.rdf.pieces`).
+A line of what Oxigraph writes about a subject, one predicate with its objects, is a *clause* here. Equal text means
+equal statements, so all that follows from a clause alone is worked out once.
 """
 
 from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
-from itertools import islice
 from operator import attrgetter
-
-import pyoxigraph as ox
 
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import advertisements, turtle
 from selfconf.rdf.advertisements import STRUCTURE, allowed
-from selfconf.rdf.vocabulary import FIRST, NIL, RDF, REST, SC, TYPE, UNIT, XSD
+from selfconf.rdf.vocabulary import RDF, SC, TYPE, UNIT, XSD
 
-CHUNK = 512
-"""Triples per piece of text: the text of so many stays in the processor's cache."""
 END, NEXT = " .\n", " ;\n\t"
 """What Oxigraph writes after the last clause of a subject, and between two; no term has a line break in it."""
 _NAME = attrgetter("name")
@@ -38,15 +27,11 @@ _NOTHING = Profile(_SPOKEN_FOR)
 _NO_TYPES: frozenset[IRI] = frozenset()
 _BEYOND = f"<{SC.Component}>"
 """What a blank node may not say if it is to be folded: that it is a component itself."""
-_DEPTH = 30
-"""How deep blank nodes may lie in blank nodes."""
 LINKS = frozenset((SC.hasInput, SC.hasOutput, SC.hasParameter, SC.grounding, SC.rate))
 """What leads from a component to what else its profile is made of."""
 _STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
 _SILENT = {f"<{predicate}>" for predicate in (SC.name, SC.signalType)}
 """What says nothing of a component itself."""
-_CELL = [f"<{FIRST}>", f"<{REST}>"]
-_OBJECT = re.compile(r'<[^<>]*>|"(?:[^"\\]|\\.)*"(?:@[A-Za-z0-9-]+|\^\^<[^<>]*>)?|[^\s",<>]+')
 _SIMPLE = re.compile(
     r"<(?P<predicate>[^<>]*)> (?:"
     r"<(?P<iri>[^<>]*)>"
@@ -275,128 +260,3 @@ class Clauses(dict[str, Clause]):
     def slot(self, predicate: str, *names: str) -> object:
         """What only one clause of a component can have; compared by identity, which is quicker."""
         return self._slots.setdefault((predicate, *names), object())
-
-
-def fold(text: bytes, source: str, base: str | None, clauses: Clauses) -> dict[str, list[Clause]] | None:
-    """What a document without labels of blank nodes says of each named subject, blank nodes folded into the clauses.
-
-    None where that cannot be done: blank nodes that nobody leads to, or that are components. Raises TurtleError.
-    """
-    try:
-        try:
-            subjects = _soon(text, base, clauses)
-        except BeyondFoldingError:
-            subjects = None
-        return _late(text, base, clauses) if subjects is None else subjects
-    except (SyntaxError, MemoryError) as error:
-        raise turtle.not_turtle(error, source) from None
-    except BeyondFoldingError:
-        return None
-
-
-def _soon(text: bytes, base: str | None, clauses: Clauses) -> dict[str, list[Clause]] | None:
-    """The same while reading; None where what brackets say does not come just before or after them, as in lists."""
-    triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
-    subjects: dict[str, list[Clause]] = {}
-    nodes: dict[str, str] = {}
-    known, take = clauses.get, nodes.pop
-    said: list[Clause] = []
-    add, last = said.append, ""
-    predicate = node = content = ""
-    # Every microsecond in this loop is one twentieth of what an advertisement costs.
-    while piece := ox.serialize(islice(triples, CHUNK), format=ox.RdfFormat.TURTLE):
-        for lines in piece[: -len(END)].decode().split(END):
-            subject, _, rest = lines.partition(" ")
-            if subject != last:
-                if subject[0] == "_":
-                    if "_:" in rest:
-                        rest = NEXT.join([_folded(line, take) for line in rest.split(NEXT)])
-                    if subject == node:  # a string at the end of the brackets comes after them
-                        content = f"{content}{NEXT}{rest}" if content else rest
-                        line = f"{predicate} [ {content} ]"
-                        said[-1] = known(line) or clauses[line]
-                    else:
-                        nodes[subject] = f"{nodes[subject]}{NEXT}{rest}" if subject in nodes else rest
-                    continue
-                last = subject
-                said = subjects[subject] if subject in subjects else subjects.setdefault(subject, [])
-                add = said.append
-            for line in rest.split(NEXT):
-                clause = known(line)
-                if clause is None:
-                    if "_:" in line and _leads(line):
-                        predicate, _, node = line.partition(" ")
-                        content = take(node, "")
-                        line = f"{predicate} [ {content} ]"
-                        clause = known(line)
-                    if clause is None:
-                        clause = clauses[line]
-                add(clause)
-    return None if nodes else subjects
-
-
-def _leads(line: str) -> bool:
-    """Whether the object of a clause is a blank node. Raises BeyondFoldingError if it has others besides."""
-    said = line[line.index(" ") + 1 :]
-    if said.startswith("_:") and " " not in said:
-        return True
-    if any(found.startswith("_:") for found in _OBJECT.findall(said)):
-        raise BeyondFoldingError
-    return False
-
-
-def _folded(line: str, take: Callable[[str], str]) -> str:
-    """A clause of a blank node, with what its own blank node says in brackets."""
-    if "_:" not in line or not _leads(line):
-        return line
-    predicate, _, node = line.partition(" ")
-    try:
-        return f"{predicate} [ {take(node)} ]"
-    except KeyError:
-        raise BeyondFoldingError from None
-
-
-def _late(text: bytes, base: str | None, clauses: Clauses) -> dict[str, list[Clause]]:
-    """The same once all is read, with lists, and each blank node of several objects in a clause of its own."""
-    triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
-    lines: dict[str, list[str]] = {}
-    while piece := ox.serialize(islice(triples, CHUNK), format=ox.RdfFormat.TURTLE):
-        for block in piece[: -len(END)].decode().split(END):
-            subject, _, rest = block.partition(" ")
-            lines.setdefault(subject, []).extend(rest.split(NEXT))
-    names = [subject for subject in lines if subject[0] != "_"]
-    subjects = {name: [clauses[line] for line in _nested(lines.pop(name), lines, 0)] for name in names}
-    if lines:
-        raise BeyondFoldingError
-    return subjects
-
-
-def _nested(said: Iterable[str], lines: dict[str, list[str]], depth: int) -> Iterator[str]:
-    """Clauses with what blank nodes say in the place of these, which are taken out of `lines`."""
-    if depth > _DEPTH:
-        raise BeyondFoldingError
-    for line in said:
-        predicate, _, objects = line.partition(" ")
-        if "_:" not in objects:
-            yield line
-            continue
-        for found in _OBJECT.findall(objects):
-            yield f"{predicate} {_written(found, lines, depth)}"
-
-
-def _written(found: str, lines: dict[str, list[str]], depth: int) -> str:
-    """An object; a blank node as a list, where it is the first cell of one, or in brackets."""
-    if not found.startswith("_:"):
-        return found
-    members: list[str] = []
-    at = found
-    while [line.partition(" ")[0] for line in sorted(lines.get(at, ()))] == _CELL:
-        first, rest = sorted(lines.pop(at))
-        (member,) = _nested([first], lines, depth + 1)
-        members.append(member.partition(" ")[2])
-        at = rest.partition(" ")[2]
-    if not members:
-        return bracketed("", _nested(lines.pop(at, ()), lines, depth + 1)).lstrip()
-    if at != f"<{NIL}>":
-        raise BeyondFoldingError
-    return f"( {' '.join(members)} )"

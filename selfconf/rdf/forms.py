@@ -6,16 +6,16 @@ know what another piece says, no parser is needed.
 
 That is sound because a string or a run of digits means itself wherever it stands, and may be replaced by any other.
 In an IRI that holds for what follows the last `#` or `/`, as no term that matters here has digits there.
-Shapes are left alone where it is not so: escapes, prefixes and language tags with digits, ports and the like in IRIs,
-and strings of other kinds than "..." on one line. A shape that has none of that shows that its pieces were taken apart
-between tokens. A datatype does not matter: no literal is looked at here, and none is refused by the parser.
+Shapes are left alone where it is not so: prefixes and language tags with digits, ports and the like in IRIs, escapes in
+names, strings in single quotes. A shape that has none of that shows that its pieces were taken apart between tokens.
+A datatype does not matter: no literal is looked at here, and none is refused by the parser.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from selfconf.rdf.clauses import Clause, Clauses, port_of
@@ -24,11 +24,12 @@ ENOUGH = 4
 """Of how many pieces of a shape its form is made."""
 MOST = 10_000
 """How many shapes are remembered that have no form yet."""
-_RUN = rb"[0-9]+(?![^<>\s\"]*[#/][^<>\s\"]*>)"
-_STRING, _DIGITS = re.compile(rb'"[^"\\\n\r\0]*"'), re.compile(_RUN)
-_HOLE = re.compile(rb'"[^"\\\n\r]*"|' + _RUN)
-_REGULAR = re.compile(rb"(?:[^<>\"'#\\%@\0]|\"(?!\")|@[A-Za-z]|<[^<>\"'\\%@\s\[\]]*>)*")
-_RIGID = re.compile(rb"\x01[^\s,;\[\]()<>\"/]*:|:\x01[^<>\s]*>|@[A-Za-z0-9-]*\x01")
+_ESCAPE = rb"\\(?:[tbnrf\"'\\]|u(?!0000)[0-9A-Ca-c][0-9A-Fa-f]{3})"
+_TEXT = rb'"(?!"")[^"\\\n\r\0]*(?:%b[^"\\\n\r\0]*)*"|"""[^"\\\0]*(?:(?:%b|""?(?!"))[^"\\\0]*)*"""' % (_ESCAPE, _ESCAPE)
+_RUN = rb"[0-9]+(?![^<>\s\"#/]{0,250}[#/][^<>\s\"]{0,250}>)"  # no term that matters is longer
+_STRING, _DIGITS, _HOLE = re.compile(_TEXT), re.compile(_RUN), re.compile(_TEXT + b"|" + _RUN)
+_REGULAR = re.compile(rb"(?:[^<>\"'#\\%@\0]|\"(?!\")|@[A-Za-z]|<[^<>\"'\\%@\s\[\]]*>|#[^\n\r\"'\\]*[\n\r])*")
+_RIGID = re.compile(rb"\x01[^\s,;\[\]()<>\"/]{0,250}:|:\x01[^<>\s]{0,250}>|@[A-Za-z0-9-]*\x01")
 """Digits before a colon, or just after one in an IRI, or in a language tag."""
 _HOLES = re.compile(rb'"|\x01')
 _NAME = re.compile(r"s731([0-9]{4})")
@@ -57,10 +58,10 @@ class Form:
     links: bool
     name: int | None
     """Of a port, between which quotation marks its name stands, counted from nought."""
-    rate: bool
-    """Whether it is a port with a rate."""
-    written: bool
-    """Whether what such a clause means depends on what is in the holes."""
+    rate: tuple[int, ...]
+    """Of a port, which of the digits are those of its rate."""
+    free: bool
+    """Whether what is in the holes does not matter to what such a clause is."""
 
     def text(self, piece: bytes) -> str:
         """The clause that a piece says."""
@@ -111,8 +112,10 @@ class Forms:
         found = {}
         if len(self._met) > MOST:
             self._met.clear()
-        self._met.update(shape for shape in shapes if shape not in self._forms)
-        for shape in set(shapes).intersection(self._met):
+        unknown = set(shapes).difference(self._forms)
+        if unknown:
+            self._met.update(shape for shape in shapes if shape in unknown)
+        for shape in unknown:
             if self._met[shape] >= ENOUGH:
                 del self._met[shape]
                 self._forms[shape] = ()
@@ -122,27 +125,47 @@ class Forms:
 
     def learn(self, shape: bytes, clauses: Sequence[Clause], known: Clauses) -> None:
         """Make the form of a shape from what its piece with marks says."""
-        marks = [int(mark[1] or mark[2]) for clause in clauses for mark in _MARK.finditer(clause.text)]
+        marks = [mark for clause in clauses for mark in _marks(clause.text)]
         if sorted(marks) == list(range(len(_HOLES.findall(shape)))):
             self._forms[shape] = tuple([_form(shape, clause, known) for clause in clauses])
 
-    def fill(self, shape: bytes, piece: bytes, known: Clauses) -> tuple[Clause, ...]:
-        """The clauses that a piece says; none if its shape has no form."""
-        return tuple([_filled(form, piece, known) for form in self._forms.get(shape, ())])
+    def fill(
+        self, pieces: Sequence[bytes], shapes: Sequence[bytes], said: dict[bytes, tuple[Clause, ...]], known: Clauses
+    ) -> list[bytes]:
+        """Note down what pieces say whose shapes have forms; the other pieces are returned."""
+        odd: list[bytes] = []
+        forms_of = self._forms.get
+        for piece, shape in zip(pieces, shapes, strict=True):
+            forms = forms_of(shape)
+            if not forms:
+                odd.append(piece)
+            else:
+                said[piece] = tuple([Filled(f, piece) if f.free else _filled(f, piece, known) for f in forms])
+        return odd
 
 
 def _filled(form: Form, piece: bytes, known: Clauses) -> Clause:
+    """The clause of a piece, where it matters what is in the holes."""
     clause = Filled(form, piece)
     if form.links:
         known.suspects.add(clause)
-    elif form.name is not None:
-        name = piece.split(b'"', form.name + 1)[form.name]
-        if not name or (form.rate and port_of(clause.text) is None):
-            return known[clause.text]
-        clause.slot = known.slot(form.predicate, name.decode())
-    elif form.written:
+        return clause
+    if form.name is None or b"\\" in piece or b'""' in piece or (form.rate and not _common(form.rate, piece)):
         return known[clause.text]
+    clause.slot = known.slot(form.predicate, piece.split(b'"', form.name + 1)[form.name].decode())
     return clause
+
+
+def _common(rate: Iterable[int], piece: bytes) -> bool:
+    """Whether the digits of a rate make a number of a common size above zero."""
+    values = _HOLE.findall(piece)
+    digits = [values[hole] for hole in rate]
+    return max(map(len, digits)) < 10 and any(each.strip(b"0") for each in digits)
+
+
+def _marks(text: str) -> tuple[int, ...]:
+    """Which marks stand in a text, one after the other."""
+    return tuple([int(mark[1] or mark[2]) for mark in _MARK.finditer(text)])
 
 
 def _form(shape: bytes, clause: Clause, known: Clauses) -> Form:
@@ -155,13 +178,12 @@ def _form(shape: bytes, clause: Clause, known: Clauses) -> Form:
     return Form(
         clause.predicate,
         _MARK.sub("%b", text.replace("%", "%%")).encode(),
-        tuple([int(mark[1] or mark[2]) for mark in _MARK.finditer(text)]),
+        _marks(text),
         clause.bracketed,
         port is None and len(clause.links) > 0,
         name,
-        port is not None and port["rate"] is not None,
-        _MARK.search(clause.predicate) is not None
-        or (name is None and not clause.links and (clause.slot is not clause or clause in known.suspects)),
+        () if port is None else _marks(port["rate"] or ""),
+        clause.slot is clause and clause not in known.suspects and not _MARK.search(clause.predicate),
     )
 
 

@@ -9,6 +9,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.rdf.bindings import misfits
 from selfconf.rdf.templates import shape_statements
 from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.values import compiled
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 KEPT = 64
@@ -71,8 +72,19 @@ class Suitable:
         """Those of some values that a parameter may have."""
         known = self._known.get((parameter, values))
         if known is None:
-            known = values - misfits(self._parameters[parameter], values, self._document).keys()
+            known = self._fitting(parameter, values)
             if len(self._known) == KEPT:
                 self._known.clear()
             self._known[parameter, values] = known
         return known
+
+    def _fitting(self, parameter: IRI, values: frozenset[Term]) -> frozenset[Term]:
+        """The same, by tests of values if all that the parameter says is among them, and by pySHACL otherwise."""
+        constraints: dict[IRI, list[Term]] = {}
+        for predicate, value in self._document.statements.get(parameter, ()):
+            if predicate in SH and predicate != SH.defaultValue:
+                constraints.setdefault(predicate, []).append(value)
+        tests, covered = compiled(constraints)
+        if covered == constraints.keys():
+            return frozenset([value for value in values if all(test.passes(value) for test in tests)])
+        return values - misfits(self._parameters[parameter], values, self._document).keys()

@@ -2,7 +2,7 @@
 
 Recognising text that has been read before takes a hundredth of the time of reading it. So a document is cut, by one
 regular expression, behind each subject and at the semicolons and full stops between its clauses; only the pieces that
-are new are read, each under a subject of its own, all in one call (`selfconf.rdf.clauses.fold`). Of these, many differ
+are new are read, each under a subject of its own, all in one call (`selfconf.rdf.folding`). Of these, many differ
 from others in nothing but strings and digits: labels, serial numbers, coordinates, names of ports. Their common form
 is read once, and filled in for each (`selfconf.rdf.forms`).
 
@@ -23,7 +23,8 @@ from dataclasses import dataclass, field
 import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
-from selfconf.rdf.clauses import BeyondFoldingError, Clause, Clauses, fold
+from selfconf.rdf.clauses import BeyondFoldingError, Clause, Clauses
+from selfconf.rdf.folding import fold
 from selfconf.rdf.forms import Forms, shaped
 from selfconf.rdf.turtle import SKOLEM
 
@@ -76,6 +77,8 @@ _LABEL = re.compile(
 """A label where an object or a subject may stand; or the sign of one, elsewhere."""
 _MISPLACED = re.compile(rb"(?:[;\[\0]|\^\^)\s*<%b[^>]*>(?!\Z|\0)" % SKOLEM.encode())
 """A blank node as a predicate or a datatype."""
+_LETTERS = str.maketrans("0123456789", "ghijklmnop")
+"""Letters for digits, which would all become holes of forms."""
 _END, _SEMICOLON = b".;"
 
 
@@ -131,13 +134,7 @@ class Pieces(Clauses):
             said = self._read(list(samples.values()), context, source, base)
             for shape, sample in samples.items():
                 context.forms.learn(shape, said[sample], self)
-            odd: list[bytes] = []
-            for piece, shape in zip(new, shapes, strict=True):
-                clauses = context.forms.fill(shape, piece, self)
-                if clauses:
-                    context.known[piece] = clauses
-                else:
-                    odd.append(piece)
+            odd = context.forms.fill(new, shapes, context.known, self)
             self.new += len(odd)
             if self.pays:
                 for piece, found in self._read(odd, context, source, base).items():
@@ -214,8 +211,9 @@ def _assembled(text: bytes, source: str, base: str | None, pieces: Pieces) -> di
         return None
     subjects: dict[str, list[Clause]] = {}
     said: list[Clause] = []
+    last = b""
     known, ended = context.known.get, True
-    name = f"{SKOLEM}{ox.BlankNode().value}.".encode() if b"_:" in text else b""
+    name = f"{SKOLEM}{ox.BlankNode().value.translate(_LETTERS)}.".encode() if b"_:" in text else b""
     for cut in _windows(text, head.end()):
         if cut is not None and name:
             cut = _unlabelled(cut, name)
@@ -224,10 +222,11 @@ def _assembled(text: bytes, source: str, base: str | None, pieces: Pieces) -> di
         for piece in cut:
             clauses = known(piece)
             if clauses is None:
-                subject = _subject(piece, context, base)
-                if subject is None:
-                    return None
-                said = subjects[subject] if subject in subjects else subjects.setdefault(subject, [])
+                if piece != last:  # many a document says one thing after the other of the same subject
+                    subject = _subject(piece, context, base)
+                    if subject is None:
+                        return None
+                    said, last = subjects[subject] if subject in subjects else subjects.setdefault(subject, []), piece
                 ended = False
             elif ended:  # a clause where a subject has to stand
                 return None

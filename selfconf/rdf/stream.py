@@ -159,6 +159,7 @@ class Origin:
     def __init__(self, source: str) -> None:
         self.place = Place(source)
         self.things: dict[str, list[Clause]] = {}
+        self._linked: dict[tuple[object, ...], Clause] = {}
         self._parsed: dict[str, Mapping[Node, list[tuple[IRI, Term]]]] = {}
 
     def linked(self, said: Iterable[Clause], known: Clauses) -> tuple[Clause, ...] | None:
@@ -171,10 +172,14 @@ class Origin:
             for name in names:
                 if name not in self.things:
                     return None
-                try:
-                    found.append(known[bracketed(clause.predicate, [part.text for part in self.things[name]])])
-                except BeyondFoldingError:
-                    return None
+                key = (clause.predicate, *self.things[name])
+                if key not in self._linked:
+                    text = bracketed(clause.predicate, [part.text for part in self.things[name]])
+                    try:
+                        self._linked[key] = known[text]
+                    except BeyondFoldingError:
+                        return None
+                found.append(self._linked[key])
         return tuple(found)
 
     def document(self, component: str, clauses: Iterable[Clause], links: Container[IRI] | None = None) -> Document:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import json
+import sys
 from pathlib import Path
 
 import pytest
 
 from selfconf.cli.asking import Question, answer
 from selfconf.cli.main import main
-from selfconf.errors import AuthorError, QueryError
+from selfconf.errors import AuthorError, ProgrammerError, QueryError
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.dataset import Dataset
@@ -74,6 +75,17 @@ JOIN = " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(30))
 def test_a_query_without_end_is_ended(dataset: Dataset) -> None:
     with pytest.raises(QueryError, match=r"more than 0\.5 s"):
         answer(dataset, Question(f"SELECT (COUNT(*) AS ?n) WHERE {{ {JOIN} }}", seconds=0.5))
+
+
+def test_a_process_for_queries_that_breaks_is_not_said_to_lack_memory(
+    dataset: Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    broken = tmp_path / "python"
+    broken.write_text("#!/bin/sh\ncat > /dev/null; echo 'KeyError: 1' >&2; exit 1\n")
+    broken.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(broken))
+    with pytest.raises(ProgrammerError, match="KeyError: 1"):
+        answer(dataset, Question("ASK { ?s ?p ?o }"))
 
 
 def test_a_query_that_takes_all_memory_is_ended(dataset: Dataset) -> None:

@@ -50,6 +50,12 @@ SAID = st.sampled_from(
         '<https://w3id.org/selfconf#hasInput> [ <https://w3id.org/selfconf#name> "{s}" ; sc:signalType <urn:S{d}> ]',
         '<http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <http://a/{d}/K{d}#L{d}> , :K{d}, <http://a{d}.b>',
         ':p {d},"a/{s}>" , 5,:x{d},<http://a/{d}>',
+        '# say {d}\n :p "{s}"',
+        '# so\n :p """{s}""""', ':p """{s}\n"{d}" \\"""', ':p "{s}\\"{s}" , "\\u00e{d}"',
+        'sc:hasOutput [ rdfs:label "a\\"" ; sc:name "n{d}" ; sc:signalType :S ]',
+        ':p "\\q{d}"', ':p "{s}" # "{d}\n , "{s}"',
+        'sc:hasOutput [ sc:name """n{d}""" ; sc:signalType :S ]',
+        'sc:hasOutput [ sc:name "a\\n{d}" ; sc:signalType :S ]',
         "sc:hasInput _:port{d}", ":near _:n , _:n{d}", "rdfs:seeAlso :c{d}", "sc:hasParameter ( {d} )",
     )
 )  # fmt: skip
@@ -125,7 +131,7 @@ def test_pieces_that_differ_in_strings_and_digits_are_read_once(said: str) -> No
 
 
 @pytest.mark.parametrize(
-    "piece", [b" :p 'a1' ;", b' :p "a\\n" ;', b" p1:p 1 ;", b" :p <a%201> ;", b' :p "x"@en-1 ;', b" :p <http://a:1/> ;"]
+    "piece", [b" :p 'a1' ;", b' :p "a\\q" ;', b" p1:p 1 ;", b" :p <a%201> ;", b' :p "x"@en-1 ;', b" :p <http://a:1/> ;"]
 )
 def test_shapes_in_which_digits_do_not_mean_themselves_have_no_form(piece: bytes) -> None:
     assert not Forms().wanted(shaped([piece] * ENOUGH))

@@ -8,10 +8,12 @@ from hypothesis import strategies as st
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal
-from selfconf.model.term import IRI, Term
-from selfconf.rdf import advertisements, bindings, templates, turtle
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf import advertisements, bindings, free_values, templates, turtle
+from selfconf.rdf.free_values import Suitable
 from selfconf.rdf.partition import ANOTHER, Partitioner
 from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf.vocabulary import RDF, XSD
 from selfconf.search import solve
 from selfconf.search.problem import Problem
 from tests.lab import PREFIXES, iri
@@ -128,3 +130,32 @@ def test_a_parameter_that_lists_its_values_has_them_though_nobody_states_any(sha
     found = solve.search(Problem(task.task, Partitioner(task).partition(ads)))
     assert isinstance(found, Configuration)
     assert [setting.value for setting in found.settings] == list(found.bindings.values()) == [iri("x")]
+
+
+TERMS = (
+    IRI("urn:x"),
+    BlankNode("_:b"),
+    Literal("abc"),
+    Literal("abc", RDF.langString, "en"),
+    Literal("7", XSD.integer),
+)
+SAID = (
+    "sh:nodeKind sh:IRI", "sh:nodeKind sh:IRIOrLiteral", "sh:datatype xsd:integer", "sh:minLength 4", 'sh:pattern "^a"',
+    "sh:minInclusive 5", "sh:in ( 'abc' 7 )", "sh:not [ sh:datatype xsd:string ]", "sh:hasValue 7",
+)  # fmt: skip
+
+
+@given(st.lists(st.sampled_from(SAID), max_size=2, unique_by=lambda each: each.partition(" ")[0]))
+def test_compiled_tests_and_pyshacl_agree_on_which_values_suit_a_parameter(said: list[str]) -> None:
+    given = document(" ; ".join([PARAMETER, *said]) + " . :r a sc:Role .")
+    (parameter,) = given.task.template.parameters
+    found = Suitable({parameter.iri: parameter}, given.document).of(parameter.iri, frozenset(TERMS))
+    assert found == set(TERMS) - bindings.misfits(parameter, TERMS, given.document).keys()
+
+
+def test_a_plain_constraint_on_many_values_is_not_a_question_for_pyshacl(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(free_values, "misfits", None)
+    given = document(f"{PARAMETER} ; sh:nodeKind sh:IRI . :r a sc:Role .")
+    (parameter,) = given.task.template.parameters
+    suitable = Suitable({parameter.iri: parameter}, given.document)
+    assert suitable.of(parameter.iri, frozenset(TERMS)) == {IRI("urn:x")}

@@ -109,7 +109,12 @@ def test_relative_names_mean_something_else_in_each_file() -> None:
         assert said[-1].text.endswith(f"<file:///{name}#d> , <file:///e>")
 
 
-@pytest.mark.parametrize("text", ["[" * 50_000, '"""' + "a" * 100_000, "'\\" * 50_000, "[ :p " * 30_000, "<" * 90_000])
+@pytest.mark.parametrize(
+    "text",
+    ["[" * 50_000, '"""' + "a" * 100_000, "'\\" * 50_000, "[ :p " * 30_000, "<" * 90_000, ":T ; :p :" + "1a" * 50_000,
+     ":T ; :p <urn:" + "1/" * 50_000 + "> .", ":T ; :p <http://a/" + "1" * 90_000 + "> .", ':T ; :p "' + '""' * 40_000,
+     ":T" + " ; :p _:x" * 10_000 + " .", ":T ; :p ( " + "1 " * 40_000 + ") .", ":T ; :p ( " + "( " * 40_000],
+)  # fmt: skip
 def test_cutting_takes_no_longer_for_what_is_hostile(text: str) -> None:
     began = time.process_time()
     with contextlib.suppress(TurtleError):

@@ -131,6 +131,33 @@ def test_what_is_no_turtle_is_blamed_by_line_and_column() -> None:
         stream.read(b"<urn:a> <urn:b> <urn:c> .\n<x> ; .", "a.ttl", "file:///")
 
 
+@pytest.mark.parametrize("form", [':c1 rdfs:label "{}" .', ":c1 a sc:Component, :A ; rdfs:label '''{}''' ."])
+def test_a_literal_that_is_too_long_for_the_parser_is_blamed_on_its_file(form: str) -> None:
+    text = (PREFIXES + form.format("a" * (17 << 20))).encode()
+    with pytest.raises(TurtleError, match=r"big\.ttl: a literal in it is over 16 MiB"):
+        stream.read(text, "big.ttl")
+    with pytest.raises(TurtleError, match="over 16 MiB"):
+        turtle.parse(text, "big.ttl")
+
+
+def test_ports_with_names_take_time_as_there_are_ports(monkeypatch: pytest.MonkeyPatch) -> None:
+    port = "sc:name 'in' ; sc:signalType :S"
+    text = PREFIXES + "".join(f":c{k} {GOOD} ; sc:hasInput :in{k} . :in{k} {port} .\n" for k in range(50))
+    careful = told(advertisements.read(turtle.parse(text, "a.ttl")))
+    monkeypatch.setattr(advertisements, "profiles", None)  # nobody looks at one by one
+    found = stream.read(text.encode(), "a.ttl")
+    assert told(found) == careful
+    assert iri("in7") in {value for _, _, value in found[0][7].triples}
+
+
+def test_blank_nodes_with_labels_are_the_same_in_one_document_and_others_in_another() -> None:
+    text = PREFIXES + f":c1 {GOOD} ; :near _:x . :c2 {GOOD} ; :near _:x . _:x :near _:y ; rdfs:label 'x' ."
+    one, other = stream.read(text.encode(), "a.ttl")[0]
+    again, _ = stream.read(text.encode(), "a.ttl")[0]
+    assert one.profile.values(iri("near")) == other.profile.values(iri("near")) != again.profile.values(iri("near"))
+    assert one.profile.values(iri("near"))[0] in {subject for subject, _, _ in one.triples}
+
+
 def test_oxigraph_writes_a_subject_as_streaming_expects_it() -> None:
     text = "<s:a> a <s:T> , <s:U> ; <s:p> 'x\ty ;\\n\\t' , [ <s:q> 1 ; <s:r> [ <s:q> 2 ] ] ."
     parser = ox.parse(text, format=ox.RdfFormat.TURTLE)
