@@ -97,7 +97,11 @@ def cp_sat(problem: Problem) -> First:
 
 
 def python_sat(problem: Problem, solver: str = "glucose4") -> First:
-    """python-sat: role after role, earlier candidates are assumed to play until one can."""
+    """python-sat: role after role, earlier candidates are assumed to play until one can.
+
+    To assume that one of all that are left does, or of half of them, took as long or many times longer: propagation
+    refutes a single one in no time, and each such question is a clause more.
+    """
     with clauses_of(problem, solver) as (clauses, plays):
         if not clauses.solve():
             return False

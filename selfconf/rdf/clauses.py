@@ -61,11 +61,15 @@ _TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
 class Clause(ABC):
     """A predicate with its objects, as Turtle: what one or many components say."""
 
-    __slots__ = ("keyed", "part", "slot")
+    __slots__ = ("bracketed", "keyed", "part", "predicate", "slot")
     types: frozenset[IRI] = frozenset()
     """The types that it gives."""
 
-    def __init__(self) -> None:
+    def __init__(self, predicate: str, bracketed: bool) -> None:
+        self.predicate = predicate
+        """Its predicate, in angle brackets, or `a`."""
+        self.bracketed = bracketed
+        """Whether its object is a blank node of its own."""
         self.part: Profile | None = None
         """What it adds to a profile, once that is known."""
         self.keyed: Sequence[tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]] = ()
@@ -75,18 +79,8 @@ class Clause(ABC):
 
     @property
     @abstractmethod
-    def predicate(self) -> str:
-        """Its predicate, in angle brackets, or `a`."""
-
-    @property
-    @abstractmethod
     def text(self) -> str:
         """All of it."""
-
-    @property
-    @abstractmethod
-    def bracketed(self) -> bool:
-        """Whether its object is a blank node of its own."""
 
     @property
     def links(self) -> Sequence[str]:
@@ -179,15 +173,12 @@ def _property(text: str) -> tuple[IRI, Term] | None:
 class Written(Clause):
     """A clause as it was written."""
 
-    __slots__ = ("bracketed", "predicate", "text", "types")
-    bracketed: bool
-    predicate: str
+    __slots__ = ("text", "types")
     text: str
 
     def __init__(self, predicate: str, text: str) -> None:
-        super().__init__()
-        self.predicate, self.text, self.types = predicate, text, _NO_TYPES
-        self.bracketed = text.endswith(("]", ")"))
+        super().__init__(predicate, text.endswith(("]", ")")))
+        self.text, self.types = text, _NO_TYPES
 
 
 class BeyondFoldingError(Exception):

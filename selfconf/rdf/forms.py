@@ -77,22 +77,13 @@ class Filled(Clause):
 
     def __init__(self, form: Form, piece: bytes) -> None:
         self._form, self._piece = form, piece
+        self.predicate, self.bracketed = form.predicate, form.bracketed
         self.part, self.keyed, self.slot = None, (), self
-
-    @property
-    def predicate(self) -> str:
-        """Its predicate."""
-        return self._form.predicate
 
     @property
     def text(self) -> str:
         """All of it."""
         return self._form.text(self._piece)
-
-    @property
-    def bracketed(self) -> bool:
-        """Whether its object is a blank node of its own."""
-        return self._form.bracketed
 
     @property
     def links(self) -> Sequence[str]:
