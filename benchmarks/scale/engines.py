@@ -86,18 +86,20 @@ def configure(path: Path, trials: int) -> Found:
         seconds, outcome = timed(composer.compose, ads, frozenset(), None)
         assert isinstance(outcome, Configuration), outcome
         keep(found, "search", seconds)
-        lost = frozenset(candidate.profile.component for candidate in partition.candidates[-1])
-        keep(found, "refusal", timed(refuse, composer, ads, lost)[0])
+        drives = {candidate.profile.component for candidate in partition.candidates[-1]}
+        alive = Ecology({component: one for component, one in ads.items() if component not in drives})
+        composer.partition(alive)  # this is not timed again
+        keep(found, "refusal", timed(refuse, composer, alive)[0])
         found["candidates"] = sum(map(len, partition.candidates)) / len(ROLES)
     return found
 
 
-def refuse(composer: Composer, ads: Mapping[IRI, Advertisement], lost: frozenset[IRI]) -> None:
+def refuse(composer: Composer, ads: Mapping[IRI, Advertisement]) -> None:
     """All that a refusal costs `configure`: reasons, near misses, repairs, and whether subclass mode knows better."""
-    refusal = composer.compose(ads, lost, None)
+    refusal = composer.compose(ads, frozenset(), None)
     assert isinstance(refusal, Refusal)
     options = argparse.Namespace(reasoning=Reasoning.SYNTACTIC.value, ontology=[])
-    explained(composer, ads, refusal, options, Clock(None))
+    assert explained(composer, ads, refusal, options, Clock(None)).repairs
 
 
 def crowd(path: Path, trials: int) -> Found:

@@ -164,7 +164,7 @@ class Composer:
         problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
         near = [
             (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables)))
-            for miss in refusal.near_misses[: mend.TRIALS]
+            for miss in refusal.near_misses[: mend.NEAR]
         ]
         return mend.with_repairs(problem, refusal, near, self.steps)
 

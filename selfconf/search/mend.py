@@ -46,6 +46,8 @@ from selfconf.search.walk import Budget
 
 TRIALS = 24
 """How many changed problems are looked at for each sort of repair."""
+NEAR = 8
+"""How many near misses are tried: no more than there is room for on a screen."""
 RELAXED = 8
 """How many roles of a conflict are tried with a smaller count; where more clash, that is no advice."""
 ADDED = 200
@@ -66,7 +68,7 @@ def with_repairs(problem: Problem, refused: Refusal, near: Near = (), steps: int
 
 def repairs(problem: Problem, refused: Refusal, near: Near = (), steps: int | None = None) -> Iterator[Repair]:
     """Changes that make a refused problem possible, what is easiest to do first."""
-    budget, near = Budget(EFFORT if steps is None else min(steps, EFFORT)), near[:TRIALS]
+    budget, near = Budget(EFFORT if steps is None else min(steps, EFFORT)), near[:NEAR]
     small = _small(problem, {one.component for one, _ in near})
     yield from (a for a in itertools.starmap(AcceptNearMiss, near) if _possible(mended(small, a), budget))
     yield from (r for r in _asked_for_one(problem, refused) if _possible(mended(problem, r), budget))
