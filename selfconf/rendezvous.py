@@ -49,11 +49,11 @@ def folder() -> Path:
 
 
 def usual_endpoint(ecology: str) -> str:
-    """Where a site of this user's ecology listens if nobody else does: the same each time.
+    """Where a site of an ecology listens if nobody else does: the same each time, another for another runtime folder.
 
     So a site that is started again is where those look for it who were connected to the one before.
     """
-    digest = hashlib.blake2s(f"{os.getuid()} {ecology}".encode(), digest_size=8).digest()
+    digest = hashlib.blake2s(f"{folder()} {ecology}".encode(), digest_size=8).digest()
     return f"tcp/127.0.0.1:{PORTS[int.from_bytes(digest, 'big') % len(PORTS)]}"
 
 

@@ -85,7 +85,10 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
     taken.close()
 
 
-def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(home: Home) -> None:
+def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(
+    home: Home, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
     somebody_else = router(rendezvous.usual_endpoint(home.ecology))
     site = home.site("a", "ads")
     assert home.endpoint() != somebody_else.endpoint
