@@ -88,6 +88,7 @@ class Filling:
                     if self.pace is not None and given - self.budget.steps > self.pace * (self.furthest + HEADROOM):
                         self.budget.steps = 0
                     if self.budget.steps <= 0:
+                        self.budget.steps = 0  # no less, though the last step may have cost more than was left
                         return
             else:
                 yield self.playing
