@@ -12,7 +12,7 @@ import threading
 import time
 from pathlib import Path
 
-from selfconf.sdk import Component, Ending, Host, Signal
+from selfconf.sdk import Component, Host, Signal, Termination
 from selfconf.sdk.program import join
 
 ADVERTISEMENTS = Path(__file__).parent / "failover"
@@ -82,7 +82,7 @@ def main() -> None:
     """Run one actor until told to end."""
     name = sys.argv[1]
     host = join()
-    ending = Ending(host.bus)
+    ending = Termination(host.bus)
     if name.startswith("position"):
         Phoenix(host, actor(name))
     else:

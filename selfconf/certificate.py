@@ -19,7 +19,7 @@ from selfconf.model.term import IRI, Term
 Players = Mapping[IRI, Sequence[Candidate]]
 
 
-def check(
+def broken_conditions(
     task: Task, partition: Partition, configuration: Configuration, hierarchy: Hierarchy = NOTHING_ABOVE
 ) -> list[str]:
     """Every condition that a configuration breaks, each in a sentence; empty if it is one."""

@@ -22,9 +22,8 @@ from typing import TypeVar
 
 from selfconf.errors import AuthorError
 from selfconf.model.term import BlankNode, Term
-from selfconf.rdf import closure, quick_owl, turtle
-from selfconf.rdf.turtle import Triple
-from selfconf.rdf.write import ntriples
+from selfconf.rdf import reasoning, turtle
+from selfconf.rdf.turtle import Triple, ntriples
 
 T = TypeVar("T", bound=Term)
 
@@ -32,7 +31,7 @@ LIMIT = 120.0
 """Seconds that a closure may take; `SELFCONF_OWL_RL_SECONDS` overrides it."""
 
 
-def folder() -> Path:
+def cache_folder() -> Path:
     """Where closures are kept: `$SELFCONF_CACHE_DIR`, or `selfconf` in the user's cache folder."""
     given = os.environ.get("SELFCONF_CACHE_DIR")
     if given:
@@ -40,11 +39,11 @@ def folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "selfconf"
 
 
-def owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
+def entailed_hierarchy(triples: Iterable[Triple]) -> Iterator[Triple]:
     """The hierarchy that an ontology entails. Raises AuthorError if it takes longer than the limit."""
     lines = ntriples(_relabelled(triples)).splitlines(keepends=True)
     name = hashlib.blake2s(b"".join((*lines, _reasoners().encode())), digest_size=16).hexdigest()
-    kept = folder() / "owl-rl" / f"{name}.nt"
+    kept = cache_folder() / "owl-rl" / f"{name}.nt"
     try:
         entailed = kept.read_bytes()
     except OSError:
@@ -115,8 +114,8 @@ def _keep(path: Path, entailed: bytes) -> None:
 def main() -> None:
     """Close what comes in on stdin."""
     triples = list(turtle.parse(sys.stdin.buffer.read(), "stdin").triples())
-    entail = quick_owl.owl_rl if quick_owl.suits(triples) else closure.owl_rl
-    entailed = (triple for triple in entail(triples) if triple[1] in closure.HIERARCHY)
+    entail = reasoning.reasonable_owl_rl if reasoning.suits(triples) else reasoning.owlrl_owl_rl
+    entailed = (triple for triple in entail(triples) if triple[1] in reasoning.HIERARCHY)
     sys.stdout.buffer.write(ntriples(entailed))
 
 

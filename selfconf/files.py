@@ -7,16 +7,15 @@ file means the same to whoever reads it, be it a command, a site or a component.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf.errors import AuthorError, TurtleError
-from selfconf.model.term import IRI
 
 if TYPE_CHECKING:
-    from selfconf.rdf.turtle import Document
+    from selfconf.rdf.advertisements import Advertisement, MalformedAdvertisement, SegmentCache
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
@@ -39,14 +38,16 @@ def within(path: Path, left_out: Callable[[AuthorError], None] | None = None) ->
     return sorted(file for file in found if file.suffix == ".ttl" and file.is_file())
 
 
-def document(path: Path, predicates: Iterable[IRI] | None = None) -> Document:
-    """A Turtle file, or its triples with some predicates.
+def advertisements(
+    path: Path, segments: SegmentCache | None = None
+) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
+    """The advertisements in a Turtle file, and those that do not conform; files may share their segments.
 
     Raises AuthorError for what is not there, cannot be read, or is not Turtle.
     """
-    from selfconf.rdf import turtle  # loads rdflib, which a list of files does not need
+    from selfconf.rdf.advertisements import read  # loads a parser, which a list of files does not need
 
-    return turtle.parse(text(octets(path), str(path)), str(path), base(path), predicates)
+    return read(text(octets(path), str(path)), str(path), base(path), segments)
 
 
 def octets(path: Path) -> bytes:

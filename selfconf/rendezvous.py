@@ -17,18 +17,18 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from selfconf.bus.zenoh_bus import client
-from selfconf.ending import alive
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
+from selfconf.termination import alive
 
-ANSWER = 3.0
+ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
-PORTS = range(20000, 32768)
+USUAL_PORTS = range(20000, 32768)
 """Below those that Linux takes for outgoing connections, or who tries to connect again might get the port itself."""
 
 
 @dataclass(frozen=True, slots=True)
-class Meeting:
+class LocalSite:
     """A site of this machine: its ecology, name, endpoint and process."""
 
     ecology: str
@@ -37,7 +37,7 @@ class Meeting:
     process: int
 
 
-def folder() -> Path:
+def runtime_folder() -> Path:
     """Where the files are: `$SELFCONF_RUNTIME_DIR`, or `selfconf` in the user's runtime folder."""
     given = os.environ.get("SELFCONF_RUNTIME_DIR")
     if given:
@@ -53,14 +53,14 @@ def usual_endpoint(ecology: str) -> str:
 
     So a site that is started again is where those look for it who were connected to the one before.
     """
-    digest = hashlib.blake2s(f"{folder()} {ecology}".encode(), digest_size=8).digest()
-    return f"tcp/127.0.0.1:{PORTS[int.from_bytes(digest, 'big') % len(PORTS)]}"
+    digest = hashlib.blake2s(f"{runtime_folder()} {ecology}".encode(), digest_size=8).digest()
+    return f"tcp/127.0.0.1:{USUAL_PORTS[int.from_bytes(digest, 'big') % len(USUAL_PORTS)]}"
 
 
 @contextmanager
 def _writing() -> Iterator[Path]:
     """The folder, to write in. Raises NetworkError where that cannot be."""
-    root = folder()
+    root = runtime_folder()
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
         if root.stat().st_uid != os.getuid():
@@ -87,9 +87,9 @@ def turn() -> Iterator[None]:
         os.close(descriptor)
 
 
-def announce(meeting: Meeting) -> Path:
+def announce(meeting: LocalSite) -> Path:
     """Write the file of a site; whoever wrote it removes it by `leave`. Raises NetworkError where that cannot be."""
-    if any(other.site == meeting.site and other.process != os.getpid() for other in meetings(meeting.ecology)):
+    if any(other.site == meeting.site and other.process != os.getpid() for other in local_sites(meeting.ecology)):
         raise NetworkError(f"a site {meeting.site!r} of ecology {meeting.ecology!r} runs on this machine already")
     with _writing() as root:
         path = root / f"{meeting.ecology}@{meeting.site}.json"
@@ -108,15 +108,15 @@ def leave(path: Path) -> None:
         return
 
 
-def meetings(ecology: str | None = None) -> list[Meeting]:
+def local_sites(ecology: str | None = None) -> list[LocalSite]:
     """The sites that run on this machine, of one ecology or of all, sorted."""
-    found: list[Meeting] = []
-    root = folder()
+    found: list[LocalSite] = []
+    root = runtime_folder()
     if not root.is_dir() or root.stat().st_uid != os.getuid():
         return found
     for path in sorted(root.glob("*.json")):
         try:
-            meeting = Meeting(**json.loads(path.read_text()))
+            meeting = LocalSite(**json.loads(path.read_text()))
             living = alive(int(meeting.process))
         except (OSError, ValueError, TypeError):
             continue
@@ -133,7 +133,7 @@ def find(ecology: str | None, connect: list[str]) -> tuple[str, list[str]]:
         checked_name(ecology, "an ecology")
     if connect:
         return ecology or _ecology_at(connect), connect
-    found = meetings(ecology)
+    found = local_sites(ecology)
     names = sorted({meeting.ecology for meeting in found})
     if not names:
         which = "" if ecology is None else f"of the ecology {ecology!r} "
@@ -150,8 +150,8 @@ def _ecology_at(endpoints: list[str]) -> str:
     bus = client(endpoints)
     try:
         heard: list[tuple[str, ...]] = []
-        bus.roll_call(any_ecology(), ANSWER, heard.append)
-        deadline = bus.now() + ANSWER
+        bus.roll_call(any_ecology(), ECOLOGY_ANSWER, heard.append)
+        deadline = bus.now() + ECOLOGY_ANSWER
         bus.run(lambda: bool(heard) or bus.now() > deadline)
     finally:
         bus.close()

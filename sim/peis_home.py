@@ -17,7 +17,7 @@ import argparse
 import time
 from pathlib import Path
 
-from selfconf.sdk import Ending, Host
+from selfconf.sdk import Termination, Host
 from selfconf.sdk.program import add_connection_arguments, join
 from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
@@ -54,7 +54,7 @@ class PeisHome:
         self.tracker = PersonTracker(self.world, seed, frame)
         for component in (self.sonar, self.encoder, self.drive, self.odometry, self.tracker):
             host.add(component)
-        self.told = Ending(host.bus)
+        self.told = Termination(host.bus)
         self._moved, self._still_since, self._asked = False, 0.0, float("-inf")
         self._next_word = 0.0
         self._began = time.monotonic()

@@ -6,19 +6,21 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from selfconf.agent import Account, Agent, Order
-from selfconf.agent.agent import AT_LEISURE
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
-from selfconf.configurator.compose import Composer
+from selfconf.composition.composer import Composer
 from selfconf.configurator.machine import Phase, Policy
+from selfconf.deployment import Account, RunRequest, TaskRunner
+from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
-from selfconf.rdf import advertisements, bindings, templates, turtle
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
 from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component, Signal
-from selfconf.site import Shelf, Site
+from selfconf.site.site import Shelf, Site
 
 PREFIXES = """@prefix sc:  <https://w3id.org/selfconf#> .
 @prefix rob: <https://w3id.org/selfconf/robotics#> .
@@ -147,12 +149,12 @@ class Lab:
         bound: tuple[tuple[str, str], ...] = (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")),
         policy: Policy = Policy.REPAIR,
         patient: bool = False,
-    ) -> Agent:
+    ) -> TaskRunner:
         """A configurator that has begun with act 1."""
-        document = templates.read(turtle.parse(template, "template.ttl"))
+        document = templates.read_task(turtle.parse(template, "template.ttl"))
         task = bindings.complete(bindings.bind(document, bound))
         composer = Composer(task)
-        order = Order(
+        order = RunRequest(
             task=task.task,
             compose=composer.compose,
             standby=composer.standby,
@@ -162,7 +164,9 @@ class Lab:
             tell=self.accounts.append,
             settle=self.ended.append,
         )
-        agent = Agent(self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time)
+        agent = TaskRunner(
+            self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time
+        )
         agent.start()
         return agent
 
@@ -170,7 +174,7 @@ class Lab:
         """Let simulated time pass until something holds; whether it does."""
         return self.network.run(condition, seconds)
 
-    def running(self, agent: Agent) -> bool:
+    def running(self, agent: TaskRunner) -> bool:
         """Whether an agent's configuration is complete, after letting time pass."""
         running = self.until(lambda: agent.state.phase is Phase.RUNNING)
         self.until(lambda: False, 2 * AT_LEISURE)  # accounts are told when there is time for it
@@ -180,22 +184,22 @@ class Lab:
         """The node of a component."""
         return _node(self.bodies[name].bus)
 
-    def crash(self, program: Agent | Site | str) -> None:
+    def crash(self, program: TaskRunner | Site | str) -> None:
         """End a configurator, a site, or the component of that name, as kill -9 does."""
         _node(self.bodies[program].bus if isinstance(program, str) else program.bus).close()
 
-    def is_open(self, program: Agent | Site) -> bool:
+    def is_open(self, program: TaskRunner | Site) -> bool:
         """Whether a program has not been ended."""
         return _node(program.bus).open
 
-    def isolate(self, program: Agent | Site | str) -> None:
+    def isolate(self, program: TaskRunner | Site | str) -> None:
         """Cut a program off from everybody else."""
         node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and self.network.reaches(node, other):
                 self.network.cut(node, other)
 
-    def rejoin(self, program: Agent | Site | str) -> None:
+    def rejoin(self, program: TaskRunner | Site | str) -> None:
         """Let a program reach everybody again."""
         node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:

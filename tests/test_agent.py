@@ -8,17 +8,18 @@ from typing import Any
 
 import pytest
 
-from selfconf.agent.agent import TRY_AGAIN
-from selfconf.agent.calls import CALL, STARTING
-from selfconf.agent.lives import SETTLING
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.events import Failed
 from selfconf.configurator.machine import Phase, Policy
+from selfconf.deployment.calls import CALL, STARTING
+from selfconf.deployment.liveness import SETTLING
+from selfconf.deployment.runner import TRY_AGAIN
 from selfconf.errors import TemplateError
 from selfconf.model.refusal import TooFewEligible
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import Answer, Cause, Fail, Release, Status, Verdict
-from selfconf.rdf import shacl, turtle
+from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Status, Verdict
+from selfconf.rdf import conformance as shacl
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import PROV, SC
 from selfconf.sdk.body import GRACE
 from selfconf.sdk.component import Refused
@@ -698,12 +699,12 @@ def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
     payload = encode(Release(1 << 60, them))
     lab.network.node().ask(lab.keys.call(iri("astrid-drive"), "release"), payload, 1.0, replies.append)
     assert lab.until(lambda: bool(replies))
-    assert decode(replies[0].samples[0].payload, Answer).verdict is Verdict.BUSY
+    assert decode(replies[0].samples[0].payload, CallAnswer).verdict is Verdict.BUSY
     assert "drive" in lab.active()
 
 
 def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shacl, "SECONDS", 0.05)
+    monkeypatch.setattr(shacl, "SHAPE_SECONDS", 0.05)
     broken = NAVIGATE + ':drive sh:pattern "^([^!]+)+!$" .\n'
     agent = lab.agent(broken)
     assert lab.until(lambda: bool(lab.ended))

@@ -12,12 +12,12 @@ import pytest
 from hypothesis import given
 
 from selfconf import certificate
-from selfconf.certificate import check
+from selfconf.certificate import broken_conditions
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.template import Parameter, Setting, Task
 from selfconf.model.term import Literal
-from selfconf.search import solve
 from selfconf.search.problem import Problem
+from selfconf.search.strategies import first as solve
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -27,7 +27,7 @@ from tests.search.worlds import agreement, component, iri, problem, problems
 def test_every_answer_is_accepted(problem: Problem) -> None:
     answer = solve.search(problem)
     if isinstance(answer, Configuration):
-        assert check(problem.task, problem.partition, answer, problem.hierarchy) == []
+        assert broken_conditions(problem.task, problem.partition, answer, problem.hierarchy) == []
 
 
 @given(problems(roles=3, components=4))
@@ -45,7 +45,7 @@ def test_what_is_accepted_is_valid_by_enumeration_too(problem: Problem) -> None:
     by_role = [{c.profile.component: c for c in candidates} for candidates in problem.candidates]
     players = [[known[c] for c in a.components if c in known] for known, a in zip(by_role, assignments, strict=True)]
     eligible = all(len(p) == len(a.components) for p, a in zip(players, assignments, strict=True))
-    faults = check(
+    faults = broken_conditions(
         problem.task, problem.partition, replace(configuration, assignments=tuple(assignments)), problem.hierarchy
     )
     if not (eligible and world.valid(players)):
@@ -73,7 +73,7 @@ def _answer() -> tuple[Problem, Configuration]:
     given_ = Problem(Task(template, {iri("goal"): GOAL}), plain.partition)
     answer = solve.search(given_)
     assert isinstance(answer, Configuration)
-    assert check(given_.task, given_.partition, answer) == []
+    assert broken_conditions(given_.task, given_.partition, answer) == []
     return given_, answer
 
 
@@ -120,7 +120,7 @@ def test_a_fault_is_named(fault: str) -> None:
 
 def _said(fault: str) -> list[str]:
     given_, answer = _answer()
-    return check(given_.task, given_.partition, replace(answer, **BROKEN[fault]))
+    return broken_conditions(given_.task, given_.partition, replace(answer, **BROKEN[fault]))
 
 
 def _sentences() -> list[str]:

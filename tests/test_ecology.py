@@ -9,13 +9,13 @@ import pytest
 
 from selfconf.bus.memory import Faults, Network
 from selfconf.bus.port import Request
-from selfconf.ecology import DISCOVERY, LARGEST_ADVERTISEMENT, Discovery, Ecology
+from selfconf.discovery import DISCOVERY, LARGEST_ADVERTISEMENT, Discovery, EcologyView
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Page, Release
 from selfconf.rdf.vocabulary import RDFS
-from selfconf.site import Shelf, Site
+from selfconf.site.site import Shelf, Site
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
 
 KEYS = Keys("lab")
@@ -27,7 +27,7 @@ class Field:
 
     def __init__(self, folder: Path, faults: Faults | None = None) -> None:
         self.network, self.folder = Network(0, faults), folder
-        self.ecology = Ecology(self.network.node(), "lab")
+        self.ecology = EcologyView(self.network.node(), "lab")
 
     def site(self, name: str, *names: str) -> Site:
         """An honest site."""

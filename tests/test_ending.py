@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 
-from selfconf.ending import alive
+from selfconf.termination import alive
 
 
 def test_a_process_lives_until_it_has_ended_even_if_nobody_has_asked_for_its_exit_code() -> None:

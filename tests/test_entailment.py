@@ -10,8 +10,8 @@ from selfconf import entailment
 from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import Reasoning
 from selfconf.model.term import IRI
-from selfconf.rdf import turtle
-from selfconf.rdf.closure import hierarchy
+from selfconf.rdf.reasoning.closure import hierarchy
+from selfconf.rdf.turtle import document as turtle
 
 ONTOLOGY = """
 @prefix : <urn:x:> .
@@ -30,7 +30,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def closed() -> set[tuple[str, str]]:
-    found = hierarchy([turtle.parse(ONTOLOGY, "o.ttl")], Reasoning.OWL_RL, entailment.owl_rl)
+    found = hierarchy([turtle.parse(ONTOLOGY, "o.ttl")], Reasoning.OWL_RL, entailment.entailed_hierarchy)
     return {("Tracker", above.rpartition(":")[2]) for above in found.superclasses(IRI("urn:x:Tracker"))}
 
 

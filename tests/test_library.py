@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from selfconf import library
-from selfconf.rdf import turtle
+from selfconf.rdf.turtle import document as turtle
 
 ROOT = Path(__file__).resolve().parent.parent
 

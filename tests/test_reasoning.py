@@ -8,11 +8,13 @@ from pathlib import Path
 import pytest
 
 from selfconf import entailment
-from selfconf.configurator.compose import Composer, Strategy
+from selfconf.composition.composer import Composer, Strategy
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy, Reasoning
-from selfconf.rdf import advertisements, bindings, templates, turtle
-from selfconf.rdf.closure import hierarchy
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.reasoning.closure import hierarchy
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
 
 PAGE = (Path(__file__).parents[1] / "docs" / "reasoning.md").read_text()
 PREFIXES = """\
@@ -76,12 +78,12 @@ def hierarchies(tmp_path_factory: pytest.TempPathFactory) -> dict[Reasoning, Hie
     document = turtle.parse(PREFIXES + ONTOLOGY, "o.ttl")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SELFCONF_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
-        return {mode: hierarchy([document], mode, entailment.owl_rl) for mode in Reasoning}
+        return {mode: hierarchy([document], mode, entailment.entailed_hierarchy) for mode in Reasoning}
 
 
 def configured(template: str, ads: str, above: Hierarchy) -> bool:
     """Whether there is a configuration."""
-    task = bindings.complete(templates.read(turtle.parse(PREFIXES + template, "t.ttl")))
+    task = bindings.complete(templates.read_task(turtle.parse(PREFIXES + template, "t.ttl")))
     found, malformed = advertisements.read(turtle.parse(PREFIXES + ads, "a.ttl"))
     assert not malformed
     ecology = {one.component: one for one in found}

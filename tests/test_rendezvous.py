@@ -12,12 +12,12 @@ import pytest
 
 from selfconf import rendezvous
 from selfconf.errors import AuthorError, NetworkError
-from selfconf.rendezvous import Meeting
+from selfconf.rendezvous import LocalSite
 
 
-def meeting(ecology: str = "home", site: str = "a", process: int | None = None) -> Meeting:
+def meeting(ecology: str = "home", site: str = "a", process: int | None = None) -> LocalSite:
     """A site of this process."""
-    return Meeting(ecology, site, f"tcp/127.0.0.1:{len(site) + 7000}", os.getpid() if process is None else process)
+    return LocalSite(ecology, site, f"tcp/127.0.0.1:{len(site) + 7000}", os.getpid() if process is None else process)
 
 
 def dead_process() -> int:
@@ -30,16 +30,16 @@ def dead_process() -> int:
 def test_a_site_that_has_announced_itself_is_found(runtime_folder: Path) -> None:
     path = rendezvous.announce(meeting())
     assert path.parent == runtime_folder
-    assert rendezvous.meetings() == [meeting()]
+    assert rendezvous.local_sites() == [meeting()]
     assert rendezvous.find(None, []) == ("home", [meeting().endpoint])
     path.unlink()
-    assert rendezvous.meetings() == []
+    assert rendezvous.local_sites() == []
 
 
 def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:
     for ecology, site in (("home", "a"), ("home", "bb"), ("office", "ccc")):
         rendezvous.announce(meeting(ecology, site))
-    assert [found.site for found in rendezvous.meetings("home")] == ["a", "bb"]
+    assert [found.site for found in rendezvous.local_sites("home")] == ["a", "bb"]
     assert rendezvous.find("office", []) == ("office", [meeting("office", "ccc").endpoint])
 
 
@@ -59,7 +59,7 @@ def test_the_usual_endpoint_of_an_ecology_is_the_same_each_time_and_its_own() ->
 
 def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
     path = rendezvous.announce(meeting(process=dead_process()))
-    assert rendezvous.meetings() == []
+    assert rendezvous.local_sites() == []
     assert not path.exists()
 
 
@@ -67,7 +67,7 @@ def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
 def test_a_file_that_is_no_meeting_is_passed_over(runtime_folder: Path, text: str) -> None:
     (runtime_folder / "home@x.json").write_text(text)
     rendezvous.announce(meeting())
-    assert rendezvous.meetings() == [meeting()]
+    assert rendezvous.local_sites() == [meeting()]
 
 
 def test_where_no_site_runs_it_is_said_what_to_start() -> None:
@@ -92,11 +92,11 @@ def test_endpoints_that_are_given_need_no_file() -> None:
 def test_the_folder_is_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SELFCONF_RUNTIME_DIR")
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
-    assert rendezvous.folder() == tmp_path / "selfconf"
+    assert rendezvous.runtime_folder() == tmp_path / "selfconf"
     rendezvous.announce(meeting())
     assert (tmp_path / "selfconf").stat().st_mode & 0o077 == 0
     monkeypatch.delenv("XDG_RUNTIME_DIR")
-    assert str(os.getuid()) in rendezvous.folder().name
+    assert str(os.getuid()) in rendezvous.runtime_folder().name
 
 
 def test_a_folder_of_somebody_else_is_neither_written_nor_read(
@@ -104,7 +104,7 @@ def test_a_folder_of_somebody_else_is_neither_written_nor_read(
 ) -> None:
     rendezvous.announce(meeting())
     monkeypatch.setattr("os.getuid", lambda: runtime_folder.stat().st_uid + 1)
-    assert rendezvous.meetings() == []
+    assert rendezvous.local_sites() == []
     with pytest.raises(NetworkError, match="belongs to somebody else"):
         rendezvous.announce(meeting())
 

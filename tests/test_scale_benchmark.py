@@ -10,7 +10,7 @@ from pathlib import Path
 import rdflib
 
 from benchmarks.scale import engines, report, worlds
-from selfconf.rdf import stream
+from selfconf.rdf.advertisements import loader as stream
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -18,7 +18,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Page, Release, Wake
-from selfconf.site import LOOK, Shelf, Site
+from selfconf.site.site import FILE_CHECK, Shelf, Site
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
 
 KEYS = Keys("lab")
@@ -191,7 +191,7 @@ def test_a_change_is_told_and_the_next_answer_has_a_new_revision(network: Networ
     network.node().subscribe(KEYS.changed(), told.append)
     before = decode(ask(network, KEYS.advertisements()).samples[0].attachment, Page)
     write_advertisements(tmp_path, "drive")
-    network.run(lambda: bool(told), 2 * LOOK)
+    network.run(lambda: bool(told), 2 * FILE_CHECK)
     assert len(told) == 1
     after = [decode(sample.attachment, Page) for sample in ask(network, KEYS.advertisements()).samples]
     assert {page.revision for page in after} == {before.revision + 1}
@@ -202,7 +202,7 @@ def test_nothing_is_told_while_nothing_changes(network: Network, tmp_path: Path)
     serve(network, write_advertisements(tmp_path, "tracker"))
     told: list[Sample] = []
     network.node().subscribe(KEYS.changed(), told.append)
-    network.run(lambda: False, 10 * LOOK)
+    network.run(lambda: False, 10 * FILE_CHECK)
     assert told == []
 
 
@@ -360,7 +360,7 @@ def test_a_broad_question_wakes_nobody(network: Network, tmp_path: Path, sites: 
 def test_a_process_that_does_not_want_to_end_is_killed(
     network: Network, tmp_path: Path, sites: Callable[[Path], Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("selfconf.site.ENDING", 0.1)
+    monkeypatch.setattr("selfconf.site.site.ENDING", 0.1)
     code = 'import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN); open("deaf", "w").close()'
     folder = dormant(tmp_path / "here", python(code))
     site = sites(folder)

@@ -10,8 +10,8 @@ import pytest
 
 from selfconf import library
 from selfconf.model.term import IRI
-from selfconf.rdf import turtle
-from selfconf.rdf.turtle import Document
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.turtle.document import Document
 from selfconf.rdf.vocabulary import LABEL, OWL, RDF, ROB, SC, TYPE, Namespace
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -17,18 +17,18 @@ from benchmarks.scale.worlds import ROLES, task
 from selfconf.cli.budget import Clock
 from selfconf.cli.inputs import read_advertisements, turtle_files
 from selfconf.cli.why import explained
-from selfconf.configurator.compose import Composer
+from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Reasoning
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements import STRUCTURE, Advertisement, property_order
-from selfconf.rdf.kinds import Ecology
-from selfconf.rdf.turtle import from_rdflib
+from selfconf.rdf.advertisements.reader import STRUCTURE, Advertisement, property_order
+from selfconf.rdf.eligibility.index import AdvertisementIndex
+from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.vocabulary import SC
-from selfconf.search import solve
 from selfconf.search.problem import Problem
+from selfconf.search.strategies import first as solve
 
 Result = TypeVar("Result")
 Found = dict[str, float]
@@ -74,7 +74,7 @@ def configure(path: Path, trials: int) -> Found:
     found, before = Found(), peak()
     given = task("robot0")
     for trial in range(trials):
-        ads = Ecology({})  # the last trial's are given back before the next are read
+        ads = AdvertisementIndex({})  # the last trial's are given back before the next are read
         seconds, ads = timed(read_advertisements, [path])
         keep(found, "load", seconds)
         if trial == 0:
@@ -87,7 +87,7 @@ def configure(path: Path, trials: int) -> Found:
         assert isinstance(outcome, Configuration), outcome
         keep(found, "search", seconds)
         drives = {candidate.profile.component for candidate in partition.candidates[-1]}
-        alive = Ecology({component: one for component, one in ads.items() if component not in drives})
+        alive = AdvertisementIndex({component: one for component, one in ads.items() if component not in drives})
         composer.partition(alive)  # this is not timed again
         keep(found, "refusal", timed(refuse, composer, alive)[0])
         found["candidates"] = sum(map(len, partition.candidates)) / len(ROLES)
@@ -106,7 +106,7 @@ def crowd(path: Path, trials: int) -> Found:
     """The search alone, in an ecology and in the same ecology among components that no role wants."""
     given, found = task("robot0"), Found()
     few = read_advertisements([path])
-    many = Ecology({**few, **read_advertisements([path.with_name("unwanted.ttl")])})
+    many = AdvertisementIndex({**few, **read_advertisements([path.with_name("unwanted.ttl")])})
     problems = {
         name: Problem(given.task, Composer(given).partition(ads))
         for name, ads in {"alone": few, "in the crowd": many}.items()

@@ -6,8 +6,9 @@ import random
 import re
 from collections.abc import Iterator
 
-from selfconf.rdf import bindings, templates, turtle
-from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.tasks.templates import TaskDocument
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import UNIT
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
@@ -62,7 +63,7 @@ def task(robot: str) -> TaskDocument:
     ]
     text = f"{PREFIXES}:t a sc:Template ; sc:parameter :robot ; sc:roles ( {' '.join(f':{r}' for r in ROLES)} ) .\n"
     text += ':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .\n' + "\n".join(roles)
-    given = templates.read(turtle.parse(text, "scale.ttl"))
+    given = templates.read_task(turtle.parse(text, "scale.ttl"))
     return bindings.complete(bindings.bind(given, [("robot", f":{robot}")]))
 
 

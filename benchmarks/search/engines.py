@@ -17,22 +17,23 @@ from typing import Any, TypeVar
 
 from benchmarks.search import sparql
 from selfconf.model.configuration import Configuration
-from selfconf.search import paper, solve
-from selfconf.search.kernel import Prepared
+from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
-from selfconf.search.walk import Budget
+from selfconf.search.reduction.dominance import LazyReduction
+from selfconf.search.strategies import first as solve
+from selfconf.search.strategies import paper
 
 L = TypeVar("L")
 
 
 def selfconf(problem: Problem) -> bool:
     """The strategy `first`."""
-    return isinstance(solve.solution(Prepared(problem), Budget()), list)
+    return isinstance(solve.solution(LazyReduction(problem), Budget()), list)
 
 
 def algorithm_1(problem: Problem) -> bool:
     """The paper's algorithm."""
-    return isinstance(paper.search(problem), Configuration)
+    return isinstance(paper.algorithm_1(problem), Configuration)
 
 
 PROGRAM = """

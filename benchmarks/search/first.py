@@ -14,10 +14,10 @@ from itertools import accumulate
 
 from benchmarks.search.engines import PROGRAM, clauses_of, cp_model_of, facts
 from selfconf.model.term import IRI
-from selfconf.search import solve
-from selfconf.search.kernel import Prepared
+from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
-from selfconf.search.walk import Budget
+from selfconf.search.reduction.dominance import LazyReduction
+from selfconf.search.strategies import first as solve
 
 First = tuple[IRI, ...] | bool
 """Who plays the roles in the first configuration, or False if there is none."""
@@ -25,7 +25,7 @@ First = tuple[IRI, ...] | bool
 
 def selfconf(problem: Problem) -> First:
     """The strategy `first`."""
-    playing = solve.solution(Prepared(problem), Budget())
+    playing = solve.solution(LazyReduction(problem), Budget())
     return tuple(one.profile.component for (one,) in playing) if isinstance(playing, list) else False
 
 

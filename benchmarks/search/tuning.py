@@ -15,7 +15,9 @@ from types import ModuleType
 from benchmarks.search import families as f
 from benchmarks.search.families import Instance
 from benchmarks.search.measure import measure
-from selfconf.search import filling, sat, solve
+from selfconf.search.engines import candidate_search as filling
+from selfconf.search.engines import clause_learning as sat
+from selfconf.search.strategies import first as solve
 
 SEEDS = range(7_001, 7_004)
 

@@ -14,14 +14,14 @@ import pyoxigraph as ox
 from selfconf.cli import words
 from selfconf.errors import AuthorError
 from selfconf.rdf import turtle
-from selfconf.rdf.dataset import PREFIXES, Answer
+from selfconf.rdf.sparql import QUERY_PREFIXES, QueryAnswer
 from selfconf.rdf.vocabulary import XSD
 
 FORMATS = ("table", "json", "csv", "tsv", "turtle")
 Cell = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple | None
 
 
-def shown(answer: Answer | Iterator[ox.Triple], form: str, names: words.Names, rows: int) -> tuple[str, bool]:
+def shown(answer: QueryAnswer | Iterator[ox.Triple], form: str, names: words.Names, rows: int) -> tuple[str, bool]:
     """The answer in a format, and whether it had more than `rows` rows or triples, which are left out.
 
     Raises AuthorError where the format does not fit the kind of query.
@@ -84,4 +84,4 @@ def _triples(triples: Sequence[ox.Triple], form: str) -> str:
         raise AuthorError(f"--format {form} is for SELECT; for this query use turtle or json")
     if form == "json":
         return (ox.serialize(triples, format=ox.RdfFormat.JSON_LD) or b"").decode().rstrip()
-    return (ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=PREFIXES) or b"").decode().rstrip()
+    return (ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=QUERY_PREFIXES) or b"").decode().rstrip()

@@ -23,8 +23,8 @@ import pyoxigraph as ox
 from selfconf.cli import endpoint, words
 from selfconf.cli.answers import shown
 from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
-from selfconf.rdf import queries, remote
-from selfconf.rdf.dataset import PREFIXES, Answer, Dataset
+from selfconf.rdf.eligibility import ANYBODY, prefaced
+from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, only_reads, says
 
 SECONDS = 60.0
 """How long an answer may take by default, loading the dataset included."""
@@ -89,7 +89,7 @@ def main() -> int:
     with contextlib.suppress(ValueError, OSError):  # some systems have no such limit
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (question.memory, question.memory))
-    names = words.Names({**(question.prefixes or {}), **PREFIXES})
+    names = words.Names({**(question.prefixes or {}), **QUERY_PREFIXES})
     try:
         with _answering(question) as found:
             text, cut = shown(found, question.form, names, question.rows)
@@ -108,22 +108,22 @@ def _say(sentence: str) -> None:
 
 
 @contextlib.contextmanager
-def _answering(question: Question) -> Iterator[Answer | Iterator[ox.Triple]]:
+def _answering(question: Question) -> Iterator[QueryAnswer | Iterator[ox.Triple]]:
     if question.endpoint is None:
         dataset = Dataset()
         dataset.load(sys.stdin.buffer.read())
         yield dataset.query(question.text, question.prefixes)
     else:
-        queries.only_reads(question.text)
-        with endpoint.asked(question.endpoint, remote.prefaced(question.text), patience=question.seconds) as found:
+        only_reads(question.text)
+        with endpoint.asked(question.endpoint, prefaced(question.text), patience=question.seconds) as found:
             yield found
 
 
 def _remark(question: Question) -> str:
     """What explains an answer that is emptier than expected: an endpoint has its own idea of the default graph."""
-    if question.endpoint is None or any(queries.says(question.text, word) for word in ("GRAPH", "FROM")):
+    if question.endpoint is None or any(says(question.text, word) for word in ("GRAPH", "FROM")):
         return ""
-    with contextlib.suppress(NetworkError), endpoint.asked(question.endpoint, remote.ANYBODY, patience=1.0) as found:
+    with contextlib.suppress(NetworkError), endpoint.asked(question.endpoint, ANYBODY, patience=1.0) as found:
         if isinstance(found, ox.QueryBoolean) and not found:
             return (
                 f"the default graph of {question.endpoint} holds no component; if each advertisement is a graph of its "

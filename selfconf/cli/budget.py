@@ -12,13 +12,13 @@ import time
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
-from selfconf.configurator.compose import Composer
+from selfconf.composition import Composer
 from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Undecided
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.deadline import TimeUp, deadline
-from selfconf.search.best import Optimum
 
 LONGEST = 1e6
 """Seconds that an alarm can be set to everywhere."""

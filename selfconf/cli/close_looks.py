@@ -18,15 +18,15 @@ from pathlib import Path
 from typing import Any
 
 from selfconf.model.diagnostic import Diagnostic, Severity
-from selfconf.rdf.validation import Each, Judge, Suspect
+from selfconf.rdf.validation import CheckEach, FileChecker, UnclearedFile
 
 WORTH = 16
 """Close looks that take about as long as starting a process."""
 PROGRAMS = ("selfconf", "pyshacl", "rdflib", "pyoxigraph")
-_judge: Judge | None = None
+_judge: FileChecker | None = None
 
 
-def shared(judge: Judge, suspects: Sequence[Suspect]) -> Iterator[list[Diagnostic]]:
+def shared(judge: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
     """Look at each suspect, in as many processes as there are processors to use, where that pays."""
     processes = min(os.cpu_count() or 1, len(suspects) // WORTH)
     if processes < 2:
@@ -37,12 +37,12 @@ def shared(judge: Judge, suspects: Sequence[Suspect]) -> Iterator[list[Diagnosti
         yield from pool.imap(_look, suspects[1:], chunksize=4)
 
 
-def _begin(judge: Judge) -> None:
+def _begin(judge: FileChecker) -> None:
     global _judge
     _judge = judge
 
 
-def _look(suspect: Suspect) -> list[Diagnostic]:
+def _look(suspect: UnclearedFile) -> list[Diagnostic]:
     assert _judge is not None
     return _judge(suspect)
 
@@ -50,13 +50,13 @@ def _look(suspect: Suspect) -> list[Diagnostic]:
 class Remembered:
     """Close looks whose outcomes are kept in a file, of the last run only; it depends on nothing but what is hashed."""
 
-    def __init__(self, folder: Path, paths: Iterable[str], each: Each = shared) -> None:
+    def __init__(self, folder: Path, paths: Iterable[str], each: CheckEach = shared) -> None:
         """`paths` are what is validated: each selection of files has a memory of its own."""
         absolute = "\n".join(str(Path(path).absolute()) for path in paths)
         self._file = folder / "validate" / f"{hashlib.blake2s(absolute.encode(), digest_size=8).hexdigest()}.json"
         self._each, self._versions = each, {name: version(name) for name in PROGRAMS}
 
-    def __call__(self, judge: Judge, suspects: Sequence[Suspect]) -> Iterator[list[Diagnostic]]:
+    def __call__(self, judge: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
         """What is remembered, and then what is not."""
         known = self._recalled()
         keys = [judge.key(suspect) for suspect in suspects]

@@ -17,16 +17,17 @@ from selfconf.cli.places import Places
 from selfconf.cli.sources import read_ecology
 from selfconf.cli.terminal import show
 from selfconf.cli.why import explained
-from selfconf.configurator.compose import Composer
+from selfconf.composition import Composer
 from selfconf.model.configuration import Configuration
+from selfconf.model.consequence import Consequence
 from selfconf.model.cost import number
+from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.term import IRI
-from selfconf.rdf import write
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.templates import TaskDocument
-from selfconf.search.best import Optimum
-from selfconf.search.whatif import Loss
+from selfconf.rdf.provenance import configuration_iri, configuration_triples
+from selfconf.rdf.tasks import TaskDocument
+from selfconf.rdf.turtle import to_turtle
 
 NAME = "configure"
 HELP = "compute a configuration for a template, or say why there is none; changes nothing"
@@ -63,7 +64,7 @@ def run(given: argparse.Namespace) -> int:
     began = time.perf_counter()
     answer = budget.composed(composer, ecology, frozenset(), None, clock)
     seconds["search"] = time.perf_counter() - began
-    losses: list[Loss] | None = None
+    losses: list[Consequence] | None = None
     if isinstance(answer, Refusal):
         answer = explained(composer, ecology, answer, given, clock)
     elif given.what_if and not isinstance(answer, Undecided):
@@ -95,7 +96,7 @@ class Report:
     ecology: Mapping[IRI, Advertisement]
     eligible: Mapping[str, int]
     seconds: Mapping[str, float]
-    losses: Sequence[Loss] | None
+    losses: Sequence[Consequence] | None
 
     def body(self, answer: Optimum | Outcome) -> dict[str, Any]:
         """The answer as JSON."""
@@ -126,9 +127,9 @@ class Report:
             return "\n".join(mark + line for line in lines)
         found = answer.configuration if isinstance(answer, Optimum) else answer
         if form == "turtle":
-            name = write.configuration_iri(found, 0)
-            triples = write.configuration_triples(found, name, self.task.task)
-            return write.turtle(triples, self.task.document.prefixes).rstrip()
+            name = configuration_iri(found, 0)
+            triples = configuration_triples(found, name, self.task.task)
+            return to_turtle(triples, self.task.document.prefixes).rstrip()
         if form == "mermaid":
             return words.mermaid(found, names)
         parts = [words.configuration_text(found, names)]

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from selfconf.cli import words
 from selfconf.cli.live import add_connection_arguments, connected, discover
-from selfconf.ecology import Ecology, Found
+from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.model.term import IRI
-from selfconf.rdf.dataset import PREFIXES
+from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.vocabulary import SC
 
 NAME = "discover"
@@ -54,7 +54,7 @@ def run(given: argparse.Namespace) -> int:
         }
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
-    names = words.Names(PREFIXES)
+    names = words.Names(QUERY_PREFIXES)
     cells = [[str(row.component), ", ".join(names(kind) for kind in row.types), row.site, row.state] for row in rows]
     print(words.table(["component", "types", "site", "state"], cells))
     where = f"{words.count(len(discovery.sites), 'site')} of ecology {ecology.keys.ecology}"
@@ -62,7 +62,7 @@ def run(given: argparse.Namespace) -> int:
     return 0
 
 
-def state(ecology: Ecology, component: IRI, found: Found) -> str:
+def state(ecology: EcologyView, component: IRI, found: FoundAdvertisement) -> str:
     """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but nobody runs it."""
     if ecology.life(component) is not None:
         return "alive"

@@ -28,10 +28,10 @@ from selfconf.cli.inputs import collector_at_rest, complain
 from selfconf.errors import AuthorError, NetworkError, TurtleError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.term import IRI
-from selfconf.rdf import advertisements, remote, turtle
+from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.dataset import Answer
-from selfconf.rdf.eligibility import CompiledRole
+from selfconf.rdf.eligibility import TYPES, CompiledRole, statements, wanted
+from selfconf.rdf.sparql import QueryAnswer
 
 PATIENCE = 120.0
 """Seconds without a word from the endpoint after which it is given up."""
@@ -53,18 +53,18 @@ def read_endpoint(url: str, roles: Sequence[CompiledRole], hierarchy: Hierarchy)
 
     Raises NetworkError, and AuthorError for what is no URL.
     """
-    with asked(url, remote.TYPES, RESULTS) as answer:
+    with asked(url, TYPES, RESULTS) as answer:
         if not isinstance(answer, ox.QuerySolutions) or ox.Variable("type") not in answer.variables:
             raise NetworkError(f"{url} does not answer a SELECT with its solutions; is this its query URL?")
         types = [IRI(kind.value) for kind in (row["type"] for row in answer) if isinstance(kind, ox.NamedNode)]
-    wanted = remote.wanted(types, roles, hierarchy)
-    if not wanted:
+    relevant = wanted(types, roles, hierarchy)
+    if not relevant:
         return {}
-    with _reply(url, remote.statements(wanted), TRIPLES, PATIENCE) as reply:
+    with _reply(url, statements(relevant), TRIPLES, PATIENCE) as reply:
         found = reply.read()
     with collector_at_rest():
         try:
-            good, bad = advertisements.read(turtle.parse(found, url))
+            good, bad = advertisements.read(found, url)
         except TurtleError as error:
             raise NetworkError(f"{url} does not answer in N-Triples: {_line(error.message)}") from None
     for malformed in bad:
@@ -75,7 +75,7 @@ def read_endpoint(url: str, roles: Sequence[CompiledRole], hierarchy: Hierarchy)
 @contextmanager
 def asked(
     url: str, query: str, form: str = f"{RESULTS}, {TRIPLES}", patience: float = PATIENCE
-) -> Iterator[Answer | Iterator[ox.Triple]]:
+) -> Iterator[QueryAnswer | Iterator[ox.Triple]]:
     """What an endpoint answers, read from the network while it is looked at. Raises as `read_endpoint` does."""
     with _reply(url, query, form, patience) as reply:
         kind = reply.headers.get_content_type()

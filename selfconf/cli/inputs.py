@@ -11,17 +11,16 @@ from pathlib import Path
 
 from selfconf import entailment, files, library
 from selfconf.cli.terminal import show
-from selfconf.configurator.compose import Composer, Strategy
+from selfconf.composition import Composer, Strategy
 from selfconf.errors import AuthorError, BindingError, TemplateError
 from selfconf.model.diagnostic import Severity
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
-from selfconf.rdf import bindings, stream, templates, turtle
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.closure import HIERARCHY, hierarchy
-from selfconf.rdf.kinds import Ecology
-from selfconf.rdf.pieces import Pieces
-from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf import advertisements, tasks, turtle
+from selfconf.rdf.advertisements import Advertisement, SegmentCache
+from selfconf.rdf.eligibility import AdvertisementIndex
+from selfconf.rdf.reasoning import HIERARCHY, hierarchy
+from selfconf.rdf.tasks import TaskDocument
 from selfconf.rdf.turtle import Document
 
 STDIN = Path("-")
@@ -114,15 +113,15 @@ def read_task(given: argparse.Namespace) -> TaskDocument:
     document = parse_file(path)
     wanted = None
     if given.wanted is not None:
-        term = bindings.read_term(given.wanted, document.prefixes)
+        term = tasks.read_term(given.wanted, document.prefixes)
         if not isinstance(term, IRI):
             raise BindingError(f"--template takes a CURIE or an <IRI>, not {given.wanted!r}")
         wanted = term
     try:
-        task = templates.read(document, wanted)
+        task = tasks.read_task(document, wanted)
     except TemplateError as error:
         raise located(path, error) from None
-    return bindings.complete(bindings.bind(task, pairs(given.bind)))
+    return tasks.complete(tasks.bind(task, pairs(given.bind)))
 
 
 def one_stdin(*paths: Path) -> None:
@@ -163,7 +162,7 @@ def read_hierarchy(given: argparse.Namespace, reasoning: Reasoning | None = None
         return hierarchy([], mode)
     relevant = HIERARCHY if mode is Reasoning.SUBCLASS else None
     ontologies = [parse_file(path, relevant) for path in (*library.ontologies(), *given.ontology)]
-    return hierarchy(ontologies, mode, entailment.owl_rl)
+    return hierarchy(ontologies, mode, entailment.entailed_hierarchy)
 
 
 def composer_of(given: argparse.Namespace, task: TaskDocument) -> Composer:
@@ -176,23 +175,23 @@ def composer_of(given: argparse.Namespace, task: TaskDocument) -> Composer:
     return Composer(task, read_hierarchy(given), Strategy(given.strategy), given.steps)
 
 
-def read_advertisements(paths: Sequence[Path]) -> Ecology:
+def read_advertisements(paths: Sequence[Path]) -> AdvertisementIndex:
     """The advertisements in files and folders, whatever the order in which they are given.
 
     One that does not conform is named on stderr and left out, and so is a second one of the same component.
     """
     found: dict[IRI, Advertisement] = {}
-    pieces = Pieces()
+    segments = SegmentCache()
     with collector_at_rest():
         for path in turtle_files(paths):
-            good, bad = stream.read(_text(path), _name(path), files.base(path), pieces)
+            good, bad = advertisements.read(_text(path), _name(path), files.base(path), segments)
             for malformed in bad:
                 complain(f"{_name(path)}: left out {malformed.component}: {malformed.problems[0]}")
             for advertisement in good:
                 if found.setdefault(advertisement.component, advertisement) is not advertisement:
                     other = found[advertisement.component].profile.place
                     complain(f"{_name(path)}: left out {advertisement.component}: it is advertised in {other} already")
-        ecology = Ecology(found)
+        ecology = AdvertisementIndex(found)
     if not found:
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")
     return ecology

@@ -12,7 +12,7 @@ from selfconf import rendezvous
 from selfconf.bus.port import Bus, Replies
 from selfconf.bus.zenoh_bus import client
 from selfconf.cli.inputs import complain
-from selfconf.ecology import Discovery, Ecology
+from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import NetworkError
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
@@ -37,11 +37,11 @@ def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def connected(given: argparse.Namespace) -> Iterator[Ecology]:
+def connected(given: argparse.Namespace) -> Iterator[EcologyView]:
     """The ecology that the arguments name. Raises NetworkError if there is none."""
     name, endpoints = rendezvous.find(given.ecology, given.connect)
     bus = client(endpoints)
-    ecology = Ecology(bus, name)
+    ecology = EcologyView(bus, name)
     try:
         sites: tuple[str, ...] = wait(bus, partial(bus.roll_call, ecology.keys.any_site_life(), ANSWER))
         if not sites:
@@ -62,7 +62,7 @@ def wait(bus: Bus, begin: Callable[[Callable[[T], None]], None]) -> T:
     return results[0]
 
 
-def discover(ecology: Ecology) -> Discovery:
+def discover(ecology: EcologyView) -> Discovery:
     """Acts 1 and 2; complaints and sites that did not answer are named on stderr."""
     discovery = wait(ecology.bus, ecology.discover)
     for complaint in discovery.complaints:
@@ -77,7 +77,7 @@ def advertised(discovery: Discovery) -> Mapping[IRI, Advertisement]:
     return {component: found.advertisement for component, found in discovery.found.items()}
 
 
-def ask(ecology: Ecology, key: str, payload: bytes = b"", seconds: float = 3.0) -> Replies:
+def ask(ecology: EcologyView, key: str, payload: bytes = b"", seconds: float = 3.0) -> Replies:
     """Ask and wait for all the replies."""
 
     def begin(done: Callable[[Replies], None]) -> None:

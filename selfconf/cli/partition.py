@@ -16,12 +16,10 @@ from selfconf.cli.sources import read_ecology
 from selfconf.cli.terminal import show
 from selfconf.model.partition import Candidate
 from selfconf.model.template import Role
-from selfconf.rdf import spelling
+from selfconf.rdf import role_export
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import CompiledRole
-from selfconf.rdf.kept_out import Exclusion, exclusions
-from selfconf.rdf.partition import Partitioner
-from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf.eligibility import CompiledRole, Exclusion, Partitioner, exclusions
+from selfconf.rdf.tasks import TaskDocument
 
 NAME = "partition"
 HELP = "show who could play each role of a template, and what keeps the others out"
@@ -77,8 +75,8 @@ def _spelt(task: TaskDocument, partitioner: Partitioner, ecology: Sequence[Adver
 
     def spelt(role: CompiledRole) -> str:
         if how == "shape":
-            return spelling.shape(task, role, partitioner.hierarchy)
-        return spelling.query(role, partitioner.hierarchy, ecology)
+            return role_export.shape(task, role, partitioner.hierarchy)
+        return role_export.query(role, partitioner.hierarchy, ecology)
 
     return "\n\n".join(f"# {role.iri}\n{spelt(role)}" for role in partitioner.roles)
 
@@ -88,7 +86,7 @@ def _lines(role: Role, candidates: Sequence[Candidate], kept_out: Sequence[Exclu
     lines += [f"  {number}. {names(c.profile.component)}" for number, c in enumerate(candidates, 1)]
     if kept_out:
         lines.append("  kept out")
-        lines += [f"    {names(e.component)}: {', '.join(e.obstacles)}" for e in kept_out[:SHOWN]]
+        lines += [f"    {names(e.component)}: {', '.join(map(str, e.obstacles))}" for e in kept_out[:SHOWN]]
     if len(kept_out) > SHOWN:
         lines.append(f"    and {len(kept_out) - SHOWN} more; --format json has them all")
     return lines
@@ -103,7 +101,12 @@ def _body(task: TaskDocument, rows: Sequence[Row], seconds: Mapping[str, float])
                 "role": role.iri,
                 "eligible": [candidate.profile.component for candidate in candidates],
                 "excluded": [
-                    {"component": e.component, "of_its_class": e.akin, "obstacles": list(e.obstacles)} for e in kept_out
+                    {
+                        "component": e.component,
+                        "of_its_class": e.akin,
+                        "obstacles": [str(obstacle) for obstacle in e.obstacles],
+                    }
+                    for e in kept_out
                 ],
             }
             for role, candidates, kept_out in rows

@@ -16,7 +16,7 @@ from selfconf.model.template import Template
 from selfconf.model.term import IRI
 from selfconf.rdf import positions
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.positions import NotTurtle, Positions
+from selfconf.rdf.positions import NotTurtleError, Positions
 
 LARGEST = 1 << 20
 """Bytes of a file that is read again; of a larger one the name has to do."""
@@ -50,6 +50,6 @@ def _positions(source: str) -> Positions | None:
     try:
         if path.stat().st_size > LARGEST:
             return None
-        return positions.parse(path.read_text("utf-8"), source, path.resolve().as_uri())[1]
-    except (OSError, UnicodeDecodeError, NotTurtle, RecursionError):
+        return positions.parse_with_positions(path.read_text("utf-8"), source, path.resolve().as_uri())[1]
+    except (OSError, UnicodeDecodeError, NotTurtleError, RecursionError):
         return None

@@ -24,7 +24,7 @@ from selfconf.cli.sources import one_ecology
 from selfconf.errors import AuthorError, TurtleError, reason
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
-from selfconf.rdf.dataset import PREFIXES, Dataset
+from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset
 
 NAME = "query"
 HELP = "ask the ecology something in SPARQL, over files, at an endpoint, or over everything that is alive"
@@ -82,7 +82,7 @@ def run(given: argparse.Namespace) -> int:
         document = parse_file(path)
         prefixes |= document.prefixes
         dataset.add(IRI(path.resolve().as_uri()), document.triples())
-    prefixes = {name: base for name, base in prefixes.items() if name and name not in PREFIXES}
+    prefixes = {name: base for name, base in prefixes.items() if name and name not in QUERY_PREFIXES}
     return _told(dataset, Question(text, given.format, given.rows, prefixes, seconds=given.seconds))
 
 

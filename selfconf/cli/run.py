@@ -15,7 +15,6 @@ from functools import cache, partial
 from typing import Any
 
 from selfconf import rendezvous
-from selfconf.agent import Account, Agent, Order
 from selfconf.bus.zenoh_bus import client
 from selfconf.cli import budget, words
 from selfconf.cli.inputs import (
@@ -32,14 +31,15 @@ from selfconf.cli.places import Places
 from selfconf.cli.terminal import silence
 from selfconf.cli.why import explained
 from selfconf.configurator.machine import Policy
-from selfconf.ending import LOOK, Ending, end_as_by_ctrl_c, environment
+from selfconf.deployment import Account, RunRequest, TaskRunner
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.template import Template
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.search.best import Optimum
+from selfconf.termination import PARENT_CHECK, Termination, end_as_by_ctrl_c, parent_environment
 
 NAME = "run"
 HELP = "configure, deploy, monitor and configure again, until Ctrl-C takes everything down"
@@ -98,7 +98,7 @@ def run(given: argparse.Namespace) -> int:
                 alive.update((component, one) for component, one in found.items() if component not in lost)
             return answer.configuration if isinstance(answer, Optimum) else answer
 
-        order = Order(
+        order = RunRequest(
             task=task.task,
             compose=compose,
             standby=composer.standby,
@@ -108,15 +108,15 @@ def run(given: argparse.Namespace) -> int:
             tell=told,
             settle=ended.append,
         )
-        agent = Agent(bus, ecology, order)
-        Ending(bus, agent.stop)
+        agent = TaskRunner(bus, ecology, order)
+        Termination(bus, agent.stop)
 
         def look() -> None:
             """Without its own site nothing of what was given is there, and nobody starts it again."""
             if site is not None and site.poll() is not None:
                 agent.stop()
             else:
-                bus.later(LOOK, look)
+                bus.later(PARENT_CHECK, look)
 
         try:
             agent.start()
@@ -192,7 +192,7 @@ def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str], subpro
         stdin=subprocess.DEVNULL,
         stdout=sys.stderr,
         start_new_session=True,
-        env={**os.environ, **environment()},
+        env={**os.environ, **parent_environment()},
     )
     try:
         yield name, [_listening(process, name, site), *given.connect], process
@@ -204,7 +204,7 @@ def _ecology(given: argparse.Namespace) -> Iterator[tuple[str, list[str], subpro
 def _listening(process: subprocess.Popen[bytes], ecology: str, site: str) -> str:
     deadline = time.monotonic() + SITE_STARTS
     while time.monotonic() < deadline:
-        for meeting in rendezvous.meetings(ecology):
+        for meeting in rendezvous.local_sites(ecology):
             if meeting.site == site:
                 return meeting.endpoint
         try:

@@ -11,11 +11,11 @@ from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, ZenohBus, router
 from selfconf.cli import words
 from selfconf.cli.inputs import complain, existing
-from selfconf.ending import Ending
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import checked_name
-from selfconf.rendezvous import Meeting
+from selfconf.rendezvous import LocalSite
 from selfconf.site import Shelf, Site
+from selfconf.termination import Termination
 
 NAME = "site"
 HELP = "serve the advertisements of this host to an ecology, and watch their files"
@@ -56,12 +56,12 @@ def run(given: argparse.Namespace) -> int:
     name = checked_name(given.name or f"s{secrets.token_hex(3)}", "a site")
     shelf = Shelf(given.paths, complain)
     with rendezvous.turn():
-        others = [meeting.endpoint for meeting in rendezvous.meetings(given.ecology)]
+        others = [meeting.endpoint for meeting in rendezvous.local_sites(given.ecology)]
         bus = _router(given.listen, given.ecology, list(dict.fromkeys([*given.connect, *others])))
-        ending = Ending(bus)
+        ending = Termination(bus)
         environment = {"SELFCONF_ECOLOGY": given.ecology, "SELFCONF_CONNECT": bus.endpoint}
         site = Site(bus, given.ecology, name, shelf, environment)
-        meeting = rendezvous.announce(Meeting(given.ecology, name, bus.endpoint, os.getpid()))
+        meeting = rendezvous.announce(LocalSite(given.ecology, name, bus.endpoint, os.getpid()))
     count = len(site.shelf.advertisements)
     complain(f"site {name} of ecology {given.ecology} serves {words.count(count, 'advertisement')} on {bus.endpoint}")
     try:

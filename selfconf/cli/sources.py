@@ -12,7 +12,7 @@ from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.partition import Partitioner
+from selfconf.rdf.eligibility import Partitioner
 
 
 def one_ecology(given: argparse.Namespace) -> None:

@@ -9,11 +9,11 @@ import time
 from selfconf.cli import words
 from selfconf.cli.inputs import complain
 from selfconf.cli.live import add_connection_arguments, ask, connected
-from selfconf.ecology import Ecology
+from selfconf.discovery import EcologyView
 from selfconf.errors import PeerError
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import Status
-from selfconf.rdf.dataset import PREFIXES
+from selfconf.rdf.sparql import QUERY_PREFIXES
 
 NAME = "status"
 HELP = "show what is deployed, by whom, and since when"
@@ -35,7 +35,7 @@ def run(given: argparse.Namespace) -> int:
         return 0
     if not found:
         print(f"nothing is deployed in ecology {ecology.keys.ecology}")
-    names = words.Names(PREFIXES)
+    names = words.Names(QUERY_PREFIXES)
     for status in found:
         seconds = max(0.0, time.time() - status.since)
         print(f"{names(status.template)}: {status.phase} for {seconds:.0f} s, epoch {status.epoch}")
@@ -47,7 +47,7 @@ def run(given: argparse.Namespace) -> int:
     return 0
 
 
-def statuses(ecology: Ecology) -> list[Status]:
+def statuses(ecology: EcologyView) -> list[Status]:
     """What each configurator of the ecology says of itself, sorted by name."""
     found: list[Status] = []
     for sample in ask(ecology, ecology.keys.configurator_call("*", "status")).samples:

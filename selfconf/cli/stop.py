@@ -7,7 +7,7 @@ import json
 
 from selfconf.cli.live import add_connection_arguments, ask, connected, wait
 from selfconf.cli.status import statuses
-from selfconf.ecology import Ecology
+from selfconf.discovery import EcologyView
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import owner_of
 
@@ -42,7 +42,7 @@ def run(given: argparse.Namespace) -> int:
     return 0
 
 
-def _gone(ecology: Ecology, names: set[str]) -> None:
+def _gone(ecology: EcologyView, names: set[str]) -> None:
     """Wait until the configurators have released everything and left."""
     bus = ecology.bus
     deadline = bus.now() + TAKING_DOWN

@@ -16,7 +16,7 @@ from selfconf.cli.terminal import show
 from selfconf.errors import AuthorError
 from selfconf.model.codes import BY_CODE, CODES, Code
 from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
-from selfconf.rdf.validation import Each, Source, validate
+from selfconf.rdf.validation import CheckEach, SourceText, validate
 
 LARGEST = 64 << 20
 """A file of more bytes is not read."""
@@ -76,9 +76,9 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if result.conforms else 1
 
 
-def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: Each = map) -> Report:
+def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach = map) -> Report:
     """Validate files and folders against the shapes that selfconf brings along."""
-    sources: dict[Path, Source] = {}
+    sources: dict[Path, SourceText] = {}
     found: list[Diagnostic] = []
     for path in paths:
         names = list(_files(path))
@@ -129,17 +129,17 @@ def reference(codes: Iterable[Code] = CODES) -> str:
     return "\n".join(sections)
 
 
-def _remembered(paths: Iterable[str]) -> Each:
-    from selfconf.entailment import folder  # loads rdflib, which a run without a memory may not need
+def _remembered(paths: Iterable[str]) -> CheckEach:
+    from selfconf.entailment import cache_folder  # loads rdflib, which a run without a memory may not need
 
-    return Remembered(folder(), paths)
+    return Remembered(cache_folder(), paths)
 
 
 def _indented(snippet: str) -> str:
     return "\n".join(f"    {line}" for line in snippet.splitlines())
 
 
-def _ontologies(given: Iterable[str]) -> Iterator[Source]:
+def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
     for name in (name for path in given for name in _files(path)):
         try:
             yield _read(name)
@@ -156,11 +156,11 @@ def _files(given: str) -> Iterator[str]:
         yield from map(str, files.within(path))
 
 
-def _read(name: str) -> Source:
+def _read(name: str) -> SourceText:
     if name == "-":
-        return Source("<stdin>", sys.stdin.buffer.read())
+        return SourceText("<stdin>", sys.stdin.buffer.read())
     return _load(Path(name))
 
 
-def _load(path: Path) -> Source:
-    return Source(str(path), path.read_bytes(), path.resolve().as_uri())
+def _load(path: Path) -> SourceText:
+    return SourceText(str(path), path.read_bytes(), path.resolve().as_uri())

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 from selfconf.cli.budget import Clock
 from selfconf.cli.inputs import read_hierarchy
-from selfconf.configurator.compose import Composer
+from selfconf.composition import Composer
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.term import IRI
-from selfconf.rdf import kinship
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.eligibility import near_misses_by_type
 
 
 def explained(
@@ -43,5 +43,5 @@ def _by_type(
         miss
         for role in composer.partitioner.roles
         if role.iri in short
-        for miss in kinship.near_misses(role, composer.partitioner, composer.gathered(ecology), known)
+        for miss in near_misses_by_type(role, composer.partitioner, composer.gathered(ecology), known)
     )

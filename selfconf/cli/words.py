@@ -9,13 +9,13 @@ from fractions import Fraction
 from typing import Any
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.consequence import Consequence
+from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Place
 from selfconf.model.refusal import InputUnfed, Reason, Refusal, Undecided
-from selfconf.model.repair import AcceptNearMiss, Repair
+from selfconf.model.relaxation import AcceptNearMiss, Relaxation
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.search.best import Optimum
-from selfconf.search.whatif import Loss
 
 Where = Callable[[IRI], Place | None]
 """Where a role or component is spoken of, if that is known."""
@@ -95,7 +95,7 @@ def _quoted(text: str) -> str:
     return text.replace("&", "&amp;").replace('"', "#quot;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def losses_text(losses: Sequence[Loss], names: Names) -> str:
+def losses_text(losses: Sequence[Consequence], names: Names) -> str:
     """What would replace each component, for people; single points of failure stand out."""
     width = max((len(names(loss.component)) for loss in losses), default=0)
     lines = ["if it failed"]
@@ -103,7 +103,7 @@ def losses_text(losses: Sequence[Loss], names: Names) -> str:
     return "\n".join(lines)
 
 
-def losses_body(losses: Sequence[Loss]) -> list[dict[str, Any]]:
+def losses_body(losses: Sequence[Consequence]) -> list[dict[str, Any]]:
     """What would replace each component, as JSON."""
     return [
         {
@@ -166,7 +166,7 @@ def nowhere(named: IRI) -> Place | None:
     return None
 
 
-def _spoken_of(fact: Reason | Repair | NearMiss) -> IRI:
+def _spoken_of(fact: Reason | Relaxation | NearMiss) -> IRI:
     """The role or component that a reason, a near miss or a repair is about."""
     if isinstance(fact, AcceptNearMiss):
         return fact.near.component
@@ -176,7 +176,7 @@ def _spoken_of(fact: Reason | Repair | NearMiss) -> IRI:
 def refusal_text(refusal: Refusal, names: Names, where: Where = nowhere, most: int = 8) -> str:
     """A refusal on one screen, the most likely cause first, each line with the place it speaks of."""
 
-    def placed(sentence: str, fact: Reason | Repair | NearMiss) -> str:
+    def placed(sentence: str, fact: Reason | Relaxation | NearMiss) -> str:
         place = where(_spoken_of(fact))
         return sentence if place is None else f"{sentence}  [{place}]"
 
@@ -206,7 +206,7 @@ def _missed(miss: NearMiss, names: Names) -> str:
 def refusal_body(refusal: Refusal, where: Where = nowhere) -> dict[str, Any]:
     """A refusal as JSON; `place` is there where it is known."""
 
-    def place(fact: Reason | Repair | NearMiss) -> dict[str, Any]:
+    def place(fact: Reason | Relaxation | NearMiss) -> dict[str, Any]:
         found = where(_spoken_of(fact))
         return {} if found is None else {"place": str(found)}
 
@@ -223,7 +223,7 @@ def refusal_body(refusal: Refusal, where: Where = nowhere) -> dict[str, Any]:
             for reason in refusal.reasons
         ],
         "near_misses": [
-            {"role": miss.role, "component": miss.component, "obstacle": miss.obstacle, **place(miss)}
+            {"role": miss.role, "component": miss.component, "obstacle": str(miss.obstacle), **place(miss)}
             for miss in refusal.near_misses
         ],
         "repairs": repairs,

@@ -61,7 +61,7 @@ from selfconf.protocol.messages import Cause, Verdict, Wire
 OBEYED = (Verdict.DONE, Verdict.STALE)
 """The answers after which a component obeys no older call; a busy one may yet, once it is free."""
 Inputs = Mapping[str, tuple[Wire, ...]]
-Step = tuple["State", tuple[Effect, ...]]
+Reaction = tuple["State", tuple[Effect, ...]]
 
 
 class Phase(str, Enum):
@@ -130,7 +130,7 @@ class State:
     """Whether something has appeared since the ecology was last asked."""
 
 
-def step(state: State, event: Event) -> Step:
+def step(state: State, event: Event) -> Reaction:
     """What an event does. Total: every state answers every event, if only by staying as it is."""
     match event:
         case Accepted():
@@ -163,17 +163,17 @@ def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]
     return wires
 
 
-def _accepted(state: State, event: Accepted) -> Step:
+def _accepted(state: State, event: Accepted) -> Reaction:
     if state.phase is not Phase.IDLE:
         return state, ()
     return _discover(replace(state, epoch=event.epoch))
 
 
-def _discover(state: State) -> Step:
+def _discover(state: State) -> Reaction:
     return replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False), (Discover(),)
 
 
-def _compose(state: State) -> Step:
+def _compose(state: State) -> Reaction:
     attempt = state.attempt + 1
     running = state.target if state.policy is Policy.REPAIR else None
     return (
@@ -182,7 +182,7 @@ def _compose(state: State) -> Step:
     )
 
 
-def _composed(state: State, event: Composed) -> Step:
+def _composed(state: State, event: Composed) -> Reaction:
     if state.phase is not Phase.COMPOSING or event.attempt != state.attempt:
         return state, ()
     if isinstance(event.outcome, Configuration):
@@ -192,7 +192,7 @@ def _composed(state: State, event: Composed) -> Step:
     return _dismantle(replace(state, refusal=event.outcome), Phase.REFUSED)
 
 
-def _deploy(state: State) -> Step:
+def _deploy(state: State) -> Reaction:
     """Watch, then apply to every component that is new or wired differently, and release those not needed any more."""
     target = state.target
     assert target is not None
@@ -229,7 +229,7 @@ def _as_wanted(held: Held | None, inputs: Inputs) -> bool:
     return held is not None and held.confirmed and held.inputs == inputs
 
 
-def _proceed(state: State) -> Step:
+def _proceed(state: State) -> Reaction:
     """Go on to the next part of the deployment once nothing is pending."""
     if state.pending:
         return state, ()
@@ -246,7 +246,7 @@ def _proceed(state: State) -> Step:
     return replace(state, phase=Phase.RUNNING), (Running(target),)
 
 
-def _answered(state: State, event: Answered) -> Step:
+def _answered(state: State, event: Answered) -> Reaction:
     known = state
     if event.call is Call.RELEASE and event.verdict in OBEYED and event.epoch >= state.owed.get(event.component, 0):
         known = replace(state, owed={c: since for c, since in state.owed.items() if c != event.component})
@@ -273,7 +273,7 @@ def _confirmed(state: State, held: Held, event: Answered) -> Held:
     return replace(held, life=event.life, confirmed=True, values=values)
 
 
-def _failed(state: State, event: Failed) -> Step:
+def _failed(state: State, event: Failed) -> Reaction:
     held = state.held.get(event.component)
     if held is None or state.phase is Phase.DISMANTLING:
         return state, ()
@@ -284,7 +284,7 @@ def _failed(state: State, event: Failed) -> Step:
     return _lose(state, event.component, Loss(event.cause, event.detail, event.life or held.life))
 
 
-def _lose(state: State, component: IRI, loss: Loss) -> Step:
+def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
     """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
     epoch = state.epoch + 1
     without = replace(
@@ -302,7 +302,7 @@ def _lose(state: State, component: IRI, loss: Loss) -> Step:
     return _then(effects, _compose(without))
 
 
-def _dismantle(state: State, afterwards: Phase) -> Step:
+def _dismantle(state: State, afterwards: Phase) -> Reaction:
     """Release everything that is held, and tell again whoever is owed a release; then comes `afterwards`."""
     epoch = state.epoch + 1
     owed = dict.fromkeys((*state.owed, *state.held), epoch)
@@ -320,7 +320,7 @@ def _dismantle(state: State, afterwards: Phase) -> Step:
     return _then(effects, _released(dismantling))
 
 
-def _released(state: State) -> Step:
+def _released(state: State) -> Reaction:
     if state.pending:
         return state, ()
     empty = replace(state, held={}, target=None)
@@ -334,7 +334,7 @@ def _released(state: State) -> Step:
     return _discover(ended) if state.news else (ended, ())
 
 
-def _appeared(state: State, event: Appeared) -> Step:
+def _appeared(state: State, event: Appeared) -> Reaction:
     """A component that lives a new life is not the one that was lost, and one that seemed dead was only cut off."""
     if state.phase in (Phase.IDLE, Phase.STOPPED):
         return state, ()
@@ -350,7 +350,7 @@ def _appeared(state: State, event: Appeared) -> Step:
     return known, tuple(effects)
 
 
-def _reconnected(state: State) -> Step:
+def _reconnected(state: State) -> Reaction:
     """Components may have turned themselves off, or died: ask the ecology again, and apply to everybody anew."""
     if state.phase in (Phase.IDLE, Phase.DISMANTLING, Phase.STOPPED):
         return state, ()
@@ -360,7 +360,7 @@ def _reconnected(state: State) -> Step:
     return _discover(replace(state, held=unsure))
 
 
-def _stopped(state: State) -> Step:
+def _stopped(state: State) -> Reaction:
     if state.phase is Phase.STOPPED or (state.phase is Phase.REFUSED and not state.patient):
         return state, ()
     if state.phase is Phase.DISMANTLING:
@@ -368,6 +368,6 @@ def _stopped(state: State) -> Step:
     return _dismantle(state, Phase.STOPPED)
 
 
-def _then(effects: Sequence[Effect], following: Step) -> Step:
+def _then(effects: Sequence[Effect], following: Reaction) -> Reaction:
     state, more = following
     return state, (*effects, *more)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from selfconf.model.obstacle import Obstacle
 from selfconf.model.profile import Profile, candidate_order
 from selfconf.model.term import IRI, Term
 
@@ -47,13 +48,12 @@ class NearMiss:
 
     role: IRI
     component: IRI
-    obstacle: str
+    obstacle: Obstacle
     allows: Mapping[IRI, frozenset[Term]] = field(default_factory=dict, compare=False, repr=False)
     """For each free parameter that it constrains, the values that it would allow."""
 
     def __str__(self) -> str:
-        whose = "it" if self.obstacle.startswith(("has ", "is ", "declares ")) else "its"
-        return f"{whose} {self.obstacle}"
+        return self.obstacle.clause
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import NearMiss
-from selfconf.model.repair import Repair
+from selfconf.model.relaxation import Relaxation
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
@@ -79,7 +79,7 @@ class TooFewEligible:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class DerivationStep:
     """A step of a derivation: candidates of a role play in no configuration, as one of their inputs is not fed."""
 
     role: IRI
@@ -118,7 +118,7 @@ class InputUnfed:
     signal: IRI
     sources: tuple[IRI, ...]
     requirements: tuple[Requirement, ...] = ()
-    consequences: tuple[Step, ...] = ()
+    consequences: tuple[DerivationStep, ...] = ()
     """What follows from it, up to the role that nobody is left to play."""
     optional: tuple[IRI, ...] = ()
     """Those of the sources that ask for nobody (`sc:minCount 0`), so that their candidates do not count."""
@@ -196,7 +196,7 @@ class Refusal:
     near_misses: tuple[NearMiss, ...] = ()
     hint: str | None = None
     missing_sites: tuple[str, ...] = field(default=())
-    repairs: tuple[Repair, ...] = ()
+    repairs: tuple[Relaxation, ...] = ()
     irreducible: bool = True
     """Whether each reason was proved to need all of its requirements; not when the steps for that were used up."""
 

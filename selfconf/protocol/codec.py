@@ -16,8 +16,8 @@ from typing import Any, TypeVar, get_args
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.protocol.messages import (
-    Answer,
     Apply,
+    CallAnswer,
     Cause,
     Fail,
     Message,
@@ -200,16 +200,16 @@ def _verdict(value: object) -> Verdict:
 
 
 _READERS: dict[tuple[type, str], Any] = {
-    **{(kind, "epoch"): _whole for kind in (Apply, SetParameters, Release, Answer, Fail, Status)},
-    **{(kind, "supervisor"): _text for kind in (Apply, SetParameters, Release, Answer)},
-    **{(kind, "component"): _iri for kind in (Answer, Fail, Wake, Stamp)},
-    **{(kind, "life"): _text for kind in (Answer, Fail, Stamp)},
-    **{(kind, "detail"): _text for kind in (Answer, Fail)},
+    **{(kind, "epoch"): _whole for kind in (Apply, SetParameters, Release, CallAnswer, Fail, Status)},
+    **{(kind, "supervisor"): _text for kind in (Apply, SetParameters, Release, CallAnswer)},
+    **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Wake, Stamp)},
+    **{(kind, "life"): _text for kind in (CallAnswer, Fail, Stamp)},
+    **{(kind, "detail"): _text for kind in (CallAnswer, Fail)},
     (Apply, "inputs"): _inputs,
     (Apply, "standby"): _inputs,
     (SetParameters, "values"): _values,
-    (Answer, "verdict"): _verdict,
-    (Answer, "active"): _truth,
+    (CallAnswer, "verdict"): _verdict,
+    (CallAnswer, "active"): _truth,
     (Fail, "cause"): _cause,
     (Page, "index"): _whole,
     (Page, "total"): _whole,

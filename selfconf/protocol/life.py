@@ -23,7 +23,7 @@ from enum import Enum
 from selfconf.protocol.messages import Apply, Release, SetParameters, Verdict
 
 
-class Phase(str, Enum):
+class LifePhase(str, Enum):
     """Whether a component acts."""
 
     IDLE = "idle"
@@ -31,7 +31,7 @@ class Phase(str, Enum):
     FAILED = "failed"
 
 
-class Step(str, Enum):
+class LifeStep(str, Enum):
     """What the component's own code is to be told."""
 
     NONE = "none"
@@ -46,37 +46,39 @@ class Step(str, Enum):
 class Life:
     """Phase, newest epoch obeyed, and the liveliness key of the configurator that supervises, if one does."""
 
-    phase: Phase = Phase.IDLE
+    phase: LifePhase = LifePhase.IDLE
     epoch: int = 0
     supervisor: str | None = None
 
 
-def obey(life: Life, call: Apply | SetParameters | Release) -> tuple[Life, Verdict, Step]:
+def obey(life: Life, call: Apply | SetParameters | Release) -> tuple[Life, Verdict, LifeStep]:
     """What a call does to a component: its next life, the answer, and what its code is to be told."""
     if call.epoch < life.epoch:
-        return life, Verdict.STALE, Step.NONE
+        return life, Verdict.STALE, LifeStep.NONE
     if life.supervisor is not None and call.supervisor != life.supervisor:
-        return life, Verdict.BUSY, Step.NONE
+        return life, Verdict.BUSY, LifeStep.NONE
     if isinstance(call, Apply):
-        if life.phase is Phase.FAILED and call.epoch == life.epoch:
-            return life, Verdict.REFUSED, Step.NONE
-        step = {Phase.IDLE: Step.START, Phase.ACTIVE: Step.NONE, Phase.FAILED: Step.RESTART}[life.phase]
-        return Life(Phase.ACTIVE, call.epoch, call.supervisor), Verdict.DONE, step
+        if life.phase is LifePhase.FAILED and call.epoch == life.epoch:
+            return life, Verdict.REFUSED, LifeStep.NONE
+        step = {LifePhase.IDLE: LifeStep.START, LifePhase.ACTIVE: LifeStep.NONE, LifePhase.FAILED: LifeStep.RESTART}[
+            life.phase
+        ]
+        return Life(LifePhase.ACTIVE, call.epoch, call.supervisor), Verdict.DONE, step
     if isinstance(call, SetParameters):
-        verdict = Verdict.REFUSED if life.phase is Phase.IDLE else Verdict.DONE
-        return replace(life, epoch=call.epoch), verdict, Step.NONE
-    step = Step.NONE if life.phase is Phase.IDLE else Step.STOP
-    return Life(Phase.IDLE, call.epoch, None), Verdict.DONE, step
+        verdict = Verdict.REFUSED if life.phase is LifePhase.IDLE else Verdict.DONE
+        return replace(life, epoch=call.epoch), verdict, LifeStep.NONE
+    step = LifeStep.NONE if life.phase is LifePhase.IDLE else LifeStep.STOP
+    return Life(LifePhase.IDLE, call.epoch, None), Verdict.DONE, step
 
 
-def fail(life: Life) -> tuple[Life, Step]:
+def fail(life: Life) -> tuple[Life, LifeStep]:
     """The component says that it cannot go on."""
-    if life.phase is Phase.ACTIVE:
-        return replace(life, phase=Phase.FAILED), Step.TELL
-    return life, Step.NONE
+    if life.phase is LifePhase.ACTIVE:
+        return replace(life, phase=LifePhase.FAILED), LifeStep.TELL
+    return life, LifeStep.NONE
 
 
-def orphaned(life: Life) -> tuple[Life, Step]:
+def orphan(life: Life) -> tuple[Life, LifeStep]:
     """The supervisor has been gone for the grace period."""
-    step = Step.NONE if life.phase is Phase.IDLE else Step.STOP
-    return replace(life, phase=Phase.IDLE, supervisor=None), step
+    step = LifeStep.NONE if life.phase is LifePhase.IDLE else LifeStep.STOP
+    return replace(life, phase=LifePhase.IDLE, supervisor=None), step

@@ -81,7 +81,7 @@ class Verdict(str, Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class CallAnswer:
     """The answer to a call: the verdict, the component's life, and the newest epoch it has obeyed."""
 
     verdict: Verdict
@@ -149,4 +149,4 @@ class Status:
     lost: Mapping[str, Any] = field(default_factory=dict)
 
 
-Message = Apply | SetParameters | Release | Answer | Fail | Wake | Page | Stamp | Status
+Message = Apply | SetParameters | Release | CallAnswer | Fail | Wake | Page | Stamp | Status

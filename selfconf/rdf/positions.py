@@ -23,7 +23,7 @@ from rdflib import RDF, Graph
 from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
 from rdflib.term import Node
 
-Triple = tuple[Node, Node, Node]
+RdflibTriple = tuple[Node, Node, Node]
 
 _BLANK = re.compile(r"(?:[ \t\r\n]+|#[^\n]*)*")
 _LONE_RETURN = re.compile(r"\r(?!\n)")
@@ -33,7 +33,7 @@ _TOKEN = re.compile(
 )
 
 
-class Place(NamedTuple):
+class TextPosition(NamedTuple):
     """A place in a text; line and column count from one, columns in characters."""
 
     line: int
@@ -48,7 +48,7 @@ class Offsets(NamedTuple):
     object: int
 
 
-class NotTurtle(ValueError):
+class NotTurtleError(ValueError):
     """A text is not Turtle, with the offset where that shows."""
 
     def __init__(self, message: str, offset: int) -> None:
@@ -62,7 +62,7 @@ class Positions:
 
     file: str
     text: str
-    triples: dict[Triple, Offsets] = field(default_factory=dict)
+    triples: dict[RdflibTriple, Offsets] = field(default_factory=dict)
     prefixes: list[tuple[str, str, int]] = field(default_factory=list)
     """Each declaration in order: prefix, namespace, offset."""
 
@@ -70,35 +70,35 @@ class Positions:
         self._lines = [0, *(match.end() for match in re.finditer("\n", self.text))]
         self._nodes: dict[Node, int] | None = None
 
-    def place(self, offset: int) -> Place:
+    def place(self, offset: int) -> TextPosition:
         """Line and column of an offset; the end of the text for one beyond it."""
         offset = min(max(offset, 0), len(self.text))
         line = bisect_right(self._lines, offset)
-        return Place(line, offset - self._lines[line - 1] + 1)
+        return TextPosition(line, offset - self._lines[line - 1] + 1)
 
     def line(self, number: int) -> str:
         """The text of a line without its end."""
         end = self._lines[number] if number < len(self._lines) else len(self.text)
         return self.text[self._lines[number - 1] : end].rstrip("\r\n")
 
-    def width(self, place: Place) -> int:
+    def width(self, place: TextPosition) -> int:
         """How many characters the token at a place takes, at least one: as much as there is to underline."""
         match = _TOKEN.match(self.line(place.line), place.column - 1)
         return match.end() - match.start() if match else 1
 
-    def of_subject(self, triple: Triple) -> Place | None:
+    def of_subject(self, triple: RdflibTriple) -> TextPosition | None:
         """Where the subject of a triple stands: of a node in brackets the bracket, of a cell its member."""
         return self.place(self.triples[triple].subject) if triple in self.triples else None
 
-    def of_predicate(self, triple: Triple) -> Place | None:
+    def of_predicate(self, triple: RdflibTriple) -> TextPosition | None:
         """Where the predicate of a triple stands; for the triples of a list, where their object does."""
         return self.place(self.triples[triple].predicate) if triple in self.triples else None
 
-    def of_object(self, triple: Triple) -> Place | None:
+    def of_object(self, triple: RdflibTriple) -> TextPosition | None:
         """Where the object of a triple stands; the end of a list stands at its last member."""
         return self.place(self.triples[triple].object) if triple in self.triples else None
 
-    def of_node(self, node: Node) -> Place | None:
+    def of_node(self, node: Node) -> TextPosition | None:
         """Where a node is first the subject of a statement, or else where it is first spoken of."""
         offset = self.offset(node)
         return None if offset is None else self.place(offset)
@@ -114,7 +114,7 @@ class Positions:
         return self._nodes.get(node)
 
 
-def parse(text: str, file: str, base: str = "file:///") -> tuple[Graph, Positions]:
+def parse_with_positions(text: str, file: str, base: str = "file:///") -> tuple[Graph, Positions]:
     """The triples of a Turtle text and their places; raises NotTurtle, or RecursionError for brackets too deep."""
     text = _LONE_RETURN.sub("\n", text.removeprefix("\ufeff"))  # white space in Turtle, but not to rdflib
     graph = Graph()
@@ -123,11 +123,11 @@ def parse(text: str, file: str, base: str = "file:///") -> tuple[Graph, Position
     try:
         parser.loadBuf(text)
     except BadSyntax as error:
-        raise NotTurtle(str(error._why), parser.blamed(error)) from None
+        raise NotTurtleError(str(error._why), parser.blamed(error)) from None
     except IndexError:
-        raise NotTurtle("the text ends in the middle of a statement", len(text)) from None
+        raise NotTurtleError("the text ends in the middle of a statement", len(text)) from None
     except (AssertionError, ValueError) as error:
-        raise NotTurtle(str(error) or "cannot be read", parser.reached) from None
+        raise NotTurtleError(str(error) or "cannot be read", parser.reached) from None
     for prefix, namespace, _ in positions.prefixes:
         graph.bind(prefix, namespace, replace=True)
     return graph, positions

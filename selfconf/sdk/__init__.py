@@ -16,10 +16,10 @@ told on one thread, one call after the other; return soon, for control calls wai
 may be called from any thread. Work that takes long belongs in a thread of your own, which emits when it is done.
 """
 
-from selfconf.ending import Ending
-from selfconf.ending import environment as lineage
 from selfconf.sdk.component import Component, Refused, Signal
 from selfconf.sdk.host import Host
 from selfconf.sdk.program import main
+from selfconf.termination import Termination
+from selfconf.termination import parent_environment as lineage
 
-__all__ = ["Component", "Ending", "Host", "Refused", "Signal", "lineage", "main"]
+__all__ = ["Component", "Termination", "Host", "Refused", "Signal", "lineage", "main"]

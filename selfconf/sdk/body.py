@@ -32,11 +32,11 @@ from selfconf.model.term import Literal, Term
 from selfconf.protocol import life as lives
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of, owner_of
-from selfconf.protocol.life import Life, Phase
-from selfconf.protocol.life import Step as Told
+from selfconf.protocol.life import Life, LifePhase
+from selfconf.protocol.life import LifeStep as Told
 from selfconf.protocol.messages import (
-    Answer,
     Apply,
+    CallAnswer,
     Cause,
     Fail,
     Release,
@@ -88,7 +88,7 @@ class Body:
 
     def close(self) -> None:
         """Turn the component off and leave the ecology."""
-        self._become(*lives.orphaned(self.life))
+        self._become(*lives.orphan(self.life))
         self._served()
         self._token()
         for output in (*self._outputs.values(), self._fail):
@@ -171,7 +171,7 @@ class Body:
         else:
             reply()
 
-    def _answer(self, call: str, payload: bytes) -> Answer:
+    def _answer(self, call: str, payload: bytes) -> CallAnswer:
         if call == "state":
             return self._said(Verdict.DONE)
         kinds: dict[str, type[Apply] | type[SetParameters] | type[Release]] = {
@@ -202,14 +202,14 @@ class Body:
         elif trouble is None and isinstance(message, SetParameters):
             trouble = self._set(message)
         if trouble is not None:
-            if isinstance(message, Apply) and before.phase is not Phase.ACTIVE:
-                self._become(*lives.orphaned(self.life))
+            if isinstance(message, Apply) and before.phase is not LifePhase.ACTIVE:
+                self._become(*lives.orphan(self.life))
             return self._said(Verdict.REFUSED, trouble)
         return self._said(Verdict.DONE)
 
-    def _said(self, verdict: Verdict, detail: str = "") -> Answer:
+    def _said(self, verdict: Verdict, detail: str = "") -> CallAnswer:
         holder = self.life.supervisor or ""
-        return Answer(verdict, self.profile.component, self.name, self.life.epoch, self.active, detail, holder)
+        return CallAnswer(verdict, self.profile.component, self.name, self.life.epoch, self.active, detail, holder)
 
     def _become(self, life: Life, told: Told) -> str | None:
         """Take on a life and tell the component's code; a text if that refuses or breaks."""
@@ -338,7 +338,7 @@ class Body:
     def _orphaned(self) -> None:
         self._grace = None
         log.warning("%s: its configurator is gone; turning off", self.profile.component.short)
-        self._become(*lives.orphaned(self.life))
+        self._become(*lives.orphan(self.life))
 
 
 def _python(value: Term) -> Any:

@@ -9,7 +9,6 @@ from selfconf.bus.port import Bus
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.protocol.keys import Keys
-from selfconf.rdf import advertisements
 from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component
 
@@ -47,7 +46,7 @@ def profile_of(kind: type[Component]) -> Profile:
     path = kind.advertisement_path()
     if not path.is_file():
         raise ProgrammerError(f"the advertisement of {kind.__name__} is not there: {path}")
-    good, bad = advertisements.read(files.document(path))
+    good, bad = files.advertisements(path)
     for malformed in bad:
         raise AuthorError(f"{malformed.component}: {malformed.problems[0]}", file=str(path))
     wanted = [a.profile for a in good if not kind.component or a.profile.component == kind.component]

@@ -11,10 +11,10 @@ from typing import NoReturn
 
 from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import client
-from selfconf.ending import Ending
 from selfconf.errors import SelfconfError
 from selfconf.sdk.component import Component
 from selfconf.sdk.host import Host
+from selfconf.termination import Termination
 
 
 def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
@@ -61,7 +61,7 @@ def join(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
 
 def run_until_told(host: Host) -> None:
     """Run a host until SIGINT or SIGTERM, or until the site that started this program is gone; then close it."""
-    ending = Ending(host.bus)
+    ending = Termination(host.bus)
     try:
         host.run(ending)
     finally:

@@ -22,49 +22,50 @@ from selfconf.model import requirement as model
 from selfconf.model.refusal import (
     Conflict,
     Contradiction,
+    DerivationStep,
     InputUnfed,
     Reason,
     Refusal,
-    Step,
     TooFewDistinct,
     TooFewEligible,
     Undecided,
     ValueUnknown,
 )
-from selfconf.search import sat
-from selfconf.search.compact import Compact, Kind, likeness
-from selfconf.search.consistency import consistent
-from selfconf.search.kernel import Prepared
-from selfconf.search.matching import shortage
+from selfconf.search.budget import Budget
+from selfconf.search.engines import ClauseSolver, first_solution, shortage, solver_available
 from selfconf.search.problem import Problem
-from selfconf.search.requirement import (
+from selfconf.search.reduction import (
+    Constraint,
     Distinct,
     Fed,
+    InterchangeabilityClass,
+    LazyReduction,
     Played,
-    Requirement,
+    ReducedProblem,
     Shared,
     all_of,
+    consistent,
+    likeness,
     pruned,
     relaxed,
 )
-from selfconf.search.walk import Budget, walk
 
-EFFORT = 1_000_000
+EXPLANATION_STEPS = 1_000_000
 """Steps spent at most on making reasons irreducible."""
-WALK_STEPS = 1000
+QUESTION_STEPS = 1000
 """Steps of depth-first search for one question before clauses are written."""
 
 
-def refusal(given: Prepared, steps: int = EFFORT) -> Refusal:
+def refusal(given: LazyReduction, steps: int = EXPLANATION_STEPS) -> Refusal:
     """The refusal of a problem that has no solution."""
     problem = given.problem
     template = problem.task.template.iri
     plain = tuple(_plain(problem))
     if plain:
         return Refusal(template, plain)
-    questions = Questions(given.compact, Budget(steps))
+    questions = Questions(given.reduced, Budget(steps))
     found = core(questions)
-    return Refusal(template, (_worded(problem, given.compact, found),), irreducible=questions.settled)
+    return Refusal(template, (_worded(problem, given.reduced, found),), irreducible=questions.settled)
 
 
 def _plain(problem: Problem) -> Iterator[Reason]:
@@ -81,12 +82,12 @@ def _plain(problem: Problem) -> Iterator[Reason]:
 class Questions:
     """Asks which requirements can hold together, within a budget."""
 
-    def __init__(self, given: Compact, budget: Budget) -> None:
+    def __init__(self, given: ReducedProblem, budget: Budget) -> None:
         self.given, self.budget = given, budget
         self.settled = True
         """False once a question was left open: then what remains may be reducible."""
 
-    def possible(self, force: Iterable[Requirement]) -> bool | Undecided:
+    def possible(self, force: Iterable[Constraint]) -> bool | Undecided:
         """Whether these requirements can hold together."""
         wanted = set(force)
         distinct = Distinct() in wanted
@@ -98,21 +99,21 @@ class Questions:
             slots = [role for role in part.slots if role in required]
             if shortage(slots, [[o.component for o in options] for options in part.options]):
                 return False
-        first = self.budget.part(WALK_STEPS) if sat.available() else self.budget
-        found = walk(part, first, distinct)
-        if isinstance(found, Undecided) and sat.available():
-            with sat.Clauses(part, distinct=distinct) as clauses:
+        first = self.budget.part(QUESTION_STEPS) if solver_available() else self.budget
+        found = first_solution(part, first, distinct)
+        if isinstance(found, Undecided) and solver_available():
+            with ClauseSolver(part, distinct=distinct) as clauses:
                 return clauses.solve((), self.budget)
         return found if isinstance(found, Undecided) else found is not None
 
-    def irreducible(self, together: Sequence[Requirement]) -> tuple[Requirement, ...]:
+    def irreducible(self, together: Sequence[Constraint]) -> tuple[Constraint, ...]:
         """Of requirements that cannot hold together, as many as still cannot, but could without any one of them."""
         order = sorted(together, key=_rank)
         return tuple(sorted(self._explain((), order, False), key=order.index)) if order else ()
 
     def _explain(
-        self, background: tuple[Requirement, ...], rest: Sequence[Requirement], changed: bool
-    ) -> tuple[Requirement, ...]:
+        self, background: tuple[Constraint, ...], rest: Sequence[Constraint], changed: bool
+    ) -> tuple[Constraint, ...]:
         if changed and self._impossible(background):
             return ()
         if len(rest) == 1:
@@ -123,7 +124,7 @@ class Questions:
         of_first = self._explain((*background, *of_second), first, bool(of_second))
         return (*of_first, *of_second)
 
-    def _impossible(self, together: tuple[Requirement, ...]) -> bool:
+    def _impossible(self, together: tuple[Constraint, ...]) -> bool:
         if not any(isinstance(r, Played) for r in together):
             return False
         answer = self.possible(together)
@@ -133,12 +134,12 @@ class Questions:
         return not answer
 
 
-def _rank(requirement: Requirement) -> int:
+def _rank(requirement: Constraint) -> int:
     """QuickXplain drops what comes late: first roles, then needs, then what people think of last."""
     return [Played, Fed, Shared, Distinct].index(type(requirement))
 
 
-def core(questions: Questions) -> tuple[Requirement, ...]:
+def core(questions: Questions) -> tuple[Constraint, ...]:
     """An irreducible set of requirements that cannot hold together."""
     given = questions.given
     whole = pruned(given)
@@ -147,20 +148,20 @@ def core(questions: Questions) -> tuple[Requirement, ...]:
         return questions.irreducible(derivation(given, role))
     lack = shortage(given.slots, [[o.component for o in options] for options in given.options])
     if lack is not None:
-        together: tuple[Requirement, ...] = (*map(Played, lack.roles), Distinct())
+        together: tuple[Constraint, ...] = (*map(Played, lack.roles), Distinct())
         return together if lack.wanted == lack.found + 1 else questions.irreducible(together)
-    if not sat.available():
+    if not solver_available():
         return questions.irreducible(all_of(given))
     return _clash(questions)
 
 
-def _clash(questions: Questions) -> tuple[Requirement, ...]:
+def _clash(questions: Questions) -> tuple[Constraint, ...]:
     """Assumptions that the clause-learning engine finds to clash, made irreducible by leaving out one at a time.
 
     All questions go to one solver, which keeps what it learned; each answer "no" names a smaller set to go on with.
     """
     everything = sorted(all_of(questions.given), key=_rank)
-    with sat.Clauses(questions.given, guarded=True) as clauses:
+    with ClauseSolver(questions.given, guarded=True) as clauses:
         left = [clauses.guards[r] for r in everything if r in clauses.guards]
         needed: set[int] = set()
         if clauses.solve(left, questions.budget) is False:
@@ -179,17 +180,17 @@ def _clash(questions: Questions) -> tuple[Requirement, ...]:
         return tuple(r for r in everything if clauses.guards.get(r) in set(left))
 
 
-def derivation(given: Compact, role: int) -> tuple[Requirement, ...]:
+def derivation(given: ReducedProblem, role: int) -> tuple[Constraint, ...]:
     """The requirements by which arc consistency empties a role: back from it to what nobody gives."""
     played = list(dict.fromkeys(given.slots))
     kinds = given.kinds()
     _, departures = consistent(kinds, len(given.needs), given.values, played)
     before = {id(departure.kind): place for place, departure in enumerate(departures)}
-    givers: dict[int, list[Kind]] = {}
+    givers: dict[int, list[InterchangeabilityClass]] = {}
     for kind in kinds:
         for need in kind.gives:
             givers.setdefault(need, []).append(kind)
-    found: dict[Requirement, None] = {Played(role): None}
+    found: dict[Constraint, None] = {Played(role): None}
     waiting = [before[id(kind)] for kind in kinds if kind.role == role and id(kind) in before]
     seen = set(waiting)
     while waiting:
@@ -210,7 +211,7 @@ def derivation(given: Compact, role: int) -> tuple[Requirement, ...]:
     return tuple(found)
 
 
-def _worded(problem: Problem, given: Compact, found: Sequence[Requirement]) -> Reason:
+def _worded(problem: Problem, given: ReducedProblem, found: Sequence[Constraint]) -> Reason:
     roles = tuple(problem.roles[r.role].iri for r in found if isinstance(r, Played))
     told = tuple(_told(problem, given, r) for r in found)
     needs = [r for r in found if isinstance(r, Fed)]
@@ -245,12 +246,12 @@ def _parameters(told: Iterable[model.Requirement]) -> tuple[str, ...]:
     return tuple(r.parameter for r in told if isinstance(r, model.OneValue))
 
 
-def _steps(problem: Problem, given: Compact, found: Sequence[Requirement]) -> Iterator[Step]:
+def _steps(problem: Problem, given: ReducedProblem, found: Sequence[Constraint]) -> Iterator[DerivationStep]:
     """The derivation with these requirements alone, if arc consistency makes one: who leaves, and why."""
     part = relaxed(given, set(found))
     if part.short() is None or any(departure.need is None for departure in part.departures):
         return
-    leaving: dict[tuple[int, int], list[Kind]] = {}
+    leaving: dict[tuple[int, int], list[InterchangeabilityClass]] = {}
     for departure in part.departures:
         leaving.setdefault((departure.kind.role, departure.need or 0), []).append(departure.kind)
     for (role, number), kinds in leaving.items():
@@ -263,10 +264,10 @@ def _steps(problem: Problem, given: Compact, found: Sequence[Requirement]) -> It
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
         same = {like for kind in kinds for like in kind.likes}
         more = sum(map(same.__contains__, map(likeness, problem.candidates[role]))) - 1
-        yield Step(problem.roles[role].iri, profile.component, more, unfed, need.signal, sources, optional)
+        yield DerivationStep(problem.roles[role].iri, profile.component, more, unfed, need.signal, sources, optional)
 
 
-def _told(problem: Problem, given: Compact, requirement: Requirement) -> model.Requirement:
+def _told(problem: Problem, given: ReducedProblem, requirement: Constraint) -> model.Requirement:
     """A requirement in the words of the template."""
     if isinstance(requirement, Played):
         return model.RolePlayed(problem.roles[requirement.role].iri)

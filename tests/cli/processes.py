@@ -21,7 +21,7 @@ from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Answer
+from selfconf.protocol.messages import CallAnswer
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
 PATIENCE = 20.0
@@ -237,7 +237,7 @@ class Home:
 
     # Observing.
 
-    def state(self, component: IRI) -> Answer | None:
+    def state(self, component: IRI) -> CallAnswer | None:
         """What a component says of itself, if it answers."""
         if self._bus is None or not self._bus.link:
             if self._bus is not None:
@@ -253,7 +253,7 @@ class Home:
             bus.poll(0.05)
         for sample in replies[0].samples if replies else ():
             try:
-                return decode(sample.payload, Answer)
+                return decode(sample.payload, CallAnswer)
             except PeerError:
                 return None
         return None

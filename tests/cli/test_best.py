@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from selfconf.search import best, solve
+from selfconf.search.strategies import best
+from selfconf.search.strategies import first as solve
 from tests.cli.command import Outcome, run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -136,7 +137,7 @@ def test_a_cost_that_cannot_be_read_is_one_sentence(watch: Watch, cost: str, wor
 
 
 def test_an_answer_that_is_not_proved_says_so(watch: Watch, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = best.search
+    whole = best.best_configuration
 
     def hasty(problem: best.Problem, steps: int, running: best.Configuration | None) -> best.Optimum:
         assert running is None

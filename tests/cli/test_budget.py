@@ -9,13 +9,14 @@ import pytest
 
 from selfconf.cli.budget import Clock, composed
 from selfconf.cli.inputs import read_advertisements
-from selfconf.configurator.compose import Composer, Strategy
+from selfconf.composition.composer import Composer, Strategy
 from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.rdf import templates, turtle
 from selfconf.rdf.deadline import TimeUp
+from selfconf.rdf.tasks import templates
+from selfconf.rdf.turtle import document as turtle
 from selfconf.search import explain
-from selfconf.search.best import Optimum
 from tests.cli.command import Outcome, run
 from tests.cli.processes import Home
 from tests.lab import PREFIXES
@@ -84,7 +85,7 @@ def test_a_budget_that_is_none_is_misuse(
 def test_with_a_budget_a_running_configuration_is_still_repaired(team: Path) -> None:
     ecology = read_advertisements([team / "ads"])
     text = PREFIXES + ":duo a sc:Template ; sc:roles ( :a :b ) . :a a sc:Role . :b a sc:Role ."
-    task = templates.read(turtle.parse(text, "duo"))
+    task = templates.read_task(turtle.parse(text, "duo"))
     composer = Composer(task, steps=10_000)
     running = composer.compose(ecology, frozenset(), None)
     assert isinstance(running, Configuration)
@@ -107,7 +108,7 @@ def test_when_the_time_is_up_the_best_answer_so_far_remains(team: Path, monkeypa
     ecology = read_advertisements([team / "ads"])
     cost = "sc:cost ( [ sc:term [ sc:property :p ] ] )"
     text = PREFIXES + f":solo a sc:Template ; sc:roles ( :a ) ; {cost} .\n:a a sc:Role ."
-    composer = Composer(templates.read(turtle.parse(text, "solo")), strategy=Strategy.BEST)
+    composer = Composer(templates.read_task(turtle.parse(text, "solo")), strategy=Strategy.BEST)
     (proved,) = composer.answers(ecology, frozenset(), None)
     clock = Clock(0.2)
 

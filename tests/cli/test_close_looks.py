@@ -13,7 +13,7 @@ from selfconf.cli.close_looks import Remembered, shared
 from selfconf.cli.main import main
 from selfconf.cli.validate import check
 from selfconf.model.diagnostic import Diagnostic
-from selfconf.rdf.validation import Judge, Suspect
+from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
 
 BAD = Path(__file__).parents[1] / "bad"
 
@@ -24,7 +24,7 @@ class Counting:
     def __init__(self) -> None:
         self.names: list[str] = []
 
-    def __call__(self, judge: Judge, suspects: Sequence[Suspect]) -> Iterable[list[Diagnostic]]:
+    def __call__(self, judge: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterable[list[Diagnostic]]:
         self.names += [Path(suspect.source.name).name for suspect in suspects]
         return map(judge, suspects)
 

@@ -14,11 +14,12 @@ from typing import Any
 import pytest
 
 from selfconf.bus.zenoh_bus import client
+from selfconf.model.obstacle import WrongType
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.profile import Profile
-from selfconf.model.repair import AcceptNearMiss
+from selfconf.model.relaxation import AcceptNearMiss
 from selfconf.model.term import IRI
-from selfconf.rdf import turtle
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from tests.cli.command import Outcome, run
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
@@ -558,5 +559,5 @@ def test_a_blank_node_is_no_value_from_outside(desk: Desk) -> None:
 
 
 def test_a_repair_by_type_says_what_the_component_is_not() -> None:
-    near = NearMiss(iri("r0"), iri("c1"), "is no A1")
+    near = NearMiss(iri("r0"), iri("c1"), WrongType(iri("A1")))
     assert str(AcceptNearMiss(near, Candidate(Profile(iri("c1"))))) == "let c1 play r0, although it is no A1"

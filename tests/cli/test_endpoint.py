@@ -12,7 +12,7 @@ import pytest
 
 from selfconf.cli.endpoint import asked
 from selfconf.errors import NetworkError
-from selfconf.rdf.remote import ANYBODY
+from selfconf.rdf.eligibility.remote import ANYBODY
 from tests.cli.command import Outcome, run
 from tests.cli.endpoints import Scripted, http, oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, write_advertisements

@@ -13,8 +13,8 @@ import pytest
 from rdflib import Graph, URIRef
 
 from selfconf.cli.main import main
-from selfconf.rdf import stream
-from selfconf.rdf.dataset import Dataset
+from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.sparql.dataset import Dataset
 from tests.cli.endpoints import oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 
-from selfconf.ending import alive
+from selfconf.termination import alive
 from tests.cli.processes import Home, component_of, dormant
 
 EVERYBODY = ("tracker", "sonar", "encoder", "odometry", "control", "drive")

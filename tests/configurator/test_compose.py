@@ -6,17 +6,19 @@ from collections.abc import Mapping
 
 import pytest
 
-from selfconf.configurator import compose
-from selfconf.configurator.compose import STANDBY, Composer, Strategy
+from selfconf.composition import composer as compose
+from selfconf.composition.composer import STANDBY, Composer, Strategy
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
-from selfconf.rdf import advertisements, templates, turtle
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.templates import TaskDocument
-from selfconf.search.best import Optimum
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.tasks import templates
+from selfconf.rdf.tasks.templates import TaskDocument
+from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES, iri
 
 NOBODY: frozenset[IRI] = frozenset()
@@ -33,7 +35,7 @@ PRICED = (
 
 def task(text: str) -> TaskDocument:
     """A template as a task."""
-    return templates.read(turtle.parse(PREFIXES + text, "template.ttl"))
+    return templates.read_task(turtle.parse(PREFIXES + text, "template.ttl"))
 
 
 def ecology(*described: str) -> Mapping[IRI, Advertisement]:

@@ -11,13 +11,13 @@ import random
 from collections.abc import Iterator
 from pathlib import Path
 
-from selfconf.agent import Agent
 from selfconf.bus.memory import Faults
 from selfconf.configurator.machine import Phase, Policy, wiring
+from selfconf.deployment import TaskRunner
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.component import Refused
-from selfconf.site import Site
+from selfconf.site.site import Site
 from tests.lab import ADVERTISEMENTS, Lab
 
 SETTLED = 60.0
@@ -44,8 +44,8 @@ class History:
         ]
         for name in COMPONENTS:
             self.lab.component(name)
-        self.agents: list[Agent] = []
-        self.alone: list[Agent | Site | str] = []
+        self.agents: list[TaskRunner] = []
+        self.alone: list[TaskRunner | Site | str] = []
         self.policy = self.chance.choice(list(Policy))
         self.patient = self.chance.random() < 0.7
 
@@ -79,7 +79,7 @@ class History:
 
     def disorder(self) -> Iterator[str]:
         """Everything that is not in order."""
-        wanted: dict[str, Agent] = {}
+        wanted: dict[str, TaskRunner] = {}
         names = {body.profile.component: name for name, body in self.lab.bodies.items()}
         for agent in self.living():
             phase = agent.state.phase
@@ -98,11 +98,11 @@ class History:
         for name in sorted(set(wanted) & active):
             yield from self._wrong(name, wanted[name])
 
-    def living(self) -> list[Agent]:
+    def living(self) -> list[TaskRunner]:
         """The configurators that have not died."""
         return [agent for agent in self.agents if self.lab.is_open(agent)]
 
-    def _wrong(self, name: str, agent: Agent) -> Iterator[str]:
+    def _wrong(self, name: str, agent: TaskRunner) -> Iterator[str]:
         """What is wrong with a component that acts for a configurator."""
         body, configuration = self.lab.bodies[name], agent.configuration
         assert configuration is not None
@@ -121,7 +121,7 @@ class History:
                 if (setting.name, str(setting.value)) not in said[since:]:
                     yield f"{name} was not told its {setting.name}"
 
-    def _hasty_refusal(self, agent: Agent) -> Iterator[str]:
+    def _hasty_refusal(self, agent: TaskRunner) -> Iterator[str]:
         """A refusal that is waited out must still be right."""
         alive = {body.profile.component for name, body in self.lab.bodies.items() if self.lab.node_of(name).open}
         found = {c: a for site in self.sites for c, a in site.shelf.advertisements.items() if c in alive}
@@ -189,7 +189,7 @@ class History:
                 self.lab.components[name].emit(output.name, self.lab.network.time)
 
     def _isolate(self) -> None:
-        candidates: list[Agent | Site | str] = [*self.living(), *self.sites]
+        candidates: list[TaskRunner | Site | str] = [*self.living(), *self.sites]
         candidates += [name for name in COMPONENTS if self.lab.node_of(name).open]
         who = self.chance.choice(candidates)
         self._say(f"{_name(who)} is cut off")
@@ -225,5 +225,5 @@ class History:
             agents[0].stop()
 
 
-def _name(who: Agent | Site | str) -> str:
+def _name(who: TaskRunner | Site | str) -> str:
     return who if isinstance(who, str) else who.name

@@ -15,8 +15,8 @@ from docs import ontology, released
 from selfconf import library
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
-from selfconf.rdf import turtle
-from selfconf.rdf.closure import HIERARCHY, hierarchy
+from selfconf.rdf.reasoning.closure import HIERARCHY, hierarchy
+from selfconf.rdf.turtle import document as turtle
 
 OURS = "https://w3id.org/selfconf"
 GRAPHS = {path.stem: Graph().parse(path) for path in library.ontologies()}

@@ -10,8 +10,8 @@ from rdflib.term import Node
 
 from selfconf import library
 from selfconf.model.codes import BY_SHAPE
-from selfconf.rdf.judging import violations
-from selfconf.rdf.wellformed import shape_of_shapes
+from selfconf.rdf.validation.shape_violations import reported_violations
+from selfconf.rdf.validation.well_formedness import shape_of_shapes
 
 SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
 BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.ttl"))
@@ -56,7 +56,9 @@ def broken(path: Path) -> set[tuple[Node, Node]]:
         graph.parse(path)
     except SyntaxError:
         return set()
-    return {(found.shape, found.constraint) for found in violations(graph, ALL) if found.constraint is not None}
+    return {
+        (found.shape, found.constraint) for found in reported_violations(graph, ALL) if found.constraint is not None
+    }
 
 
 def test_every_constraint_is_broken_by_a_bad_file() -> None:
@@ -79,7 +81,7 @@ def test_the_catalogue_and_the_shapes_name_each_other() -> None:
 
 
 def test_the_shapes_are_well_formed() -> None:
-    assert not list(violations(ALL, shape_of_shapes()))
+    assert not list(reported_violations(ALL, shape_of_shapes()))
 
 
 @pytest.mark.parametrize("path", library.shapes(), ids=lambda path: path.stem)
@@ -145,4 +147,4 @@ TEMPLATE = """\
 
 @pytest.mark.parametrize("text", [ADVERTISEMENTS, TEMPLATE, *(path.read_text() for path in library.ontologies())])
 def test_what_is_right_conforms(text: str) -> None:
-    assert not list(violations(Graph().parse(data=text, format="turtle"), ALL))
+    assert not list(reported_violations(Graph().parse(data=text, format="turtle"), ALL))

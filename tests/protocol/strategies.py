@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.protocol.messages import (
-    Answer,
     Apply,
+    CallAnswer,
     Cause,
     Fail,
     Page,
@@ -54,7 +54,7 @@ messages = st.one_of(
     st.builds(Apply, numbers, supervisors, inputs, inputs),
     st.builds(SetParameters, numbers, supervisors, st.dictionaries(names, terms, max_size=3)),
     st.builds(Release, numbers, supervisors),
-    st.builds(Answer, st.sampled_from(Verdict), iris, texts, numbers, st.booleans(), texts, texts),
+    st.builds(CallAnswer, st.sampled_from(Verdict), iris, texts, numbers, st.booleans(), texts, texts),
     st.builds(Fail, iris, texts, numbers, st.sampled_from(Cause), texts),
     st.builds(Wake, iris),
     st.builds(Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans()),

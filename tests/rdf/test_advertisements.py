@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 
 from selfconf.model.profile import Input, OperationalParameter, Output, candidate_order
 from selfconf.model.term import IRI, Literal
-from selfconf.rdf import advertisements, stream, turtle
-from selfconf.rdf.advertisements import Advertisement, Malformed
+from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.reader import Advertisement, MalformedAdvertisement
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import RDFS, ROB, SC
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
@@ -20,7 +22,7 @@ BAD = Path(__file__).resolve().parents[1] / "bad"
 UNDECLARED = {"component-untyped"}
 """Files about something that says nowhere that it is a component."""
 PORT = '[ sc:name "a" ; sc:signalType :S'
-Read = tuple[list[Advertisement], list[Malformed]]
+Read = tuple[list[Advertisement], list[MalformedAdvertisement]]
 
 
 def read(text: str) -> Read:

@@ -6,7 +6,8 @@ import pytest
 
 from selfconf.errors import BindingError
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf import bindings, templates, turtle
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import XSD
 from tests.lab import PREFIXES, iri
 
@@ -64,7 +65,7 @@ TEMPLATE = """
 
 def completed(*bound: tuple[str, str]) -> dict[str, Term]:
     """The values by name, after binding."""
-    task = templates.read(turtle.parse(PREFIXES + TEMPLATE, "t.ttl"))
+    task = templates.read_task(turtle.parse(PREFIXES + TEMPLATE, "t.ttl"))
     return bindings.complete(bindings.bind(task, bound)).task.by_name()
 
 
@@ -115,7 +116,7 @@ def test_a_value_of_another_datatype_is_shown_as_it_is_with_what_would_do(
 
 def test_a_task_binds_for_itself_and_may_not_be_contradicted() -> None:
     text = TEMPLATE + ':k a sc:Task ; sc:template :t ; sc:binding [ sc:parameter :goal ; sc:value "y" ] .'
-    task = templates.read(turtle.parse(PREFIXES + text, "t.ttl"))
+    task = templates.read_task(turtle.parse(PREFIXES + text, "t.ttl"))
     assert bindings.complete(task).task.by_name()["goal"] == Literal("y")
     with pytest.raises(BindingError, match="bound twice"):
         bindings.bind(task, [("goal", "z")])
@@ -131,7 +132,7 @@ def test_a_path_cannot_be_left_free(path: str) -> None:
     with pytest.raises(
         BindingError, match=r"'x' cannot be left free, for it stands in sh:(p|inverseP)ath; .*--bind x="
     ):
-        bindings.complete(templates.read(turtle.parse(text, "t.ttl")))
+        bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
 
 
 @pytest.mark.parametrize("place", ["minInclusive", "maxExclusive", "minCount", "pattern"])
@@ -141,7 +142,7 @@ def test_a_limit_cannot_be_left_free(place: str) -> None:
         " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ."
         f" :r a sc:Role ; sh:property [ sh:path :n ; sh:{place} :x ] ."
     )
-    task = templates.read(turtle.parse(text, "t.ttl"))
+    task = templates.read_task(turtle.parse(text, "t.ttl"))
     with pytest.raises(BindingError, match=rf"'x' cannot be left free, for it stands in sh:{place}; .*--bind x="):
         bindings.complete(task)
     assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from selfconf import library
 from selfconf.model.hierarchy import Hierarchy, Reasoning
-from selfconf.rdf import turtle
-from selfconf.rdf.closure import hierarchy
+from selfconf.rdf.reasoning.closure import hierarchy
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import ROB
 from tests.lab import PREFIXES, iri
 

@@ -10,10 +10,11 @@ from rdflib import SH, Graph, URIRef
 from selfconf import library
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
-from selfconf.rdf.contradictions import conflicts
-from selfconf.rdf.demands import Demands, Source
-from selfconf.rdf.shacl import violations
-from selfconf.rdf.turtle import parse, to_rdflib
+from selfconf.rdf.conformance import violations
+from selfconf.rdf.rdflib_terms import to_rdflib
+from selfconf.rdf.turtle.document import parse
+from selfconf.rdf.validation.lints.contradictions import contradictions
+from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeSource
 from selfconf.rdf.vocabulary import SC
 from tests.lab import PREFIXES, iri
 from tests.rdf.test_partition_agreement import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
@@ -27,9 +28,9 @@ for path in library.shapes():
 def impossible(shape: str) -> bool:
     """Whether a role of that shape is found to be impossible."""
     graph = Graph().parse(data=f"{PREFIXES}:role a sc:Role ; {shape} .", format="turtle")
-    source = Source(graph, ALWAYS)
+    source = ShapeSource(graph, ALWAYS)
     shapes = (URIRef(iri("role")), *source.subjects(SH.targetClass, URIRef(SC.Component)))
-    return next(conflicts(Demands(source, shapes)), None) is not None
+    return next(contradictions(NormalForm(source, shapes)), None) is not None
 
 
 def along(path: str, *constraints: str) -> str:

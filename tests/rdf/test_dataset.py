@@ -6,8 +6,9 @@ import pyoxigraph as ox
 import pytest
 
 from selfconf.errors import QueryError
-from selfconf.rdf import advertisements, turtle
-from selfconf.rdf.dataset import Dataset
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.sparql.dataset import Dataset
+from selfconf.rdf.turtle import document as turtle
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 

@@ -7,14 +7,16 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
-from selfconf.rdf import advertisements, stream, turtle
-from selfconf.rdf.forms import ENOUGH, Forms, shaped
-from selfconf.rdf.pieces import Pieces, folded
-from selfconf.rdf.stream import Streamed
+from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.loader import LoadedAdvertisement
+from selfconf.rdf.advertisements.segments import SegmentCache, inlined_document
+from selfconf.rdf.advertisements.token_templates import OCCURRENCES, TokenTemplates, shaped
+from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
 from tests.rdf.test_stream import GOOD, told
 
-MANY = ENOUGH + 3
+MANY = OCCURRENCES + 3
 STRINGS = st.sampled_from(
     (
         "a",
@@ -108,11 +110,11 @@ def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None
         with pytest.raises(TurtleError):
             stream.read(text.encode(), "a.ttl", "file:///a.ttl")
         return
-    known = Pieces()
+    known = SegmentCache()
     for _ in range(2):  # what was learnt the first time is used the second
         found = stream.read(text.encode(), "a.ttl", "file:///a.ttl", known)
         assert told(found) == careful
-        for clause in (c for one in found[0] if isinstance(one, Streamed) for c in one.clauses):
+        for clause in (c for one in found[0] if isinstance(one, LoadedAdvertisement) for c in one.statements):
             assert clause.predicate == clause.text.partition(" ")[0]
             assert clause.bracketed == (clause.text[-1] in ")]")
 
@@ -125,8 +127,8 @@ def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None
     ],
 )  # fmt: skip
 def test_pieces_that_differ_in_strings_and_digits_are_read_once(said: str) -> None:
-    known = Pieces()
-    folded(each(said).encode(), "a.ttl", None, known)
+    known = SegmentCache()
+    inlined_document(each(said).encode(), "a.ttl", None, known)
     assert known.new <= GOOD.count(";") + 1
 
 
@@ -134,7 +136,7 @@ def test_pieces_that_differ_in_strings_and_digits_are_read_once(said: str) -> No
     "piece", [b" :p 'a1' ;", b' :p "a\\q" ;', b" p1:p 1 ;", b" :p <a%201> ;", b' :p "x"@en-1 ;', b" :p <http://a:1/> ;"]
 )
 def test_shapes_in_which_digits_do_not_mean_themselves_have_no_form(piece: bytes) -> None:
-    assert not Forms().wanted(shaped([piece] * ENOUGH))
+    assert not TokenTemplates().wanted(shaped([piece] * OCCURRENCES))
 
 
 @pytest.mark.parametrize(

@@ -9,13 +9,16 @@ from hypothesis import strategies as st
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf import advertisements, bindings, free_values, templates, turtle
-from selfconf.rdf.free_values import Suitable
-from selfconf.rdf.partition import ANOTHER, Partitioner
-from selfconf.rdf.templates import TaskDocument
+from selfconf.rdf import rdflib_terms
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.eligibility.free_parameters import Suitable
+from selfconf.rdf.eligibility.partitioner import ANOTHER, Partitioner
+from selfconf.rdf.tasks import bindings, parameter_values, templates
+from selfconf.rdf.tasks.templates import TaskDocument
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import RDF, XSD
-from selfconf.search import solve
 from selfconf.search.problem import Problem
+from selfconf.search.strategies import first as solve
 from tests.lab import PREFIXES, iri
 from tests.rdf.test_partition_agreement import COMPONENTS, ecology
 
@@ -47,12 +50,12 @@ SHAPES = st.one_of(
 
 def document(text: str) -> TaskDocument:
     """A task."""
-    return templates.read(turtle.parse(f"{PREFIXES} {text}", "t.ttl"))
+    return templates.read_task(turtle.parse(f"{PREFIXES} {text}", "t.ttl"))
 
 
 def bound(task: TaskDocument, value: Term) -> TaskDocument:
     """The same with a value for its parameter."""
-    text = f"<{value}>" if isinstance(value, IRI) else turtle.rdflib_term(value).n3()
+    text = f"<{value}>" if isinstance(value, IRI) else rdflib_terms.rdflib_term(value).n3()
     return bindings.complete(bindings.bind(task, [("v", text)]))
 
 
@@ -154,7 +157,7 @@ def test_compiled_tests_and_pyshacl_agree_on_which_values_suit_a_parameter(said:
 
 
 def test_a_plain_constraint_on_many_values_is_not_a_question_for_pyshacl(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(free_values, "misfits", None)
+    monkeypatch.setattr(parameter_values, "_judged", None)
     given = document(f"{PARAMETER} ; sh:nodeKind sh:IRI . :r a sc:Role .")
     (parameter,) = given.task.template.parameters
     suitable = Suitable({parameter.iri: parameter}, given.document)

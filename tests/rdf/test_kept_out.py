@@ -5,14 +5,15 @@ from __future__ import annotations
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from selfconf.configurator.compose import Composer
+from selfconf.composition.composer import Composer
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
-from selfconf.rdf import bindings, templates, turtle
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import ClassTest
-from selfconf.rdf.kept_out import near_misses
-from selfconf.rdf.partition import Partitioner
+from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.eligibility.nearly_eligible import near_misses
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.eligibility.role_tests import ClassTest
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
 from tests.lab import ADVERTISEMENTS, PREFIXES
 from tests.rdf.test_partition import partitioner, read
 from tests.rdf.test_partition_agreement import COMPONENTS, HIERARCHIES, SHAPES, by_pyshacl, ecology
@@ -28,7 +29,7 @@ def near(text: str, *ads: str) -> list[tuple[str, str]]:
 
 def repairs(text: str, *ads: str) -> list[str]:
     """What would mend the refusal of a template by some advertisements, by letting somebody in."""
-    task = bindings.complete(templates.read(turtle.parse(PREFIXES + text, "t.ttl")))
+    task = bindings.complete(templates.read_task(turtle.parse(PREFIXES + text, "t.ttl")))
     composer, found = Composer(task), {one.component: one for one in read(ads)}
     refused = composer.compose(found, frozenset(), None)
     assert isinstance(refused, Refusal)
@@ -48,7 +49,7 @@ def test_tests_and_pyshacl_agree_on_who_is_a_near_miss(
 ) -> None:
     assume("lessThan" not in shape and "NaN" not in str(components))  # of what has no order pySHACL says no more
     text = f"{PREFIXES} :t a sc:Template ; sc:roles ( :role ) . :role a sc:Role ; {shape} ."
-    task = bindings.complete(templates.read(turtle.parse(text, "t.ttl")))
+    task = bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
     ads = ecology(components)
 
     def of_its_class(one: Advertisement) -> bool:

@@ -7,16 +7,16 @@ import pytest
 from selfconf import library
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Diagnostic, Severity
-from selfconf.rdf.validation import Source, validate
+from selfconf.rdf.validation.checking import SourceText, validate
 
 HEAD = PREAMBLE.count("\n")
-SHAPES = [Source(path.name, path.read_bytes()) for path in library.shapes()]
-ONTOLOGIES = [Source(path.name, path.read_bytes()) for path in library.ontologies()]
+SHAPES = [SourceText(path.name, path.read_bytes()) for path in library.shapes()]
+ONTOLOGIES = [SourceText(path.name, path.read_bytes()) for path in library.ontologies()]
 TEMPLATE = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class rob:Lamp .\n"
 
 
 def lints(text: str, head: str = PREAMBLE) -> list[Diagnostic]:
-    return list(validate([Source("a.ttl", (head + text).encode())], SHAPES, ONTOLOGIES).diagnostics)
+    return list(validate([SourceText("a.ttl", (head + text).encode())], SHAPES, ONTOLOGIES).diagnostics)
 
 
 def only(text: str, head: str = PREAMBLE) -> Diagnostic:

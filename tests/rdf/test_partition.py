@@ -13,9 +13,12 @@ from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Partition
 from selfconf.model.term import IRI
-from selfconf.rdf import advertisements, bindings, templates, turtle
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.partition import Partitioner
+from selfconf.rdf import rdflib_terms
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 CLASSES = ("rob:MotorDrive", "rob:Encoder", ":Other")
@@ -33,7 +36,7 @@ def partitioner(
     text: str, hierarchy: Hierarchy = NOTHING_ABOVE, bound: tuple[tuple[str, str], ...] = ()
 ) -> Partitioner:
     """The partitioner of a template."""
-    task = templates.read(turtle.parse(PREFIXES + text, "template.ttl"))
+    task = templates.read_task(turtle.parse(PREFIXES + text, "template.ttl"))
     return Partitioner(bindings.complete(bindings.bind(task, bound)), hierarchy)
 
 
@@ -46,7 +49,7 @@ def names(partition: Partition) -> list[list[str]]:
 
 
 def test_the_papers_ecology_is_partitioned_as_in_the_paper() -> None:
-    task = templates.read(turtle.parse(NAVIGATE, "navigate.ttl"))
+    task = templates.read_task(turtle.parse(NAVIGATE, "navigate.ttl"))
     bound = bindings.complete(bindings.bind(task, [("robot", ":Astrid"), ("goal", "(AT BEDROOM)")]))
     assert names(Partitioner(bound).partition(read(ADVERTISEMENTS.values()))) == [
         ["sonar-array"],
@@ -220,8 +223,8 @@ def conforming(texts: list[str], role: str, value: str = ":par") -> set[str]:
     """Who conforms to a role, judged by pySHACL alone, with the parameter replaced in the text."""
     # Not by rdflib's parser, which takes "01"^^xsd:integer for another spelling of 1: SHACL compares RDF terms.
     text = f"{PREFIXES} :r {role.replace(':par', value)} ; a sh:NodeShape ."
-    shapes = turtle.to_rdflib(turtle.parse(text, "shape").triples())
-    subjects = turtle.to_rdflib(turtle.parse(PREFIXES + "\n".join(texts), "ads").triples())
+    shapes = rdflib_terms.to_rdflib(turtle.parse(text, "shape").triples())
+    subjects = rdflib_terms.to_rdflib(turtle.parse(PREFIXES + "\n".join(texts), "ads").triples())
     found = set()
     for number in range(len(texts)):
         node = iri(f"c{number}")

@@ -9,11 +9,14 @@ from hypothesis import strategies as st
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
 from selfconf.model.term import IRI
-from selfconf.rdf import advertisements, bindings, closure, templates, turtle
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import ParameterTest
-from selfconf.rdf.kinds import Ecology
-from selfconf.rdf.partition import Partitioner
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.eligibility.index import AdvertisementIndex
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.eligibility.role_tests import ParameterTest
+from selfconf.rdf.reasoning import closure
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
 
 ONTOLOGY = PREFIXES + (
@@ -112,7 +115,7 @@ def ecology(components: list[tuple[str, list[tuple[str, str]], bool]]) -> list[A
 
 def eligible(partitioner: Partitioner, ads: list[Advertisement]) -> dict[IRI, object]:
     """Who is eligible for the only role, and the values that it allows."""
-    (found,) = partitioner.eligible(Ecology.of(ads))
+    (found,) = partitioner.eligible(AdvertisementIndex.of(ads))
     return {e.profile.component: (dict(e.allows), {p: v for p, v in e.forbids.items() if v}) for e in found}
 
 
@@ -130,7 +133,7 @@ def test_compiled_tests_and_pyshacl_agree(
     shape: str, components: list[tuple[str, list[tuple[str, str]], bool]], hierarchy: Hierarchy
 ) -> None:
     text = f"{PREFIXES} :t a sc:Template ; sc:roles ( :role ) . :role a sc:Role ; {shape} ."
-    task = bindings.complete(templates.read(turtle.parse(text, "t.ttl")))
+    task = bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
     ads = ecology(components)
     alone = eligible(by_pyshacl(Partitioner(task, hierarchy)), ads)
     assert eligible(Partitioner(task, hierarchy), ads) == alone
@@ -145,7 +148,7 @@ def test_a_free_parameter_has_the_values_that_pyshacl_lets_it_have(
         f"{PREFIXES} :t a sc:Template ; sc:roles ( :role ) ; sc:parameter :v . :v a sc:Parameter ; sc:name 'v' ."
         f" :role a sc:Role ; sh:property [ sh:path :q ; {constraint} ] ."
     )
-    task = bindings.complete(templates.read(turtle.parse(text, "t.ttl")))
+    task = bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
     ads = ecology(components)
     alone = eligible(by_pyshacl(Partitioner(task, hierarchy)), ads)
     assert eligible(Partitioner(task, hierarchy), ads) == alone

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI
-from selfconf.rdf import clauses, turtle
-from selfconf.rdf.pieces import ENOUGH, Pieces, folded
+from selfconf.rdf.advertisements import statements as clauses
+from selfconf.rdf.advertisements.segments import NEW_SEGMENTS, SegmentCache, inlined_document
+from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
 from tests.rdf.test_stream import GOOD, documents, shape_of
 
@@ -47,10 +48,10 @@ def whole(text: str) -> object:
     return [f"<{s}>" for s in document.statements if isinstance(s, IRI)], shape_of(tuple(document.triples()))
 
 
-def cut(text: str, known: Pieces) -> object:
+def cut(text: str, known: SegmentCache) -> object:
     """The same from its pieces; None where only the careful reader can tell."""
     try:
-        found = folded(text.encode(), "a.ttl", BASE, known)
+        found = inlined_document(text.encode(), "a.ttl", BASE, known)
     except TurtleError as error:
         return str(error)
     if found is None:
@@ -75,34 +76,34 @@ def cut(text: str, known: Pieces) -> object:
 @example(PREFIXES + f':c1 {GOOD} .\n<urn:p>"s" ; :q 1 .')
 @example(PREFIXES + ":c1 a [ :n 1 ], sc:Component ; a :T .\n")
 def test_cutting_makes_of_a_document_what_reading_it_whole_makes_of_it(text: str) -> None:
-    known = Pieces()
+    known = SegmentCache()
     for found in (cut(text, known), cut(text, known)):  # what was learnt the first time is used the second
         assert found is None or found == whole(text)
 
 
 def test_what_has_been_read_once_is_not_read_again() -> None:
-    known = Pieces()
+    known = SegmentCache()
     for number in range(3):
         text = f"# file {number}\n{PREFIXES}\n:c{number} {GOOD} ; :serial {number % 2} ."
-        folded(text.encode(), f"{number}.ttl", f"file:///{number}.ttl", known)
+        inlined_document(text.encode(), f"{number}.ttl", f"file:///{number}.ttl", known)
     assert (known.seen, known.new) == (9, 4)
 
 
 def test_where_most_is_new_documents_are_read_whole() -> None:
-    known = Pieces()
+    known = SegmentCache()
     text = PREFIXES + "".join(
-        f":c{number} {GOOD} ; :serial '{number}' ; :label 'c{number}' .\n" for number in range(ENOUGH)
+        f":c{number} {GOOD} ; :serial '{number}' ; :label 'c{number}' .\n" for number in range(NEW_SEGMENTS)
     )
-    found = folded(text.encode(), "a.ttl", None, known)
+    found = inlined_document(text.encode(), "a.ttl", None, known)
     assert found is not None
-    assert len(found) == ENOUGH
+    assert len(found) == NEW_SEGMENTS
     assert not known.pays
 
 
 def test_relative_names_mean_something_else_in_each_file() -> None:
-    known, text = Pieces(), f"{PREFIXES}@prefix here: <#> . here:c {GOOD} ; :near here:d , <e> ."
+    known, text = SegmentCache(), f"{PREFIXES}@prefix here: <#> . here:c {GOOD} ; :near here:d , <e> ."
     for name in ("one", "two"):
-        found = folded(text.encode(), name, f"file:///{name}", known)
+        found = inlined_document(text.encode(), name, f"file:///{name}", known)
         assert found is not None
         ((subject, said),) = found.items()
         assert subject == f"<file:///{name}#c>"
@@ -118,5 +119,5 @@ def test_relative_names_mean_something_else_in_each_file() -> None:
 def test_cutting_takes_no_longer_for_what_is_hostile(text: str) -> None:
     began = time.process_time()
     with contextlib.suppress(TurtleError):
-        folded(f"{PREFIXES}:c a {text}".encode(), "a.ttl", BASE, Pieces())
+        inlined_document(f"{PREFIXES}:c a {text}".encode(), "a.ttl", BASE, SegmentCache())
     assert time.process_time() - began < 2

@@ -14,7 +14,7 @@ from rdflib.collection import Collection
 from rdflib.compare import isomorphic
 from rdflib.plugins.parsers.notation3 import RDFSink, SinkParser
 
-from selfconf.rdf.positions import NotTurtle, Offsets, Place, Positions, parse
+from selfconf.rdf.positions import NotTurtleError, Offsets, Positions, TextPosition, parse_with_positions
 
 ROOT = Path(__file__).resolve().parents[2]
 OURS = sorted((*ROOT.glob("ontology/*.ttl"), *ROOT.glob("shapes/*.ttl")))
@@ -113,8 +113,8 @@ class Reader:
 def test_every_term_of_real_files_stands_where_an_independent_reader_finds_it(path: Path) -> None:
     text = path.read_text("utf-8")
     try:
-        graph, positions = parse(text, path.name, "https://example.org/base")
-    except NotTurtle:
+        graph, positions = parse_with_positions(text, path.name, "https://example.org/base")
+    except NotTurtleError:
         with pytest.raises(SyntaxError):
             Graph().parse(data=text, format="turtle", publicID="https://example.org/base")
         return
@@ -138,79 +138,91 @@ def token(text: str, offset: int) -> str:
 @pytest.mark.parametrize("path", OURS, ids=lambda path: path.name)
 def test_the_graph_is_the_one_that_rdflib_reads(path: Path) -> None:
     text = path.read_text("utf-8")
-    assert isomorphic(parse(text, path.name)[0], Graph().parse(data=text, format="turtle"))
+    assert isomorphic(parse_with_positions(text, path.name)[0], Graph().parse(data=text, format="turtle"))
 
 
-def where(text: str, value: URIRef | Literal) -> tuple[Place | None, Place | None, Place | None]:
-    graph, positions = parse(HEAD + text, "a.ttl")
+def where(text: str, value: URIRef | Literal) -> tuple[TextPosition | None, TextPosition | None, TextPosition | None]:
+    graph, positions = parse_with_positions(HEAD + text, "a.ttl")
     (triple,) = graph.triples((None, None, value))
     return positions.of_subject(triple), positions.of_predicate(triple), positions.of_object(triple)
 
 
 def test_columns_count_characters_and_not_bytes() -> None:
-    assert where(':é :ß "😀", :x .', URIRef(EX + "x")) == (Place(2, 1), Place(2, 4), Place(2, 12))
+    assert where(':é :ß "😀", :x .', URIRef(EX + "x")) == (TextPosition(2, 1), TextPosition(2, 4), TextPosition(2, 12))
 
 
 def test_a_node_in_brackets_stands_at_its_bracket() -> None:
-    assert where(":a :b [\n  :c 5 ] .", Literal(5)) == (Place(2, 7), Place(3, 3), Place(3, 6))
+    assert where(":a :b [\n  :c 5 ] .", Literal(5)) == (TextPosition(2, 7), TextPosition(3, 3), TextPosition(3, 6))
 
 
 def test_a_node_in_brackets_that_is_a_subject_keeps_its_place_after_it_is_closed() -> None:
-    assert where("[ :a :b ] :c :d .", URIRef(EX + "d")) == (Place(2, 1), Place(2, 11), Place(2, 14))
+    assert where("[ :a :b ] :c :d .", URIRef(EX + "d")) == (
+        TextPosition(2, 1),
+        TextPosition(2, 11),
+        TextPosition(2, 14),
+    )
 
 
 def test_the_cells_of_a_list_stand_at_their_members() -> None:
-    graph, positions = parse(HEAD + ":a :b ( :c\n  [ :d 1 ]\n  ( 2 ) ) .", "a.ttl")
+    graph, positions = parse_with_positions(HEAD + ":a :b ( :c\n  [ :d 1 ]\n  ( 2 ) ) .", "a.ttl")
     head = graph.value(URIRef(EX + "a"), URIRef(EX + "b"))
     assert head is not None
     members = Collection(graph, head)
-    assert [positions.of_node(member) for member in members] == [Place(2, 9), Place(3, 3), Place(4, 3)]
-    assert positions.of_node(head) == Place(2, 7)
+    assert [positions.of_node(member) for member in members] == [
+        TextPosition(2, 9),
+        TextPosition(3, 3),
+        TextPosition(4, 3),
+    ]
+    assert positions.of_node(head) == TextPosition(2, 7)
 
 
 def test_a_triple_that_is_stated_twice_stands_where_it_is_stated_first() -> None:
-    assert where(":a :b :c .\n:a :b :c .", URIRef(EX + "c"))[2] == Place(2, 7)
+    assert where(":a :b :c .\n:a :b :c .", URIRef(EX + "c"))[2] == TextPosition(2, 7)
 
 
 def test_comments_and_strings_that_look_like_turtle_move_nothing() -> None:
     text = '# :a :b :c .\n:a :b """ # :x :y :z .\n""" , :c . # the end'
-    assert where(text, URIRef(EX + "c")) == (Place(3, 1), Place(3, 4), Place(4, 7))
+    assert where(text, URIRef(EX + "c")) == (TextPosition(3, 1), TextPosition(3, 4), TextPosition(4, 7))
 
 
 def test_windows_line_ends_count_once() -> None:
-    assert where(":a\r\n  :b\r\n  :c .\r\n", URIRef(EX + "c")) == (Place(2, 1), Place(3, 3), Place(4, 3))
+    assert where(":a\r\n  :b\r\n  :c .\r\n", URIRef(EX + "c")) == (
+        TextPosition(2, 1),
+        TextPosition(3, 3),
+        TextPosition(4, 3),
+    )
 
 
 def test_a_byte_order_mark_takes_no_column() -> None:
-    _, positions = parse("\ufeff<urn:a> <urn:b> <urn:c> .", "a.ttl")
-    assert positions.of_node(URIRef("urn:a")) == Place(1, 1)
+    _, positions = parse_with_positions("\ufeff<urn:a> <urn:b> <urn:c> .", "a.ttl")
+    assert positions.of_node(URIRef("urn:a")) == TextPosition(1, 1)
 
 
 def test_every_declaration_of_a_prefix_is_noted() -> None:
-    _, positions = parse("@prefix : <urn:a#> .\nPREFIX b: <urn:b#>\n  @prefix : <urn:c#> .", "a.ttl")
+    _, positions = parse_with_positions("@prefix : <urn:a#> .\nPREFIX b: <urn:b#>\n  @prefix : <urn:c#> .", "a.ttl")
     assert [(prefix, iri, positions.place(offset)) for prefix, iri, offset in positions.prefixes] == [
-        ("", "urn:a#", Place(1, 1)),
-        ("b", "urn:b#", Place(2, 1)),
-        ("", "urn:c#", Place(3, 3)),
+        ("", "urn:a#", TextPosition(1, 1)),
+        ("b", "urn:b#", TextPosition(2, 1)),
+        ("", "urn:c#", TextPosition(3, 3)),
     ]
 
 
 @pytest.mark.parametrize(
     ("text", "place"),
     [
-        (":a :b :c\n:d :e :f .", Place(3, 1)),
-        (":a :b , .", Place(2, 6)),
-        (":a x:b :c .", Place(2, 4)),
-        (":a :b ( :c", Place(2, 11)),
-        (":a :b [ :c :d .", Place(2, 15)),
-        (":a :b", Place(2, 6)),
-        (":a :b :c", Place(2, 9)),
-        ("<a b", Place(2, 1)),
+        (":a :b :c\n:d :e :f .", TextPosition(3, 1)),
+        (":a :b , .", TextPosition(2, 6)),
+        (":a x:b :c .", TextPosition(2, 4)),
+        (":a :b ( :c", TextPosition(2, 11)),
+        (":a :b [ :c :d .", TextPosition(2, 15)),
+        (":a :b", TextPosition(2, 6)),
+        (":a :b :c", TextPosition(2, 9)),
+        ("<a b", TextPosition(2, 1)),
     ],
 )
-def test_what_is_not_turtle_is_placed(text: str, place: Place) -> None:
-    with pytest.raises(NotTurtle) as caught:
-        parse(HEAD + text, "a.ttl")
+def test_what_is_not_turtle_is_placed(text: str, place: TextPosition) -> None:
+    with pytest.raises(NotTurtleError) as caught:
+        parse_with_positions(HEAD + text, "a.ttl")
     line = Positions("a.ttl", HEAD + text).place(caught.value.offset)
     assert abs(line.column - place.column) <= 1, (line, caught.value.message)
     assert line.line == place.line
@@ -219,11 +231,11 @@ def test_what_is_not_turtle_is_placed(text: str, place: Place) -> None:
 def test_a_token_is_as_wide_as_it_looks() -> None:
     positions = Positions("a.ttl", ':a sc:name "pose"@en, <urn:x y>; [ 5.0 ] .')
     widths = {match.start() + 1: match.end() - match.start() for match in re.finditer(r"\S+", positions.text)}
-    assert positions.width(Place(1, 1)) == widths[1]
-    assert positions.width(Place(1, 4)) == len("sc:name")
-    assert positions.width(Place(1, 12)) == len('"pose"@en')
-    assert positions.width(Place(1, 34)) == 1
-    assert positions.width(Place(1, 36)) == len("5.0")
+    assert positions.width(TextPosition(1, 1)) == widths[1]
+    assert positions.width(TextPosition(1, 4)) == len("sc:name")
+    assert positions.width(TextPosition(1, 12)) == len('"pose"@en')
+    assert positions.width(TextPosition(1, 34)) == 1
+    assert positions.width(TextPosition(1, 36)) == len("5.0")
 
 
 PRIVATE = ("directiveOrStatement", "bind", "node", "item", "subject", "prop", "object", "verb", "property_list",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.errors import QueryError
-from selfconf.rdf.dataset import Dataset
+from selfconf.rdf.sparql.dataset import Dataset
 
 
 @pytest.mark.parametrize(

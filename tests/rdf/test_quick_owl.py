@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from selfconf import library
 from selfconf.model.hierarchy import Reasoning
 from selfconf.model.term import IRI
-from selfconf.rdf import closure, quick_owl, turtle
-from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.reasoning import closure
+from selfconf.rdf.reasoning import fast_owl as quick_owl
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.turtle.document import Document, Triple
 
 pytest.importorskip("reasonable")
 
@@ -74,13 +76,13 @@ def hierarchy_of(documents: list[Document], entail: Callable[[list[Triple]], Ite
 def test_of_any_ontology_that_suits_both_reasoners_infer_one_hierarchy(axioms: list[str]) -> None:
     document = turtle.parse(PREFIXES + "\n".join(axioms), "o.ttl")
     assert quick_owl.suits(list(document.triples()))
-    assert hierarchy_of([document], quick_owl.owl_rl) == hierarchy_of([document], closure.owl_rl)
+    assert hierarchy_of([document], quick_owl.reasonable_owl_rl) == hierarchy_of([document], closure.owlrl_owl_rl)
 
 
 def test_the_ontologies_of_selfconf_suit_and_both_reasoners_infer_one_hierarchy() -> None:
     documents = [turtle.parse(path.read_bytes(), str(path)) for path in library.ontologies()]
     assert quick_owl.suits([triple for document in documents for triple in document.triples()])
-    assert hierarchy_of(documents, quick_owl.owl_rl) == hierarchy_of(documents, closure.owl_rl)
+    assert hierarchy_of(documents, quick_owl.reasonable_owl_rl) == hierarchy_of(documents, closure.owlrl_owl_rl)
 
 
 @pytest.mark.parametrize(
@@ -114,5 +116,5 @@ def test_an_ontology_that_uses_anything_else_is_left_to_owlrl(axiom: str) -> Non
 )
 def test_what_is_left_to_owlrl_the_quick_reasoner_would_miss(ontology: str, lower: str, higher: str) -> None:
     document = turtle.parse(PREFIXES + ontology, "o.ttl")
-    missed = hierarchy_of([document], closure.owl_rl) - hierarchy_of([document], quick_owl.owl_rl)
+    missed = hierarchy_of([document], closure.owlrl_owl_rl) - hierarchy_of([document], quick_owl.reasonable_owl_rl)
     assert (IRI("urn:x:" + lower), IRI("urn:x:" + higher)) in missed

@@ -12,11 +12,11 @@ from benchmarks.scale import worlds as scale
 from selfconf.cli.inputs import collector_at_rest
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Profile
-from selfconf.rdf import stream
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import CompiledRole
-from selfconf.rdf.kept_out import near_misses
-from selfconf.rdf.partition import Partitioner
+from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.eligibility.nearly_eligible import near_misses
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.eligibility.role_tests import CompiledRole
 
 MANY = 4_000
 

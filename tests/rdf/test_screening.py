@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from rdflib import Graph
 
 from selfconf import library
-from selfconf.rdf.judging import Shapes, violations
-from selfconf.rdf.screening import screen
+from selfconf.rdf.validation.prefilter import prefilter
+from selfconf.rdf.validation.shape_violations import Shapes, reported_violations
 
 HEAD = """\
 @prefix : <https://example.org/home#> .
@@ -83,14 +83,14 @@ def advertisements(draw: st.DrawFn) -> str:
 @given(advertisements())
 def test_no_bad_file_is_cleared_and_no_query_is_missed(text: str) -> None:
     graph = Graph().parse(data=text, format="turtle")
-    found = set(violations(graph, SHAPES.all))
-    if screen(text.encode()).clear:
+    found = set(reported_violations(graph, SHAPES.all))
+    if prefilter(text.encode()).clear:
         assert not found
-    assert found == set(violations(graph, SHAPES.needed(graph)))
+    assert found == set(reported_violations(graph, SHAPES.needed(graph)))
 
 
 def test_a_good_advertisement_is_cleared_at_first_sight() -> None:
-    screened = screen((HEAD + GOOD).encode())
+    screened = prefilter((HEAD + GOOD).encode())
     assert screened.clear
     assert screened.components == ["https://example.org/home#cap"]
 
@@ -98,13 +98,13 @@ def test_a_good_advertisement_is_cleared_at_first_sight() -> None:
 @pytest.mark.parametrize("path", sorted((Path(__file__).parents[1] / "bad").glob("*.ttl")), ids=lambda path: path.stem)
 def test_no_file_that_breaks_a_shape_is_cleared(path: Path) -> None:
     if any(f"[SC-{letter}" in path.read_text("utf-8").partition("\n")[0] for letter in "STAKCO"):
-        assert not screen(path.read_bytes(), "file:///").clear
+        assert not prefilter(path.read_bytes(), "file:///").clear
 
 
 def test_reading_goes_on_after_a_syntax_error() -> None:
     text = HEAD + ":a :b , .\n:c :d :e .\n:f x:g :h .\n"
-    assert [(problem.line, problem.column) for problem in screen(text.encode()).problems] == [(8, 7), (10, 4)]
+    assert [(problem.line, problem.column) for problem in prefilter(text.encode()).problems] == [(8, 7), (10, 4)]
 
 
 def test_triples_of_turtle_1_2_are_not_cleared() -> None:
-    assert not screen((HEAD + ":a :b <<( :c :d :e )>> .").encode()).clear
+    assert not prefilter((HEAD + ":a :b <<( :c :d :e )>> .").encode()).clear

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
-from selfconf.rdf import turtle
-from selfconf.rdf.shacl import violations
+from selfconf.rdf import rdflib_terms
+from selfconf.rdf.conformance import violations
+from selfconf.rdf.turtle import document as turtle
 
 HEAD = "@prefix : <urn:x:> . @prefix sh: <http://www.w3.org/ns/shacl#> .\n"
 SUBJECTS = ':good :size 5 . :bad :size "five" . :bare :note 1 .'
@@ -26,7 +27,7 @@ ASKED = st.sampled_from(
 
 def outside(shapes: str) -> set[str]:
     """The local names of those who do not conform to `:shape`."""
-    graphs = [turtle.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples()) for text in (SUBJECTS, shapes)]
+    graphs = [rdflib_terms.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples()) for text in (SUBJECTS, shapes)]
     return {
         node.removeprefix("urn:x:") for node in violations(graphs[0], graphs[1], IRI("urn:x:shape"), NODES, "a.ttl")
     }
@@ -82,7 +83,7 @@ LINKS = st.lists(st.tuples(st.integers(0, 3), PATHS, st.sampled_from((":c0", ":c
 def test_each_of_many_is_judged_as_it_is_alone(shape: str, links: list[tuple[int, str, str]]) -> None:
     said = "".join(f" :c{number} {path} {value} ." for number, path, value in links)
     texts = (f":other :p :c0 .{said}", f":shape sh:property [ {shape} ] .")
-    subjects, shapes = (turtle.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples()) for text in texts)
+    subjects, shapes = (rdflib_terms.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples()) for text in texts)
     alone = set()
     for node in LINKED:
         asked = rdflib.Graph() + shapes
@@ -94,7 +95,7 @@ def test_each_of_many_is_judged_as_it_is_alone(shape: str, links: list[tuple[int
 
 def test_a_value_that_is_a_candidate_is_not_blamed_for_who_links_to_it() -> None:
     graphs = [
-        turtle.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples())
+        rdflib_terms.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples())
         for text in (
             ":good :link :bad . :bad :link :thing .",
             ":shape sh:property [ sh:path :link ; sh:property :named ] . :named sh:path :n ; sh:minCount 1 .",

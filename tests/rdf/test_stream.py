@@ -10,11 +10,14 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
-from selfconf.rdf import advertisements, clauses, stream, turtle
-from selfconf.rdf.advertisements import Advertisement, Malformed
-from selfconf.rdf.pieces import Pieces
-from selfconf.rdf.turtle import Triple
-from selfconf.rdf.write import ntriples
+from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements import statements as clauses
+from selfconf.rdf.advertisements.reader import Advertisement, MalformedAdvertisement
+from selfconf.rdf.advertisements.segments import SegmentCache
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.turtle.document import Triple
+from selfconf.rdf.turtle.serialization import ntriples
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 VALUES = st.sampled_from(
@@ -74,7 +77,7 @@ def shape_of(triples: tuple[Triple, ...]) -> list[str]:
     return sorted(map(str, dataset))
 
 
-def told(found: tuple[list[Advertisement], list[Malformed]]) -> tuple[object, object]:
+def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tuple[object, object]:
     """All that is to be the same, whatever blank nodes are called."""
     good, bad = found
     return (
@@ -113,7 +116,7 @@ def test_a_document_longer_than_a_piece_is_read_as_one() -> None:
 
 
 def test_documents_may_share_their_pieces() -> None:
-    shared = Pieces()
+    shared = SegmentCache()
     found = [stream.read((PREFIXES + text).encode(), name, None, shared)[0][0] for name, text in ADVERTISEMENTS.items()]
     assert [a.profile.place and a.profile.place.source for a in found] == list(ADVERTISEMENTS)
     assert found[2].profile.preference == 10

@@ -10,7 +10,8 @@ import pytest
 from selfconf.errors import TemplateError
 from selfconf.model.template import Interaction, Setting, Task
 from selfconf.model.term import IRI, Literal
-from selfconf.rdf import templates, turtle
+from selfconf.rdf.tasks import templates
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import ROB, SC
 from tests.lab import NAVIGATE, PREFIXES, iri
 
@@ -21,7 +22,7 @@ INTERACTION = "[] a sc:Interaction ; sc:from :r ; sc:to :s"
 
 def read(text: str, wanted: IRI | None = None) -> Task:
     """The task of a text."""
-    return templates.read(turtle.parse(PREFIXES + text, "t.ttl"), wanted).task
+    return templates.read_task(turtle.parse(PREFIXES + text, "t.ttl"), wanted).task
 
 
 def test_figure_7_of_the_paper_is_read_as_five_roles_and_four_interactions() -> None:
@@ -140,7 +141,7 @@ def wrong_about_templates() -> list[Path]:
 def test_whatever_validation_refuses_in_a_template_or_task_its_reader_refuses(path: Path) -> None:
     document = turtle.parse(path.read_bytes(), path.name)
     with pytest.raises(TemplateError):
-        templates.read(document)
+        templates.read_task(document)
 
 
 @pytest.mark.parametrize(
@@ -174,4 +175,4 @@ def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
 def test_every_example_that_holds_a_template_is_read(path: Path) -> None:
     document = turtle.parse(path.read_bytes(), path.name)
     if document.instances(SC.Template):
-        assert templates.read(document).task.template.roles
+        assert templates.read_task(document).task.template.roles

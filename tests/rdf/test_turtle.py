@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, BlankNode, Literal
-from selfconf.rdf import turtle
+from selfconf.rdf import rdflib_terms
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import TYPE
 from tests.lab import PREFIXES, iri
 
@@ -104,8 +105,12 @@ def test_deep_nesting_is_read_or_refused_not_stumbled_over() -> None:
 
 def test_terms_survive_the_way_through_rdflib() -> None:
     document = turtle.parse(PREFIXES + ':s :p :o, "a", "a"@en, "01"^^xsd:integer, 1.5 ; a :T .', "t")
-    graph = turtle.to_rdflib(document.triples())
-    back = {(turtle.from_rdflib(s), IRI(p), turtle.from_rdflib(o)) for s, p, o in graph if isinstance(p, rdflib.URIRef)}
+    graph = rdflib_terms.to_rdflib(document.triples())
+    back = {
+        (rdflib_terms.from_rdflib(s), IRI(p), rdflib_terms.from_rdflib(o))
+        for s, p, o in graph
+        if isinstance(p, rdflib.URIRef)
+    }
     assert back == set(document.triples())
 
 

@@ -12,23 +12,23 @@ from selfconf import library
 from selfconf.errors import TurtleError
 from selfconf.model.codes import CODES, PREAMBLE, Code
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
-from selfconf.rdf.validation import Source, validate
+from selfconf.rdf.validation.checking import SourceText, validate
 
 BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.ttl"))
 ADVERTISEMENT = ":tuner a sc:Component, rob:Tuner .\n"
 
 
-def load(path: Path) -> Source:
-    return Source(str(path), path.read_bytes(), path.resolve().as_uri())
+def load(path: Path) -> SourceText:
+    return SourceText(str(path), path.read_bytes(), path.resolve().as_uri())
 
 
 SHAPES = [load(path) for path in library.shapes()]
 ONTOLOGIES = [load(path) for path in library.ontologies()]
 
 
-def check(*texts: str, ontologies: Iterable[Source] = ()) -> Report:
+def check(*texts: str, ontologies: Iterable[SourceText] = ()) -> Report:
     """Validate texts, which get the names 0.ttl, 1.ttl and so on and the usual prefixes."""
-    sources = [Source(f"{number}.ttl", (PREAMBLE + text).encode()) for number, text in enumerate(texts)]
+    sources = [SourceText(f"{number}.ttl", (PREAMBLE + text).encode()) for number, text in enumerate(texts)]
     return validate(sources, SHAPES, [*ONTOLOGIES, *ontologies])
 
 
@@ -76,12 +76,12 @@ def test_every_syntax_error_of_a_file_is_reported() -> None:
 
 
 def test_bytes_that_are_not_utf_8_are_placed() -> None:
-    (problem,) = validate([Source("a.ttl", "# ä\n:a :b ".encode() + b"\xe4 .")], SHAPES, ONTOLOGIES).diagnostics
+    (problem,) = validate([SourceText("a.ttl", "# ä\n:a :b ".encode() + b"\xe4 .")], SHAPES, ONTOLOGIES).diagnostics
     assert (problem.line, problem.column, problem.code) == (2, 7, "SC-S02")
 
 
 def test_a_byte_order_mark_is_allowed() -> None:
-    source = Source("a.ttl", b"\xef\xbb\xbf" + (PREAMBLE + ADVERTISEMENT).encode())
+    source = SourceText("a.ttl", b"\xef\xbb\xbf" + (PREAMBLE + ADVERTISEMENT).encode())
     assert not validate([source], SHAPES, ONTOLOGIES).diagnostics
 
 
@@ -113,7 +113,7 @@ def test_an_advertisement_needs_no_port_no_label_and_no_known_type() -> None:
 
 def test_a_signal_type_is_known_if_a_given_ontology_declares_it() -> None:
     text = ':a a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name "x" ; sc:signalType <urn:my:Noise> ] .'
-    ontology = Source("my.ttl", b"<urn:my:Noise> a <http://www.w3.org/2002/07/owl#Class> .")
+    ontology = SourceText("my.ttl", b"<urn:my:Noise> a <http://www.w3.org/2002/07/owl#Class> .")
     assert [each.code for each in check(text).diagnostics] == ["SC-L03"]
     assert not check(text, ontologies=[ontology]).diagnostics
 
@@ -137,24 +137,24 @@ def test_a_signal_type_is_known_if_another_file_of_the_run_declares_it() -> None
 @pytest.mark.parametrize("signal", [":Noise", ":Noize"])
 def test_an_ontology_is_known_alike_given_as_such_or_validated_beside(ontology: str, signal: str) -> None:
     text = f':a a sc:Component, rob:Tuner ; :volume 3 ; sc:hasOutput [ sc:name "x" ; sc:signalType {signal} ] .'
-    given = check(text, ontologies=[Source("my.ttl", (PREAMBLE + ontology).encode())])
+    given = check(text, ontologies=[SourceText("my.ttl", (PREAMBLE + ontology).encode())])
     beside = check(text, ontology)
     assert [each for each in beside.diagnostics if each.file == "0.ttl"] == list(given.diagnostics)
 
 
 def test_a_class_without_a_namespace_covers_none() -> None:
-    ontology = Source("my.ttl", b"<urn:Noise> a <http://www.w3.org/2002/07/owl#Class> .")
+    ontology = SourceText("my.ttl", b"<urn:Noise> a <http://www.w3.org/2002/07/owl#Class> .")
     assert not check(":a a sc:Component, <urn:Kind> .", ontologies=[ontology]).diagnostics
 
 
 def test_an_ontology_that_is_not_turtle_is_refused_by_name() -> None:
     with pytest.raises(TurtleError, match=r"my\.ttl:1:1: "):
-        check(ADVERTISEMENT, ontologies=[Source("my.ttl", b"a .")])
+        check(ADVERTISEMENT, ontologies=[SourceText("my.ttl", b"a .")])
 
 
 def test_an_ontology_that_is_not_utf_8_is_refused_by_name() -> None:
     with pytest.raises(TurtleError, match=r"my\.ttl:1:5: .*UTF-8"):
-        check(ADVERTISEMENT, ontologies=[Source("my.ttl", b"<urn\xff> .")])
+        check(ADVERTISEMENT, ontologies=[SourceText("my.ttl", b"<urn\xff> .")])
 
 
 def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
@@ -209,7 +209,7 @@ def test_two_diagnostics_are_equal_whatever_line_they_show() -> None:
 
 def test_a_file_with_a_nul_is_no_turtle_at_the_place_of_the_nul() -> None:
     text = b'# a note\n<urn:x:a> <urn:x:p> "a\x00b" .\n'
-    report = validate([Source("nul.ttl", text)], SHAPES, ONTOLOGIES)
+    report = validate([SourceText("nul.ttl", text)], SHAPES, ONTOLOGIES)
     assert [(found.line, found.column, found.code) for found in report.diagnostics] == [(2, 23, "SC-S01")]
     assert report.unreadable == {"nul.ttl"}
 
@@ -219,4 +219,4 @@ def test_a_chain_of_two_thousand_roles_conforms() -> None:
     chain = "".join(f"{one} sc:feeds {after} .\n" for one, after in pairwise(names))
     roles = "".join(f"{one} a sc:Role ; sh:class rob:Tuner .\n" for one in names)
     text = f"{PREAMBLE}:t a sc:Template ; sc:roles ( {' '.join(names)} ) .\n{chain}{roles}"
-    assert not validate([Source("t.ttl", text.encode())], SHAPES, ONTOLOGIES).diagnostics
+    assert not validate([SourceText("t.ttl", text.encode())], SHAPES, ONTOLOGIES).diagnostics

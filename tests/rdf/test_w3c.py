@@ -18,12 +18,13 @@ from selfconf.model.hierarchy import Reasoning
 from selfconf.model.profile import Profile
 from selfconf.model.template import Role, Task, Template
 from selfconf.model.term import IRI
-from selfconf.rdf import turtle
-from selfconf.rdf.advertisements import STRUCTURE, Told
-from selfconf.rdf.closure import hierarchy
-from selfconf.rdf.partition import Partitioner
-from selfconf.rdf.templates import TaskDocument
-from selfconf.rdf.turtle import Document
+from selfconf.rdf import rdflib_terms
+from selfconf.rdf.advertisements.reader import STRUCTURE, ParsedAdvertisement
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.reasoning.closure import hierarchy
+from selfconf.rdf.tasks.templates import TaskDocument
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.turtle.document import Document
 from selfconf.rdf.vocabulary import SC, TYPE
 from selfconf.rdf.vocabulary import SH as SHACL
 
@@ -73,7 +74,7 @@ def roles(shapes: Document) -> list[IRI]:
     ]
 
 
-def advertised(data: Document) -> list[Told]:
+def advertised(data: Document) -> list[ParsedAdvertisement]:
     """Each IRI that is described, as a component; what is said of blank nodes goes along with the first."""
     nodes = [subject for subject in data.statements if isinstance(subject, IRI)]
     rest = [triple for triple in data.triples() if not isinstance(triple[0], IRI)]
@@ -85,7 +86,11 @@ def advertised(data: Document) -> list[Told]:
             frozenset(value for predicate, value in said if predicate == TYPE and isinstance(value, IRI)),
             tuple((predicate, value) for predicate, value in dict.fromkeys(said) if predicate not in STRUCTURE),
         )
-        found.append(Told(profile, tuple((node, *statement) for statement in said) + tuple(() if number else rest)))
+        found.append(
+            ParsedAdvertisement(
+                profile, tuple((node, *statement) for statement in said) + tuple(() if number else rest)
+            )
+        )
     return found
 
 
@@ -119,8 +124,8 @@ def test_a_role_has_the_verdicts_of_pyshacl(path: Path) -> None:
     template = Template(IRI("urn:template"), tuple(Role(role) for role in wanted))
     everything = advertised(data)
     nodes = [str(one.component) for one in everything]
-    graph = turtle.to_rdflib(data.triples())
-    expected = [alone(graph, turtle.to_rdflib(shapes.triples()), role, nodes) for role in wanted]
+    graph = rdflib_terms.to_rdflib(data.triples())
+    expected = [alone(graph, rdflib_terms.to_rdflib(shapes.triples()), role, nodes) for role in wanted]
     partitioner = Partitioner(TaskDocument(Task(template), shapes), hierarchy([data], Reasoning.SUBCLASS))
     found = partitioner.partition(everything)
     same = [{str(one.profile.component) for one in role} for role in found.candidates] == expected

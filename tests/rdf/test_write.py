@@ -9,7 +9,9 @@ from hypothesis import given
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.template import Parameter, Task, Template
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf import advertisements, turtle, write
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.turtle import serialization as write
 from selfconf.rdf.vocabulary import PROV, SC, XSD
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 from tests.protocol.strategies import literals

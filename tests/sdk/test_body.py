@@ -15,10 +15,10 @@ from selfconf.model.profile import Input, OperationalParameter, Output, Ports, P
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.life import Phase
+from selfconf.protocol.life import LifePhase
 from selfconf.protocol.messages import (
-    Answer,
     Apply,
+    CallAnswer,
     Cause,
     Fail,
     Message,
@@ -72,16 +72,16 @@ class Stage:
         assert self.network.run(lambda: bool(replies), 5.0)
         return replies[0]
 
-    def call(self, message: Message) -> Answer:
+    def call(self, message: Message) -> CallAnswer:
         """Make a call; the answer."""
         name = {Apply: "apply", SetParameters: "set", Release: "release"}[type(message)]
         (sample,) = self.ask(name, encode(message)).samples
-        return decode(sample.payload, Answer)
+        return decode(sample.payload, CallAnswer)
 
-    def state(self) -> Answer:
+    def state(self) -> CallAnswer:
         """What the component says of itself."""
         (sample,) = self.ask("state", b"").samples
-        return decode(sample.payload, Answer)
+        return decode(sample.payload, CallAnswer)
 
     def neighbour(self, rate: float | None = None) -> Body:
         """A tracker that is active."""
@@ -235,7 +235,7 @@ def test_a_component_that_failed_and_refuses_to_start_again_is_free() -> None:
     stage.let_pass(0.1)
     stage.recorder.refusal = Refused("still dark")
     assert stage.call(Apply(2, US)).verdict is Verdict.REFUSED
-    assert stage.body.life.phase is Phase.IDLE
+    assert stage.body.life.phase is LifePhase.IDLE
     stage.recorder.refusal = None
     stage.others.announce(THEM)
     assert stage.call(Apply(3, THEM)).verdict is Verdict.DONE
@@ -275,7 +275,7 @@ def test_a_component_that_breaks_when_it_is_stopped_is_off_all_the_same(caplog: 
     with caplog.at_level(logging.CRITICAL):
         answer = stage.call(Apply(4, US))
     assert (answer.verdict, answer.active) == (Verdict.DONE, True)
-    assert stage.body.life.phase is Phase.ACTIVE
+    assert stage.body.life.phase is LifePhase.ACTIVE
 
 
 # Failing.
@@ -559,7 +559,7 @@ def test_a_component_whose_configurator_is_gone_turns_itself_off_after_the_grace
     assert stage.component.active
     stage.let_pass(0.2)
     assert stage.recorder.said == [("started",), ("stopped",)]
-    assert stage.body.life.phase is Phase.IDLE
+    assert stage.body.life.phase is LifePhase.IDLE
 
 
 def test_a_configurator_that_is_back_within_the_grace_period_is_obeyed_on() -> None:
@@ -595,7 +595,7 @@ def test_a_component_that_has_failed_is_free_again_when_its_configurator_is_gone
     stage.component.fail("lost her")
     stage.leave()
     stage.let_pass(GRACE + 0.1)
-    assert stage.body.life.phase is Phase.IDLE
+    assert stage.body.life.phase is LifePhase.IDLE
     assert stage.recorder.said[-1] == ("stopped",)
 
 

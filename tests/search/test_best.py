@@ -11,12 +11,14 @@ from hypothesis import strategies as st
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.cost import CostTerm, cost, number
+from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, XSD, Literal
-from selfconf.search import best, sat, solve
-from selfconf.search.best import Optimum
+from selfconf.search.engines import clause_learning as sat
 from selfconf.search.problem import Problem
+from selfconf.search.strategies import best
+from selfconf.search.strategies import first as solve
 from tests.search.oracle import Players, World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -79,7 +81,7 @@ def _total(world: World, players: Players) -> tuple[Fraction, ...]:
 def test_the_best_is_the_first_of_least_cost(problem: Problem) -> None:
     world = World(problem.task, problem.partition, problem.hierarchy)
     solutions = list(world.solutions())
-    answer = best.search(problem)
+    answer = best.best_configuration(problem)
     if not solutions:
         assert not isinstance(answer, Optimum)
         return
@@ -105,7 +107,7 @@ def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Proble
         pairs = zip(world.roles, players, strict=True)
         return sum(c.profile.component not in played[role.iri] for role, some in pairs for c in some)
 
-    answer = best.search(left, running=running)
+    answer = best.best_configuration(left, running=running)
     solutions = list(world.solutions())
     assert isinstance(answer, Optimum) == bool(solutions)
     if isinstance(answer, Optimum):
@@ -119,10 +121,10 @@ def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Proble
 @agreement(0.5)
 def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
     pytest.importorskip("pysat")
-    expected = best.search(problem)
+    expected = best.best_configuration(problem)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(best, "WALK_STEPS", 0)
-        answer = best.search(problem)
+        patch.setattr(best, "BRANCHING_STEPS", 0)
+        answer = best.best_configuration(problem)
     assert not isinstance(expected, Optimum) or answer == expected
 
 
@@ -130,9 +132,9 @@ def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
 def test_what_is_found_in_few_steps_has_an_honest_bound(aided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if aided:
         pytest.importorskip("pysat")
-        monkeypatch.setattr(best, "WALK_STEPS", 1)
+        monkeypatch.setattr(best, "BRANCHING_STEPS", 1)
     else:
-        monkeypatch.setattr(sat, "available", lambda: False)
+        monkeypatch.setattr(sat, "find_spec", lambda name: None)
     unproved: list[bool] = []
     """For each answer without a proof whether there is a better one."""
 
@@ -142,7 +144,7 @@ def test_what_is_found_in_few_steps_has_an_honest_bound(aided: bool, monkeypatch
         world = World(problem.task, problem.partition, problem.hierarchy)
         least = min((_total(world, players) for players in world.solutions()), default=None)
         for steps in range(1, 11):
-            answer = best.search(problem, steps)
+            answer = best.best_configuration(problem, steps)
             if isinstance(answer, Optimum):
                 found = (answer.unknown, *answer.cost)
                 assert least is not None
@@ -165,7 +167,7 @@ def test_first_takes_the_preferred_and_best_the_cheapest() -> None:
         problem({"position": [liked, quick], "control": [component("cap", "p:Pose")]}, "position>control"),
         (CostTerm(LATENCY, role=iri("position")),),
     )
-    answer = best.search(given_)
+    answer = best.best_configuration(given_)
     assert isinstance(answer, Optimum)
     assert answer.cost == (Fraction(1, 10),)
     assert answer.configuration.components[0].short == "quick"
@@ -176,7 +178,7 @@ def test_first_takes_the_preferred_and_best_the_cheapest() -> None:
 
 def test_a_cost_over_a_property_that_nobody_has_changes_nothing_and_is_told() -> None:
     given_ = stating(problem({"eye": [component("a"), component("b")]}), (CostTerm(LATENCY),))
-    answer = best.search(given_)
+    answer = best.best_configuration(given_)
     assert isinstance(answer, Optimum)
     assert answer.configuration.components[0].short == "a"
     assert answer.unknown == 1
@@ -184,7 +186,7 @@ def test_a_cost_over_a_property_that_nobody_has_changes_nothing_and_is_told() ->
 
 def test_what_is_known_is_better_than_what_is_not() -> None:
     known = priced(component("known"), latency=100)
-    answer = best.search(stating(problem({"eye": [component("unknown"), known]}), (CostTerm(LATENCY),)))
+    answer = best.best_configuration(stating(problem({"eye": [component("unknown"), known]}), (CostTerm(LATENCY),)))
     assert isinstance(answer, Optimum)
     assert answer.configuration.components[0].short == "known"
 

@@ -13,14 +13,16 @@ from benchmarks.search import families
 from selfconf.model.partition import Candidate, Partition, Variable
 from selfconf.model.refusal import Undecided
 from selfconf.model.template import Interaction, Role, Task, Template
-from selfconf.search import sat, solve
-from selfconf.search.compact import Compact, Option
-from selfconf.search.filling import Filling
-from selfconf.search.kernel import Prepared, compact
-from selfconf.search.matching import Partners, Shortage, impossible, shortage
+from selfconf.search.budget import Budget
+from selfconf.search.engines import clause_learning as sat
+from selfconf.search.engines.candidate_search import CandidateSearch
+from selfconf.search.engines.matching import FollowedMatching, Shortage, impossible, shortage
+from selfconf.search.engines.reduced_search import first_solution
 from selfconf.search.problem import Problem
-from selfconf.search.requirement import pruned
-from selfconf.search.walk import Budget, walk
+from selfconf.search.reduction.constraints import pruned
+from selfconf.search.reduction.dominance import LazyReduction, reduced
+from selfconf.search.reduction.reduced_problem import Option, ReducedProblem
+from selfconf.search.strategies import first as solve
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problems
 from tests.search.worlds import problem as written
@@ -43,21 +45,21 @@ def _chosen(found: list[Option] | Undecided | None) -> list[int] | None:
 @agreement(0.6)
 def test_depth_first_on_the_kernel_finds_the_least_solution(problem: Problem) -> None:
     expected = _numbers(problem)
-    assert _chosen(walk(pruned(compact(problem)), Budget())) == expected
-    assert _chosen(walk(compact(problem), Budget())) == expected
+    assert _chosen(first_solution(pruned(reduced(problem)), Budget())) == expected
+    assert _chosen(first_solution(reduced(problem), Budget())) == expected
 
 
 @given(problems(components=7))
 @agreement(0.6)
 def test_who_is_passed_over_for_sharing_ports_is_in_no_least_solution(problem: Problem) -> None:
-    assert _chosen(walk(compact(problem), Budget())) == _numbers(problem)
+    assert _chosen(first_solution(reduced(problem), Budget())) == _numbers(problem)
 
 
 def test_one_of_each_kind_is_not_enough_where_roles_share_candidates() -> None:
     deaf, first, second = component("deaf", outputs="n:Noise"), *(component(c, outputs="p:Pose") for c in "ab")
     cap = component("cap", "p:Pose")
     given_ = written({"pose": [deaf, first], "spare": [first, second], "cap": [cap]}, "pose>cap")
-    assert _chosen(walk(compact(given_), Budget())) == [1, 1, 0]
+    assert _chosen(first_solution(reduced(given_), Budget())) == [1, 1, 0]
 
 
 def test_who_suits_two_parameters_not_at_all_leaves_once() -> None:
@@ -70,8 +72,8 @@ def test_who_suits_two_parameters_not_at_all_leaves_once() -> None:
         ((Candidate(odd, (2, 2)), Candidate(even, (1, 1))), (Candidate(component("eye", "p:Picture"), (1, 1)),)),
         variables,
     )
-    given_ = pruned(compact(Problem(Task(template), partition)))
-    assert _chosen(walk(given_, Budget())) == [1, 0]
+    given_ = pruned(reduced(Problem(Task(template), partition)))
+    assert _chosen(first_solution(given_, Budget())) == [1, 0]
     assert len(given_.departures) == 1
 
 
@@ -80,14 +82,14 @@ def test_who_suits_two_parameters_not_at_all_leaves_once() -> None:
 def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
     pytest.importorskip("pysat")
     expected = _numbers(problem)
-    assert _chosen(sat.least(pruned(compact(problem)), Budget())) == expected
-    assert _chosen(sat.least(compact(problem), Budget(10_000))) == expected
+    assert _chosen(sat.least_by_clauses(pruned(reduced(problem)), Budget())) == expected
+    assert _chosen(sat.least_by_clauses(reduced(problem), Budget(10_000))) == expected
 
 
 @given(problems())
 @agreement(0.3)
 def test_a_few_steps_find_the_least_solution_or_nothing(problem: Problem) -> None:
-    found = Filling(problem, Budget(6)).first()
+    found = CandidateSearch(problem, Budget(6)).first()
     if found is not None:
         assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == _numbers(problem)
 
@@ -95,20 +97,20 @@ def test_a_few_steps_find_the_least_solution_or_nothing(problem: Problem) -> Non
 def test_many_roles_that_draw_on_one_pool_are_filled_in_a_few_steps_each() -> None:
     pool = [component(f"c{number:02}") for number in range(60)]
     given_ = written({f"role{number:02}": pool for number in range(60)})
-    found = Filling(given_, Budget(4 * 60)).first()
+    found = CandidateSearch(given_, Budget(4 * 60)).first()
     assert found == [[candidate] for candidate in given_.candidates[0]]
 
 
 def test_passing_over_those_who_play_already_uses_up_a_budget_too() -> None:
     pool = [component(f"c{number:02}") for number in range(60)]
     given_ = written({f"role{number:02}": pool for number in range(60)})
-    assert Filling(given_, Budget(60)).first() is None
+    assert CandidateSearch(given_, Budget(60)).first() is None
 
 
 @given(problems())
 @agreement(0.3)
 def test_a_shortage_of_components_is_real(problem: Problem) -> None:
-    given_: Compact = compact(problem)
+    given_: ReducedProblem = reduced(problem)
     found = shortage(given_.slots, [[o.component for o in options] for options in given_.options])
     if found is not None:
         everybody = {o.component for role in found.roles for o in given_.options[role]}
@@ -121,14 +123,14 @@ def test_a_shortage_of_components_is_real(problem: Problem) -> None:
 def test_a_budget_that_ends_is_no_answer(problem: Problem) -> None:
     expected = _numbers(problem)
     for steps in range(12):
-        found = walk(pruned(compact(problem)), Budget(steps))
+        found = first_solution(pruned(reduced(problem)), Budget(steps))
         assert isinstance(found, Undecided) or _chosen(found) == expected
 
 
 @given(problems())
 @agreement(0.4)
 def test_what_is_in_no_matching_is_in_none(problem: Problem) -> None:
-    given_ = compact(problem)
+    given_ = reduced(problem)
     options = [[o.component for o in some] for some in given_.options]
     found = impossible(given_.slots, options)
     if isinstance(found, Shortage):
@@ -143,9 +145,9 @@ def test_what_is_in_no_matching_is_in_none(problem: Problem) -> None:
 @given(problems())
 @agreement(0.4)
 def test_a_matching_beside_depth_first_leaves_no_solution_out(problem: Problem) -> None:
-    given_ = compact(problem)
-    partners = Partners(given_.slots, [[o.component for o in some] for some in given_.options])
-    assert _chosen(walk(given_, Budget(), partners=partners)) == _numbers(problem)
+    given_ = reduced(problem)
+    partners = FollowedMatching(given_.slots, [[o.component for o in some] for some in given_.options])
+    assert _chosen(first_solution(given_, Budget(), partners=partners)) == _numbers(problem)
 
 
 def _first_roles(problem: Problem, roles: int) -> Problem:
@@ -178,31 +180,31 @@ def _first_roles(problem: Problem, roles: int) -> Problem:
 @given(problems(), st.integers(1, 3))
 @agreement()
 def test_the_first_roles_are_asked_for_nothing_that_a_later_one_may_feed(problem: Problem, roles: int) -> None:
-    given_ = compact(problem, roles=roles)
+    given_ = reduced(problem, roles=roles)
     expected = _numbers(_first_roles(problem, min(roles, len(problem.roles))))
-    assert _chosen(walk(given_, Budget())) == expected
+    assert _chosen(first_solution(given_, Budget())) == expected
     if expected is None:
         assert _numbers(problem) is None
-    if sat.available():
-        assert (sat.some(given_, Budget()) is None) == (expected is None)
+    if sat.solver_available():
+        assert (sat.any_by_clauses(given_, Budget()) is None) == (expected is None)
 
 
 def test_what_a_later_role_may_feed_refuses_nobody_among_the_first() -> None:
     parts = {"cap": [component("cap", "pose:Pose")], "deaf": [component("deaf")], "pose": [component("pose")]}
     by_type, by_name = written(parts, "deaf>cap pose>cap"), written(parts, "deaf>cap.pose pose>cap.pose")
     for given_ in (by_type, by_name):
-        assert walk(compact(given_, roles=3), Budget()) is None
-        assert _chosen(walk(compact(given_, roles=2), Budget())) == [0, 0]
-    assert walk(compact(written(parts, "deaf>cap"), roles=2), Budget()) is None
+        assert first_solution(reduced(given_, roles=3), Budget()) is None
+        assert _chosen(first_solution(reduced(given_, roles=2), Budget())) == [0, 0]
+    assert first_solution(reduced(written(parts, "deaf>cap"), roles=2), Budget()) is None
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_a_cause_near_the_beginning_is_found_there_and_the_answer_is_the_same(seed: int) -> None:
     pytest.importorskip("pysat")
     problem = families.graph("graph", 150, 10 + seed, 3, seed)
-    given_ = Prepared(problem)
+    given_ = LazyReduction(problem)
     found = solve.solution(given_, Budget())
-    expected = _chosen(sat.least(compact(problem), Budget()))
+    expected = _chosen(sat.least_by_clauses(reduced(problem), Budget()))
     assert isinstance(found, list) == (expected is not None)
     if isinstance(found, list):
         assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == expected
@@ -210,6 +212,6 @@ def test_a_cause_near_the_beginning_is_found_there_and_the_answer_is_the_same(se
 
 def test_for_a_cause_near_the_beginning_the_rest_is_not_even_prepared() -> None:
     pytest.importorskip("pysat")
-    given_ = Prepared(families.graph("graph", 200, 10, 3, 7_001))
+    given_ = LazyReduction(families.graph("graph", 200, 10, 3, 7_001))
     assert solve.solution(given_, Budget()) is None
-    assert "compact" not in vars(given_)
+    assert "reduced" not in vars(given_)

@@ -7,12 +7,14 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.certificate import check
+from selfconf.certificate import broken_conditions
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.template import Parameter, Setting
-from selfconf.search import paper, sat, solve
+from selfconf.search.engines import clause_learning as sat
 from selfconf.search.problem import Problem
+from selfconf.search.strategies import first as solve
+from selfconf.search.strategies import paper
 from tests.search.worlds import component, iri, problem
 
 SCAN, ODOMETRY, POSE, VELOCITY = "scan:RangeScan", "odometry:Odometry2D", "pose:PlanarPose2D", "velocity:Velocity2D"
@@ -22,7 +24,7 @@ def configured(problem: Problem) -> Configuration:
     """The first configuration of a problem that has one, accepted by the certificate."""
     answer = solve.search(problem)
     assert isinstance(answer, Configuration), answer
-    assert check(problem.task, problem.partition, answer, problem.hierarchy) == []
+    assert broken_conditions(problem.task, problem.partition, answer, problem.hierarchy) == []
     return answer
 
 
@@ -60,7 +62,7 @@ def test_two_roles_may_share_their_candidates() -> None:
         {"tuner": [component("tuner", outputs="s:Audio")], "one": speakers, "other": speakers}, "tuner>one tuner>other"
     )
     assert [c.short for c in configured(given).components] == ["tuner", "left", "right"]
-    assert paper.search(given) == solve.search(given)
+    assert paper.algorithm_1(given) == solve.search(given)
 
 
 def test_one_more_role_than_shared_candidates_is_too_many() -> None:
@@ -190,7 +192,7 @@ def test_ten_thousand_roles_are_no_deeper_than_the_stack() -> None:
 
 
 def test_steps_that_are_used_up_are_no_refusal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sat, "available", lambda: False)
+    monkeypatch.setattr(sat, "find_spec", lambda name: None)
     tangled = formula("ABC", "ABc", "AbC", "Abc", "aBC", "aBc", "abC", "abc")
     assert isinstance(solve.decide(tangled, 3), Undecided)
     assert isinstance(solve.decide(tangled, 100_000), Refusal)

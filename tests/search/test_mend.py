@@ -8,14 +8,18 @@ from itertools import combinations_with_replacement
 import pytest
 from hypothesis import given
 
+from selfconf.model.obstacle import NotAmong, PropertyUnmet
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
-from selfconf.model.repair import AcceptNearMiss, AddComponents, Addition, AskForOne
-from selfconf.search import mend, solve
-from selfconf.search.mend import mended, wanted_of, with_repairs
+from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition, AskForOne
+from selfconf.search import relaxations as mend
 from selfconf.search.problem import Problem
+from selfconf.search.relaxations import relaxed_by, wanted_of, with_relaxations
+from selfconf.search.strategies import first as solve
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems
+
+OF_PIPPI = PropertyUnmet(iri("support"), (NotAmong(frozenset((iri("Pippi"),)), frozenset((iri("Astrid"),))),))
 
 
 def _possible(problem: Problem) -> bool:
@@ -28,31 +32,31 @@ def test_every_repair_works_and_adds_as_few_as_possible(problem: Problem) -> Non
     refused = solve.search(problem)
     if not isinstance(refused, Refusal):
         return
-    mending = with_repairs(problem, refused).repairs
+    mending = with_relaxations(problem, refused).repairs
     for repair in mending:
         assert str(repair)
         assert repair.code
         assert repair.role in {role.iri for role in problem.roles}
-        assert _possible(mended(problem, repair)), repair
+        assert _possible(relaxed_by(problem, repair)), repair
     asked = {repair.role for repair in mending if isinstance(repair, AskForOne)}
     assert asked == {
         role.iri
         for role in problem.roles
-        if role.minimum == 0 and role.maximum != 0 and _possible(mended(problem, AskForOne(role.iri)))
+        if role.minimum == 0 and role.maximum != 0 and _possible(relaxed_by(problem, AskForOne(role.iri)))
     }
     added = [repair for repair in mending if isinstance(repair, AddComponents)]
     for some in [repair.additions for repair in added]:
         for place, addition in enumerate(some):
             for output in addition.outputs:
                 less = replace(addition, outputs=tuple(one for one in addition.outputs if one != output))
-                assert not _possible(mended(problem, AddComponents((*some[:place], less, *some[place + 1 :]))))
+                assert not _possible(relaxed_by(problem, AddComponents((*some[:place], less, *some[place + 1 :]))))
     fewest = sum(addition.count for addition in added[0].additions) if added else 3
     for size in range(1, min(fewest, 3)):
         for roles in combinations_with_replacement(range(len(problem.roles)), size):
             more = tuple(
                 Addition(problem.roles[r].iri, roles.count(r), wanted_of(problem, r)) for r in sorted(set(roles))
             )
-            assert not _possible(mended(problem, AddComponents(more)))
+            assert not _possible(relaxed_by(problem, AddComponents(more)))
 
 
 def test_what_is_lacking_is_asked_for_by_signal() -> None:
@@ -63,17 +67,17 @@ def test_what_is_lacking_is_asked_for_by_signal() -> None:
     )
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
     assert words[0] == "add one more component for the role position that issues Bump and Pose"
 
 
 def test_a_near_miss_that_would_do_is_offered_first() -> None:
     given_ = problem({"position": [], "control": [component("cap", "p:Pose")]}, "position>control")
-    near = NearMiss(iri("position"), iri("tracker"), "support is Pippi, not Astrid")
+    near = NearMiss(iri("position"), iri("tracker"), OF_PIPPI)
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
     candidate = Candidate(component("tracker", outputs="p:Pose"))
-    first = with_repairs(given_, refused, [(near, candidate)]).repairs[0]
+    first = with_relaxations(given_, refused, [(near, candidate)]).repairs[0]
     assert isinstance(first, AcceptNearMiss)
     assert str(first) == "let tracker play position, although its support is Pippi, not Astrid"
 
@@ -81,10 +85,10 @@ def test_a_near_miss_that_would_do_is_offered_first() -> None:
 def test_a_near_miss_that_stands_for_others_elsewhere_can_be_spared() -> None:
     eyes = [component(name, outputs="p:Pose") for name in ("a", "b")]
     given_ = problem({"position": eyes, "spare": []})
-    near = NearMiss(iri("spare"), iri("a"), "support is Pippi, not Astrid")
+    near = NearMiss(iri("spare"), iri("a"), OF_PIPPI)
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    assert isinstance(with_repairs(given_, refused, [(near, Candidate(eyes[0]))]).repairs[0], AcceptNearMiss)
+    assert isinstance(with_relaxations(given_, refused, [(near, Candidate(eyes[0]))]).repairs[0], AcceptNearMiss)
 
 
 def test_an_optional_role_that_is_needed_may_be_asked_for_one() -> None:
@@ -95,14 +99,14 @@ def test_an_optional_role_that_is_needed_may_be_asked_for_one() -> None:
     )
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    assert str(with_repairs(given_, refused).repairs[0]) == "let the role sonar ask for one (sc:minCount 1)"
+    assert str(with_relaxations(given_, refused).repairs[0]) == "let the role sonar ask for one (sc:minCount 1)"
 
 
 def test_a_role_that_asks_for_too_many_may_ask_for_fewer() -> None:
     given_ = problem({"speaker": [component("left"), component("right")]}, counts={"speaker": (4, None)})
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
     assert words == [
         "add 2 more components for the role speaker",
         "let the role speaker ask for 2 (sc:minCount 2)",
@@ -114,16 +118,16 @@ def test_a_link_that_is_missing_is_found() -> None:
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
     assert "let the role eye feed the role mind (sc:feeds)" in [
-        str(repair) for repair in with_repairs(given_, refused).repairs
+        str(repair) for repair in with_relaxations(given_, refused).repairs
     ]
 
 
 def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mend, "STEPS", 100)
+    monkeypatch.setattr(mend, "TRIAL_STEPS", 100)
     given_ = problem({f"r{number}": [component(f"c{other}") for other in range(59)] for number in range(60)})
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    assert str(next(mend.repairs(given_, refused))) == "add one more component for the role r0"
+    assert str(next(mend.relaxations(given_, refused))) == "add one more component for the role r0"
 
 
 def test_an_output_that_is_not_needed_is_not_asked_for() -> None:
@@ -131,7 +135,7 @@ def test_an_output_that_is_not_needed_is_not_asked_for() -> None:
     given_ = problem({"sensor": [], "control": minds}, "sensor>control")
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
     assert words[0] == "add one more component for the role sensor that issues Pose"
 
 
@@ -142,7 +146,7 @@ def test_what_one_addition_issues_is_not_asked_of_another() -> None:
     )
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
     both = "one more component for the role a and one more component for the role b that issues Velocity and Pose"
     assert words[0] == f"add {both}"
 
@@ -155,7 +159,7 @@ def test_a_link_by_name_is_not_the_plain_one() -> None:
         refused = solve.search(given_)
         assert isinstance(refused, Refusal)
         assert "let the role eye feed the role mind (sc:feeds)" in [
-            str(repair) for repair in with_repairs(given_, refused).repairs
+            str(repair) for repair in with_relaxations(given_, refused).repairs
         ]
 
 
@@ -167,12 +171,12 @@ def test_a_role_that_allows_nobody_is_not_told_to_ask_for_one() -> None:
     )
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    assert not [one for one in with_repairs(given_, refused).repairs if isinstance(one, AskForOne)]
+    assert not [one for one in with_relaxations(given_, refused).repairs if isinstance(one, AskForOne)]
 
 
 def test_who_asks_for_far_too_many_is_told_how_many_there_are() -> None:
     given_ = problem({"speaker": [component("left"), component("right")]}, counts={"speaker": (10**12, None)})
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_repairs(given_, refused).repairs]
+    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
     assert words == ["let the role speaker ask for 2 (sc:minCount 2)"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.model.configuration import Configuration
-from selfconf.search import solve
+from selfconf.search.strategies import first as solve
 from tests.search.oracle import World
 from tests.search.worlds import component, problem
 

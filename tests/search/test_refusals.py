@@ -11,8 +11,9 @@ from hypothesis import given
 from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.refusal import Refusal
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
-from selfconf.search import sat, solve
+from selfconf.search.engines import clause_learning as sat
 from selfconf.search.problem import Problem
+from selfconf.search.strategies import first as solve
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, problem, problems
 
@@ -105,7 +106,7 @@ def test_a_reason_is_irreducible(problem: Problem) -> None:
 @agreement(0.2)
 def test_a_reason_is_irreducible_without_a_solver_library(problem: Problem) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sat, "available", lambda: False)
+        patch.setattr(sat, "find_spec", lambda name: None)
         _check(problem)
 
 

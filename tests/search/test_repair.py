@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate, Partition
 from selfconf.model.refusal import Refusal
-from selfconf.search import repair, sat, solve
+from selfconf.search import reconfigure as repair
+from selfconf.search.engines import clause_learning as sat
 from selfconf.search.problem import Problem
+from selfconf.search.strategies import first as solve
 from tests.search.oracle import Players, World
 from tests.search.worlds import agreement, component, problem, problems
 
@@ -77,7 +79,7 @@ def test_a_repair_keeps_the_most_and_is_the_first_that_does(problem: Problem, da
     if not isinstance(running, Configuration) or not running.components:
         return
     left = _after_losses(problem, running, data)
-    answer = repair.search(left, running)
+    answer = repair.nearest_configuration(left, running)
     expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
     assert (answer if isinstance(answer, Configuration) else None) == expected
 
@@ -91,10 +93,10 @@ def test_clause_learning_gives_the_same_repair(problem: Problem, data: st.DataOb
         return
     left = _after_losses(_fixed(problem), running, data)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(repair, "WALK_STEPS", 0)
+        patch.setattr(repair, "SPARING_STEPS", 0)
         answer = repair.nearest(left, running)
     expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
-    assert (answer.configuration if isinstance(answer, repair.Repaired) else None) == expected
+    assert (answer.configuration if isinstance(answer, repair.Reconfiguration) else None) == expected
     assert isinstance(answer, Refusal) or answer.proved
 
 
@@ -104,9 +106,9 @@ def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
 ) -> None:
     if aided:
         pytest.importorskip("pysat")
-        monkeypatch.setattr(repair, "WALK_STEPS", 0)
+        monkeypatch.setattr(repair, "SPARING_STEPS", 0)
     else:
-        monkeypatch.setattr(sat, "available", lambda: False)
+        monkeypatch.setattr(sat, "find_spec", lambda name: None)
     unproved: list[bool] = []
     """For each answer without a proof whether there is a nearer one."""
 
@@ -121,7 +123,7 @@ def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
         nearest = _nearest(World(left.task, left.partition, left.hierarchy), running)
         for steps in range(1, 11):
             answer = repair.nearest(left, running, steps)
-            if isinstance(answer, repair.Repaired):
+            if isinstance(answer, repair.Reconfiguration):
                 assert (answer.kept, answer.connections) == _score(answer.configuration, running)
                 if answer.proved:
                     assert answer.configuration == nearest
@@ -140,7 +142,7 @@ def test_who_has_to_change_roles_may_keep_connections_all_the_same() -> None:
     assert isinstance(running, Configuration)
     left = problem({"first": [n], "second": [v, x], "control": [cap]}, "first>control second>control")
     answer = repair.nearest(left, running)
-    assert isinstance(answer, repair.Repaired)
+    assert isinstance(answer, repair.Reconfiguration)
     assert [one.short for one in answer.configuration.components] == ["n", "x", "cap"]
     assert (answer.kept, answer.connections, answer.proved) == (1, 1, True)
 
@@ -157,7 +159,7 @@ def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:
     )
     running = solve.search(problem({"sonar": [sonar], "position": [tracker], "control": [cap]}, "position>control"))
     assert isinstance(running, Configuration)
-    answer = repair.search(given_, running)
+    answer = repair.nearest_configuration(given_, running)
     assert isinstance(answer, Configuration)
     assert [c.short for c in answer.components] == ["sonar", "odometry", "cap"]
 
@@ -165,4 +167,4 @@ def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:
 def test_where_nothing_is_left_the_repair_is_a_refusal() -> None:
     running = solve.search(problem({"eye": [component("camera")]}))
     assert isinstance(running, Configuration)
-    assert isinstance(repair.search(problem({"eye": []}), running), Refusal)
+    assert isinstance(repair.nearest_configuration(problem({"eye": []}), running), Refusal)

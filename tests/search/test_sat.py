@@ -8,9 +8,9 @@ import sys
 import pytest
 
 from benchmarks.search import families
-from selfconf.search import sat
-from selfconf.search.kernel import compact
-from selfconf.search.walk import Budget
+from selfconf.search.budget import Budget
+from selfconf.search.engines import clause_learning as sat
+from selfconf.search.reduction.dominance import reduced
 
 INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(), signal.SIGINT)"
 
@@ -19,7 +19,7 @@ def test_an_interrupt_in_the_middle_of_a_call_is_one_for_the_program(monkeypatch
     monkeypatch.setattr(sat, "SLICE", 20_000)  # conflicts: calls of about a tenth of a second
     command = [sys.executable, "-c", INTERRUPTING]
     with (
-        sat.Clauses(compact(families.satisfiability(400, 4.26, seed=1))) as clauses,
+        sat.ClauseSolver(reduced(families.satisfiability(400, 4.26, seed=1))) as clauses,
         subprocess.Popen(command, stdin=subprocess.PIPE) as other,
     ):
         solve_limited = clauses._solver.solve_limited

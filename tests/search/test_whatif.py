@@ -5,9 +5,9 @@ from __future__ import annotations
 from hypothesis import given
 
 from selfconf.model.configuration import Configuration
-from selfconf.search import solve
 from selfconf.search.problem import Problem
-from selfconf.search.whatif import losses
+from selfconf.search.strategies import first as solve
+from selfconf.search.what_if import consequences
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, problem, problems
 
@@ -17,7 +17,7 @@ from tests.search.worlds import agreement, component, problem, problems
 def test_a_single_point_of_failure_is_one_without_which_nothing_is_possible(problem: Problem) -> None:
     running = solve.search(problem)
     if isinstance(running, Configuration):
-        found = list(losses(problem, running))
+        found = list(consequences(problem, running))
         assert [loss.component for loss in found] == list(running.components)
         for loss in found:
             without = problem.partition.without(frozenset((loss.component,)))
@@ -35,7 +35,7 @@ def test_each_component_is_told_what_would_come_instead() -> None:
     )
     running = solve.search(given_)
     assert isinstance(running, Configuration)
-    assert [str(loss) for loss in losses(given_, running)] == [
+    assert [str(loss) for loss in consequences(given_, running)] == [
         "tracker (position): odometry",
         "cap (control): NONE, a single point of failure",
     ]
@@ -46,7 +46,7 @@ def test_who_would_play_another_role_is_told() -> None:
     given_ = problem({"first": [a, x], "second": [b, x]}, counts={"second": (1, None)})
     running = solve.search(given_)
     assert isinstance(running, Configuration)
-    assert [str(loss) for loss in losses(given_, running)] == [
+    assert [str(loss) for loss in consequences(given_, running)] == [
         "a (first): x as first",
         "b (second): nobody needed",
         "x (second): nobody needed",

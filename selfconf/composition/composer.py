@@ -1,0 +1,217 @@
+"""Act 3, composition: from a task and the advertisements, a configuration or a refusal.
+
+Roles are compiled once for a task. The partition is kept as long as the advertisements stay the same, so that after
+a failure only the lost components leave it and the search alone runs again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from enum import Enum
+
+from selfconf import certificate
+from selfconf.errors import ProgrammerError
+from selfconf.model.configuration import Configuration
+from selfconf.model.consequence import Consequence
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.optimum import Optimum
+from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
+from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Wire
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner, near_misses
+from selfconf.rdf.tasks import TaskDocument
+from selfconf.search.budget import Budget
+from selfconf.search.problem import Problem
+from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
+from selfconf.search.relaxations import NEAR, with_relaxations
+from selfconf.search.strategies import BEST_STEPS, algorithm_1, answers, best_configuration, possible
+from selfconf.search.what_if import consequences
+
+STANDBY = 2
+"""How many candidates per role an input is told of in advance."""
+SLICES = (10_000, 200_000, BEST_STEPS)
+"""Steps after which the strategy `best` tells how far it has come, and begins again with more."""
+
+
+class Strategy(str, Enum):
+    """How to search; all but `BEST` give the lexicographically first configuration."""
+
+    FIRST = "first"
+    PAPER = "paper"
+    BEST = "best"
+
+
+def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
+    """Whether under a hierarchy an output of some candidate matches an input of another type."""
+    profiles = [candidate.profile for candidates in partition.candidates for candidate in candidates]
+    wanted = {port.signal for profile in profiles for port in profile.inputs}
+    offered = {port.signal for profile in profiles for port in profile.outputs}
+    return any(not wanted.isdisjoint(hierarchy.superclasses(signal) - {signal}) for signal in offered)
+
+
+def _admitted(near: NearMiss, variables: Sequence[Variable]) -> tuple[int, ...]:
+    """What a near miss would let the variables be; values that nobody else states are bits beyond the domain."""
+    masks: list[int] = []
+    for variable in variables:
+        allowed = near.allows.get(variable.parameter)
+        known = sum(1 << bit for bit, value in enumerate(variable.domain) if allowed is None or value in allowed)
+        of_its_own = allowed is not None and not allowed <= set(variable.domain)
+        masks.append(ANY_VALUE if allowed is None else known | of_its_own << len(variable.domain))
+    return tuple(masks)
+
+
+class Composer:
+    """Composes one task, again and again as the ecology changes."""
+
+    def __init__(
+        self,
+        task: TaskDocument,
+        hierarchy: Hierarchy = NOTHING_ABOVE,
+        strategy: Strategy = Strategy.FIRST,
+        steps: int | None = None,
+    ) -> None:
+        """`steps` limits each search. Where no cost is stated, every answer is `best`: the first is taken."""
+        if strategy is Strategy.BEST and not task.task.template.cost:
+            strategy = Strategy.FIRST
+        self.task, self.hierarchy, self.strategy, self.steps = task, hierarchy, strategy, steps
+        self.partitioner = Partitioner(task, hierarchy)
+        self._given: Mapping[IRI, Advertisement] | None = None
+        self._ecology = AdvertisementIndex({})
+        self._partition = Partition(())
+
+    def partition(self, ecology: Mapping[IRI, Advertisement]) -> Partition:
+        """F1 ... Fn of an ecology."""
+        self.gathered(ecology)
+        return self._partition
+
+    def gathered(self, ecology: Mapping[IRI, Advertisement]) -> AdvertisementIndex:
+        """The ecology by kinds, partitioned; done again only if it has changed, which an `Ecology` never does."""
+        if self._given is None or (self._given is not ecology and self._given != ecology):
+            self._ecology = AdvertisementIndex.of(ecology)
+            self._given = ecology if self._ecology is ecology else dict(ecology)
+            self._partition = self.partitioner.partition(self._ecology)
+        return self._ecology
+
+    def compose(
+        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Outcome:
+        """The configuration without the lost components, keeping what runs where that can be; or why there is none."""
+        *_, answer = self.answers(ecology, lost, running)
+        return answer.configuration if isinstance(answer, Optimum) else answer
+
+    def answers(
+        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Iterator[Optimum | Outcome]:
+        """The same, with the cost where there is one; whoever has no more time stops, and keeps the last answer.
+
+        A configuration is certified before it is handed out, by rules that share nothing with the search.
+        """
+        partition = self.partition(ecology)
+        problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
+        misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
+        for answer in self._search(problem, running):
+            outcome = answer.configuration if isinstance(answer, Optimum) else answer
+            if isinstance(outcome, Configuration):
+                wrong = certificate.broken_conditions(self.task.task, problem.partition, outcome, self.hierarchy)
+                if wrong:
+                    raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
+                yield answer
+            elif isinstance(outcome, Refusal) and outcome.reasons:
+                short = frozenset(reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible))
+                if short not in misses:
+                    misses[short] = tuple(near_misses(self.partitioner, self.gathered(ecology), short or None, lost))
+                yield replace(outcome, near_misses=misses[short])
+            else:
+                yield outcome
+
+    def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
+        if self.strategy is Strategy.BEST:
+            yield from self._best(problem, running)
+            return
+        found = algorithm_1(problem, self.steps) if self.strategy is Strategy.PAPER else None
+        if found is not None:
+            yield found
+        elif running is None or self.strategy is Strategy.PAPER:
+            yield from answers(problem, self.steps)
+        elif self.steps is None:
+            yield nearest_configuration(problem, running)
+        else:
+            *_, whole = answers(problem, self.steps)
+            near = nearest(problem, running, self.steps) if isinstance(whole, Configuration) else whole
+            yield near.configuration if isinstance(near, Reconfiguration) else near
+
+    def _best(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
+        most = SLICES[-1] if self.steps is None else self.steps
+        for steps in (*(slice_ for slice_ in SLICES if slice_ < most), most):
+            found = best_configuration(problem, steps, running)
+            yield found
+            if isinstance(found, Refusal) or (isinstance(found, Optimum) and found.proved):
+                return
+        if isinstance(found, Undecided) and self.steps is None:
+            yield from answers(problem)
+
+    def possible_under(self, ecology: Mapping[IRI, Advertisement], hierarchy: Hierarchy) -> bool:
+        """Whether there would be a configuration where there is none now, if the roles saw another hierarchy."""
+        here = self.partition(ecology)
+        there = self.partitioner.under(hierarchy).partition(self.gathered(ecology))
+        if here == there and not _matches_more(here, hierarchy):
+            return False
+        return possible(Problem(self.task.task, there, hierarchy), Budget(self.steps))
+
+    def mended(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
+        """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
+        problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
+        near = [
+            (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables)))
+            for miss in refusal.near_misses[:NEAR]
+        ]
+        return with_relaxations(problem, refusal, near, self.steps)
+
+    def passed_over(self, configuration: Configuration) -> dict[IRI, list[IRI]]:
+        """For each role of a configuration, the eligible components that come before the last one it chose."""
+        passed: dict[IRI, list[IRI]] = {}
+        for assignment, candidates in zip(configuration.assignments, self._partition.candidates, strict=True):
+            order = [candidate.profile.component for candidate in candidates]
+            chosen = [order.index(component) for component in assignment.components if component in order]
+            passed[assignment.role] = [c for c in order[: max(chosen, default=0)] if c not in assignment.components]
+        return passed
+
+    def what_if(self, ecology: Mapping[IRI, Advertisement], configuration: Configuration) -> list[Consequence]:
+        """For each component of a configuration, what would come instead of it if it failed."""
+        problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
+        return list(consequences(problem, configuration, self._after))
+
+    def _after(self, problem: Problem, running: Configuration) -> Configuration | Refusal:
+        """What comes after a configuration that runs."""
+        if self.strategy is Strategy.BEST:
+            *_, found = self._best(problem, running)
+            if not isinstance(found, Undecided):
+                return found.configuration if isinstance(found, Optimum) else found
+        return nearest_configuration(problem, running)
+
+    def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
+        """For each component and input of a configuration, the outputs of the next candidates that could feed it.
+
+        At most `STANDBY` candidates for each role that feeds, none of them lost.
+        """
+        problem = Problem(self.task.task, self._partition.without(lost), self.hierarchy)
+        playing = set(configuration.components)
+        found: dict[IRI, dict[str, tuple[Wire, ...]]] = {}
+        spare = [
+            [candidate for candidate in candidates if candidate.profile.component not in playing][:STANDBY]
+            for candidates in problem.candidates
+        ]
+        for position, candidates in enumerate(problem.candidates):
+            for candidate in candidates:
+                profile = candidate.profile
+                if configuration.role_of(profile.component) != problem.roles[position].iri:
+                    continue
+                for wanted in profile.inputs:
+                    feeders = problem.feeders(position, wanted, spare)
+                    wires = tuple(Wire(source.component, output.name) for source, output in feeders)
+                    if wires:
+                        found.setdefault(profile.component, {})[wanted.name] = wires
+        return found

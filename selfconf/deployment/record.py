@@ -1,0 +1,75 @@
+"""What a configurator has deployed and lost, and whoever wants to know: `status`, `stop`, and the configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from selfconf.bus.port import Bus, Request
+from selfconf.deployment.request import RunRequest
+from selfconf.model.configuration import Configuration
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Status
+from selfconf.rdf.provenance import configuration_iri, configuration_triples
+from selfconf.rdf.turtle import to_turtle
+
+
+class DeploymentRecord:
+    """Keeps the record of one task and answers questions about it."""
+
+    def __init__(
+        self, bus: Bus, keys: Keys, name: str, order: RunRequest, status: Callable[[], Status], stop: Callable[[], None]
+    ) -> None:
+        self.bus, self._keys, self._name, self._order = bus, keys, name, order
+        self._status, self._stop = status, stop
+        self._deployed: list[tuple[IRI, Configuration, int, float]] = []
+        self._failures: list[tuple[IRI, str, str, float]] = []
+        bus.serve(keys.configuration(name), self._serve_configuration)
+        bus.serve(keys.configurator_call(name), self._serve_call)
+
+    def deployed(self, configuration: Configuration, epoch: int, time: float) -> None:
+        """Note a configuration that is complete."""
+        name = configuration_iri(configuration, epoch)
+        self._deployed.append((name, configuration, epoch, time))
+
+    def lost(self, component: IRI, cause: str, detail: str, time: float) -> None:
+        """Note a component that was lost."""
+        self._failures.append((component, cause, detail, time))
+
+    def _serve_configuration(self, request: Request) -> None:
+        try:
+            if self._deployed:
+                request.reply(self._keys.configuration(self._name), self.turtle().encode())
+        finally:
+            request.finish()
+
+    def turtle(self) -> str:
+        """What is deployed, as Turtle with its provenance."""
+        name, configuration, epoch, generated = self._deployed[-1]
+        revises = self._deployed[-2][:2] if len(self._deployed) > 1 else None
+        triples = configuration_triples(
+            configuration,
+            name,
+            self._order.task,
+            epoch=epoch,
+            generated=generated,
+            revises=revises,
+            configurator=self._name,
+            failures=self._failures,
+            passed_over=self._order.passed_over(configuration),
+        )
+        return to_turtle(triples)
+
+    def _serve_call(self, request: Request) -> None:
+        try:
+            call = request.key.rsplit("/", 1)[-1]
+            if call == "stop":
+                request.reply(self._keys.configurator_call(self._name, "stop"), encode(self._status()))
+                self.bus.wake_up(self._stop)
+            elif call in ("status", "*"):
+                request.reply(self._keys.configurator_call(self._name, "status"), encode(self._status()))
+            else:
+                request.refuse(f"there is no call {call!r}")
+        finally:
+            request.finish()

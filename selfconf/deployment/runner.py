@@ -1,0 +1,269 @@
+"""The configurator as a program: it runs the machine's effects on the bus and feeds it what the bus says."""
+
+from __future__ import annotations
+
+import logging
+import os
+import secrets
+import socket
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from selfconf.bus.port import Bus, Sample, Undo, Urgency
+from selfconf.configurator import machine
+from selfconf.configurator.effects import (
+    ApplyTo,
+    Compose,
+    Discover,
+    Effect,
+    Finish,
+    ReleaseFrom,
+    Running,
+    SetOn,
+    Unwatch,
+    Watch,
+)
+from selfconf.configurator.events import (
+    Accepted,
+    Appeared,
+    Composed,
+    Discovered,
+    Event,
+    Failed,
+    Stopped,
+)
+from selfconf.configurator.machine import Loss, Phase, State
+from selfconf.deployment.calls import Calls
+from selfconf.deployment.liveness import Liveness
+from selfconf.deployment.record import DeploymentRecord
+from selfconf.deployment.request import Account, RunRequest
+from selfconf.discovery import Discovery, EcologyView
+from selfconf.errors import PeerError, SelfconfError
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import component_chunk, owner_of_fail
+from selfconf.protocol.messages import (
+    Cause,
+    Fail,
+    Status,
+)
+
+log = logging.getLogger(__name__)
+
+AT_LEISURE = 0.01
+"""Seconds for which accounts, and turning off whom nobody waits for, stand back while a configuration is deployed."""
+TRY_AGAIN = 5.0
+"""How often, in seconds, a patient configurator looks who may be given another chance."""
+
+
+class TaskRunner:
+    """Runs one task: acts 1 to 4, then watches and configures again, until it is stopped or refused."""
+
+    def __init__(
+        self, bus: Bus, ecology: str, order: RunRequest, name: str = "", clock: Callable[[], float] = time.time
+    ) -> None:
+        self.bus, self.order, self.clock = bus, order, clock
+        self.ecology = EcologyView(bus, ecology)
+        self.keys = self.ecology.keys
+        self.name = name or f"c{secrets.token_hex(4)}"
+        self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
+        self.state = State(policy=order.policy, patient=order.patient)
+        self.since = clock()
+        self.trouble: SelfconfError | None = None
+        """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
+        self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._tell)
+        self._lives = Liveness(self.ecology, self._now, self._step, self._tell, self._calls)
+        self._record = DeploymentRecord(bus, self.keys, self.name, order, self.status, self.stop)
+        self._watched: set[IRI] = set()
+        self._events: deque[Event] = deque()
+        self._stepping = False
+        self._untold: list[Account] = []
+        self._look_again: Undo = lambda: None
+        self._leave = bus.announce(self.supervisor)
+        # One subscription for the FAIL of all: connecting to each as it joins would delay its activation.
+        bus.subscribe(self.keys.any_fail(), self._heard_fail, Urgency.EVENT)
+        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})), Urgency.EVENT)
+
+    def start(self) -> None:
+        """Begin with act 1."""
+        self._step(Accepted(int(self.clock() * 1000)))
+
+    def stop(self) -> None:
+        """Take the configuration down; `order.settle` hears when that is done."""
+        self._step(Stopped())
+
+    @property
+    def configuration(self) -> Configuration | None:
+        """What is deployed, or being deployed."""
+        return self.state.target
+
+    def _step(self, event: Event) -> None:
+        """Feed the machine; an event that an effect brings about comes after the other effects."""
+        self._events.append(event)
+        if self._stepping:
+            return
+        self._stepping = True
+        try:
+            while self._events:
+                next_event, before, known = self._events.popleft(), self.state.phase, self.state.lost
+                self.state, effects = machine.step(self.state, next_event)
+                if self.state.lost is not known:
+                    self._notice(known)
+                for effect in effects:
+                    self._do(effect)
+                returned = isinstance(next_event, Appeared) and bool(next_event.lives)
+                if returned and self.state.phase is Phase.RUNNING and self.state.target is not None:
+                    self._stand_by(self.state.target)
+                if self.state.phase is not before:
+                    self._changed_phase(before)
+        finally:
+            self._stepping = False
+
+    def _now(self) -> State:
+        return self.state
+
+    def _stand_by(self, configuration: Configuration) -> None:
+        standby = self.order.standby(configuration, frozenset(self.state.lost))
+        self._calls.stand_by(configuration, standby)
+
+    def _changed_phase(self, before: Phase) -> None:
+        log.debug("%s -> %s", before.value, self.state.phase.value)
+        self.since = self.clock()
+        if self.state.phase is Phase.REFUSED and self.state.patient:
+            self._tell("waiting", refusal=self.state.refusal, lost=self.losses)
+            self._await_another_chance()
+
+    def _await_another_chance(self) -> None:
+        self._look_again()
+        self._look_again = self.bus.later(TRY_AGAIN, self._forgive)
+
+    def _forgive(self) -> None:
+        """While there is no other way, whoever may be able to by now is tried again."""
+        if self.state.phase is not Phase.REFUSED:
+            return
+        again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
+        if again:
+            self._step(Appeared(again))
+        else:
+            self._await_another_chance()
+
+    def _may_be_able(self, component: IRI, loss: Loss) -> bool:
+        """Who crashed can be started by its site; who was busy is free since it has obeyed us."""
+        if loss.cause is Cause.CRASH:
+            found = self.ecology.discovery.found.get(component)
+            return found is not None and found.startable
+        return loss.busy and component not in self.state.owed
+
+    @property
+    def losses(self) -> dict[IRI, str]:
+        """Why each component that was lost was lost, for people."""
+        return {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
+
+    def _notice(self, known: Mapping[IRI, Loss]) -> None:
+        """Note and tell of every component that the machine has just given up, for whatever cause."""
+        for component, loss in self.state.lost.items():
+            if known.get(component) is not loss:
+                self._record.lost(component, loss.cause.value, loss.detail, self.clock())
+                self._tell("lost", component=component, cause=loss.cause.value, detail=loss.detail)
+
+    def _tell(self, act: str, **facts: Any) -> None:
+        """Note an account now, and tell it when there is nothing more urgent to do."""
+        if not self._untold:
+            self.bus.later(AT_LEISURE, self._tell_all)
+        self._untold.append(Account(act, self.clock(), facts))
+
+    def _tell_all(self) -> None:
+        untold, self._untold = self._untold, []
+        for account in untold:
+            self.order.tell(account)
+
+    # Effects.
+
+    def _do(self, effect: Effect) -> None:
+        match effect:
+            case Discover():
+                self._tell("query")
+                self.ecology.discover(self._discovered)
+            case Compose():
+                self._compose(effect)
+            case Watch():
+                self._watch(effect.component)
+            case Unwatch():
+                self._watched.discard(effect.component)
+            case ApplyTo():
+                self._calls.apply(effect)
+            case SetOn():
+                self._calls.set(effect)
+            case ReleaseFrom():
+                leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, Phase.DEPLOYING) else 0.0
+                self.bus.later(leisure, partial(self._calls.release, effect))
+            case Running():
+                self._record.deployed(effect.configuration, self.state.epoch, self.clock())
+                self._tell("running", configuration=effect.configuration, epoch=self.state.epoch)
+                self._stand_by(effect.configuration)
+            case Finish():
+                act = "refused" if effect.refusal else "stopped"
+                self._tell(act, refusal=effect.refusal, lost=self.losses)
+                try:
+                    self._tell_all()
+                finally:  # the end of a task depends on nobody who listens
+                    self._leave()  # whoever could not be told to turn off will notice
+                    self.order.settle(effect.refusal)
+
+    def _discovered(self, discovery: Discovery) -> None:
+        self.ecology.discovery = discovery
+        self._lives.discovered(discovery)
+        for complaint in discovery.complaints:
+            self._tell("complaint", detail=complaint)
+        self._tell("discovered", components=len(discovery.found), sites=discovery.sites, missing=discovery.missing)
+        self._step(Discovered())
+
+    def _compose(self, effect: Compose) -> None:
+        found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
+        began = self.bus.now()
+        try:
+            outcome = self.order.compose(found, effect.lost, effect.running)
+        except SelfconfError as error:
+            self.trouble = error
+            self._step(Stopped())
+            return
+        if isinstance(outcome, Refusal):
+            outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
+        seconds = self.bus.now() - began
+        self._tell("composed", outcome=outcome, seconds=seconds)
+        self._step(Composed(effect.attempt, outcome))
+
+    def _watch(self, component: IRI) -> None:
+        self._tell("watching", component=component)
+        self._watched.add(component)
+
+    def _heard_fail(self, sample: Sample) -> None:
+        try:
+            fail = decode(sample.payload, Fail)
+        except PeerError as error:
+            log.warning("passed over a FAIL on %s: %s", sample.key, error)
+            return
+        own = sample.key == self.keys.fail(fail.component)
+        reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
+        if fail.component in self._watched and (own or reported):
+            self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
+
+    def status(self) -> Status:
+        """What is deployed, by whom, since when."""
+        return Status(
+            configurator=self.name,
+            phase="waiting" if self.state.phase is Phase.REFUSED else self.state.phase.value,
+            template=self.order.task.template.iri,
+            epoch=self.state.epoch,
+            since=self.since,
+            host=socket.gethostname(),
+            process=os.getpid(),
+            components=tuple(self.state.held),
+            lost={component: loss.cause.value for component, loss in self.state.lost.items()},
+        )

@@ -1,0 +1,175 @@
+"""The living ecology as seen from a bus: who is alive, and what they advertise.
+
+Discovery is acts 1 and 2 of the paper (section 2.4). It hears from liveliness which sites there are, asks them all,
+and ends when all the living have answered, or at the time-out, and then says who did not. An answer is checked for
+completeness, n of n, because a site that dies in the middle of it is not reported by the network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from selfconf.bus.port import Bus, Replies, Sample
+from selfconf.errors import PeerError, TurtleError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import Keys, component_chunk, life_of, owner_of, site_of
+from selfconf.protocol.messages import Page
+from selfconf.rdf import advertisements
+from selfconf.rdf.advertisements import Advertisement
+
+DISCOVERY = 3.0
+"""How long, in seconds, a site may take to answer; those who answer are not waited for longer than they need."""
+DISCOVERY_ATTEMPTS = 3
+"""How often a site whose answer is incomplete is asked."""
+LARGEST_ADVERTISEMENT = 1 << 20
+"""An advertisement of more bytes is left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundAdvertisement:
+    """An advertisement of the living ecology: at which site, from which source, and whether the site can start it."""
+
+    advertisement: Advertisement
+    site: str
+    source: str
+    startable: bool
+
+
+@dataclass(slots=True)
+class Discovery:
+    """What a discovery has found: the advertisements by component, the sites, and which of them did not answer."""
+
+    found: dict[IRI, FoundAdvertisement] = field(default_factory=dict)
+    sites: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    complaints: list[str] = field(default_factory=list)
+
+
+class EcologyView:
+    """The living ecology as seen from a bus: it can be discovered, and says which components live."""
+
+    def __init__(self, bus: Bus, name: str) -> None:
+        self.bus, self.keys = bus, Keys(name)
+        self.lives: dict[str, str] = {}
+        """The life of each living component, by the component's chunk."""
+        self.discovery = Discovery()
+        self._followed = False
+
+    def life(self, component: IRI) -> str | None:
+        """The life of a component, or None if it does not live."""
+        return self.lives.get(component_chunk(component))
+
+    @property
+    def followed(self) -> bool:
+        """Whether `lives` is kept up to date."""
+        return self._followed
+
+    def follow(self, changed: Callable[[str, bool], None], site_changed: Callable[[str, bool], None]) -> None:
+        """From now on hear of the life of every component and site, those there first; asking twice does nothing.
+
+        Not before the first discovery has ended: a roll-call that runs while a watch of the same lives begins is
+        answered in part only.
+        """
+        if not self._followed:
+            self._followed = True
+            self.bus.watch(self.keys.any_life(), changed)
+            self.bus.watch(self.keys.any_site_life(), site_changed)
+
+    def discover(self, done: Callable[[Discovery], None]) -> None:
+        """Ask everything that lives what it advertises; `done` hears once, when all have answered or time is up."""
+        _Inquiry(self, done).start()
+
+
+class _Inquiry:
+    """One discovery: roll-call of sites and components, a question to all sites, and again to those incomplete."""
+
+    def __init__(self, ecology: EcologyView, done: Callable[[Discovery], None]) -> None:
+        self.ecology, self.bus, self.keys, self._done = ecology, ecology.bus, ecology.keys, done
+        self._sites: tuple[str, ...] = ()
+        self._pages: dict[str, dict[int, tuple[Page, Sample]]] = {}
+        self._expected: dict[str, tuple[int, int]] = {}
+        self._complaints: list[str] = []
+        self._attempt = 0
+        self._segments = advertisements.SegmentCache()
+
+    def start(self) -> None:
+        if self.ecology.followed:
+            self._call_sites()
+        else:
+            self.bus.roll_call(self.keys.any_life(), DISCOVERY, self._living)
+
+    def _living(self, keys: tuple[str, ...]) -> None:
+        self.ecology.lives = {owner_of(key): life_of(key) for key in keys}
+        self._call_sites()
+
+    def _call_sites(self) -> None:
+        self.bus.roll_call(self.keys.any_site_life(), DISCOVERY, self._called)
+
+    def _called(self, keys: tuple[str, ...]) -> None:
+        self._sites = tuple(sorted({owner_of(key) for key in keys}))
+        self._ask("*")
+
+    def _ask(self, site: str) -> None:
+        self._attempt += 1
+        self.bus.ask(self.keys.advertisements(site), b"", DISCOVERY, self._replied)
+
+    def _replied(self, replies: Replies) -> None:
+        for sample in replies.samples:
+            self._take(sample)
+        incomplete = [site for site in self._sites if not self._complete(site)]
+        if incomplete and self._attempt < DISCOVERY_ATTEMPTS and replies.complete:
+            self._ask(incomplete[0] if len(incomplete) == 1 else "*")
+        else:
+            self._done(self._result(tuple(incomplete)))
+
+    def _take(self, sample: Sample) -> None:
+        try:
+            page, site = decode(sample.attachment, Page), site_of(sample.key)
+        except PeerError as error:
+            self._complaints.append(f"a reply on {sample.key} is none: {error}")
+            return
+        expected = (page.revision, page.total)
+        if self._expected.get(site, expected) != expected and self._expected[site][0] > page.revision:
+            return
+        if self._expected.get(site) != expected:
+            self._expected[site], self._pages[site] = expected, {}
+        if page.component is not None:
+            self._pages[site][page.index] = page, sample
+
+    def _complete(self, site: str) -> bool:
+        return site in self._expected and len(self._pages[site]) == self._expected[site][1]
+
+    def _result(self, missing: tuple[str, ...]) -> Discovery:
+        found: dict[IRI, FoundAdvertisement] = {}
+        for site in sorted(self._pages):
+            for _, (page, sample) in sorted(self._pages[site].items()):
+                advertisement = self._advertisement(site, page, sample.payload)
+                if advertisement is None:
+                    continue
+                component = advertisement.profile.component
+                if component in found:
+                    other = found[component].site
+                    self._complaints.append(f"left out {component} of site {site}: site {other} advertises it too")
+                else:
+                    found[component] = FoundAdvertisement(advertisement, site, page.source, page.startable)
+        return Discovery(found, tuple(sorted({*self._sites, *self._pages})), missing, self._complaints)
+
+    def _advertisement(self, site: str, page: Page, payload: bytes) -> Advertisement | None:
+        """What a site says is untrusted: it must be one advertisement, of the component it is said to be of."""
+        name = f"site {site}, {page.source}"
+        if len(payload) > LARGEST_ADVERTISEMENT:
+            self._complaints.append(f"left out {page.component} of {name}: {len(payload)} bytes are too many")
+            return None
+        try:
+            good, bad = advertisements.read(payload, name, segments=self._segments)
+        except TurtleError as error:
+            self._complaints.append(f"left out: {error}")
+            return None
+        for malformed in bad:
+            self._complaints.append(f"left out {malformed.component} of {name}: {malformed.problems[0]}")
+        mine = [a for a in good if a.profile.component == page.component]
+        if len(mine) != 1 and not bad:
+            self._complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
+        return mine[0] if len(mine) == 1 else None

@@ -1,0 +1,42 @@
+"""The consequence of a failure: what would come instead of a component of a configuration if it failed (N - 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+
+
+@dataclass(frozen=True, slots=True)
+class Consequence:
+    """A component that may fail, the role it plays, and the configuration after that, or why there is none."""
+
+    component: IRI
+    role: IRI
+    after: Configuration | Refusal
+    started: tuple[IRI, ...] = ()
+    """Components that would begin to play a part, in the order of the roles."""
+    stopped: tuple[IRI, ...] = ()
+    """Components that would no longer play one, apart from the one that failed."""
+    moved: tuple[tuple[IRI, IRI], ...] = ()
+    """Components that would play another role, each with that role."""
+
+    @property
+    def fatal(self) -> bool:
+        """Whether it is a single point of failure."""
+        return isinstance(self.after, Refusal)
+
+    def told(self, name: Callable[[IRI], str]) -> str:
+        """What would come instead, with names for things."""
+        if self.fatal:
+            return "NONE, a single point of failure"
+        changes = [", ".join(map(name, self.started))] if self.started else []
+        changes += [f"{name(one)} as {name(role)}" for one, role in self.moved]
+        instead = ", ".join(changes) or "nobody needed"
+        return f"{instead}, and {', '.join(map(name, self.stopped))} would stop" if self.stopped else instead
+
+    def __str__(self) -> str:
+        return f"{self.component.short} ({self.role.short}): {self.told(lambda iri: iri.short)}"

@@ -1,0 +1,250 @@
+"""Obstacles: what keeps a component out of a role, as values. Each words itself as a predicate of the component.
+
+`str(obstacle)` follows the name of the component, or of its property: `is no SonarArray`, `support is Pippi, not
+Astrid`; `clause` is a whole clause: `it is no SonarArray`, `its support is Pippi, not Astrid`. `code` is stable, for
+programs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+from typing import ClassVar
+
+from selfconf.model.term import IRI, Literal, Term
+
+_LIMITS = {
+    "minInclusive": "at least",
+    "minExclusive": "more than",
+    "maxInclusive": "at most",
+    "maxExclusive": "less than",
+}
+_LENGTHS = {"minLength": "at least", "maxLength": "at most"}
+
+
+class _Predicate:
+    """An obstacle that speaks of the component itself."""
+
+    __slots__ = ()
+
+    @property
+    def clause(self) -> str:
+        """The obstacle as a clause with the component as its subject."""
+        return f"it {self}"
+
+
+class TypeRelation(str, Enum):
+    """How the type of a component is related to the one that a role asks for."""
+
+    SIMILAR = "similar"
+    """The names are alike, so that one of them is probably misspelt."""
+    BELOW = "below"
+    """An ontology places it below the wanted one, which the reasoning mode does not see."""
+    ABOVE = "above"
+    """An ontology places it above the wanted one."""
+
+
+@dataclass(frozen=True, slots=True)
+class WrongType(_Predicate):
+    """The component is not of a class that the role asks for (`sh:class`)."""
+
+    code: ClassVar[str] = "wrong-type"
+    wanted: IRI
+    offered: IRI | None = None
+    """The type of the component that is related to the wanted one, if one is."""
+    relation: TypeRelation | None = None
+
+    def __str__(self) -> str:
+        said = f"is no {self.wanted.short}"
+        if self.offered is None:
+            return said
+        if self.relation is TypeRelation.SIMILAR:
+            name = self.offered.short if self.offered.short != self.wanted.short else repr(self.offered)
+            return f"{said} (did you mean {name}?)"
+        if self.relation is TypeRelation.BELOW:
+            return f"{said} but a {self.offered.short}, which lies below it (see --reasoning subclass)"
+        return f"{said} but a {self.offered.short}, which lies above it"
+
+
+@dataclass(frozen=True, slots=True)
+class WrongComponent(_Predicate):
+    """The role asks for one of some components by name (`sh:in` or `sh:hasValue` on the node)."""
+
+    code: ClassVar[str] = "wrong-component"
+    members: frozenset[Term]
+
+    def __str__(self) -> str:
+        return f"is not {in_words(self.members)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """There is no value where one has to be."""
+
+    def said(self, name: str) -> str:
+        """The fault of the property of that name."""
+        return f"has no {name}"
+
+
+@dataclass(frozen=True, slots=True)
+class WrongCount:
+    """There are fewer or more values than the role allows."""
+
+    found: int
+    too_many: bool
+
+    def said(self, name: str) -> str:
+        """The fault of the property of that name."""
+        return f"has {self.found} of {name}, too {'many' if self.too_many else 'few'}"
+
+
+@dataclass(frozen=True, slots=True)
+class NotAmong:
+    """Some values are not among those that the role allows (`sh:in`), or not the one that it requires."""
+
+    values: frozenset[Term]
+    members: frozenset[Term]
+
+    def said(self, name: str) -> str:
+        """The fault of the property of that name."""
+        return f"{name} is {in_words(self.values)}, not {in_words(self.members)}"
+
+
+@dataclass(frozen=True, slots=True)
+class ConstraintFailed:
+    """Some values fail a constraint of SHACL on each value; `constraint` is its parameter, such as `sh:pattern`."""
+
+    values: frozenset[Term]
+    constraint: IRI
+    wanted: Term
+
+    def said(self, name: str) -> str:
+        """The fault of the property of that name."""
+        return f"{name} is {in_words(self.values)}, not {self._wanted}"
+
+    @property
+    def _wanted(self) -> str:
+        constraint = self.constraint.short
+        wanted = self.wanted.short if isinstance(self.wanted, IRI) else str(self.wanted)
+        if constraint in _LIMITS:
+            return f"{_LIMITS[constraint]} {wanted}"
+        if constraint in _LENGTHS:
+            return f"{_LENGTHS[constraint]} {wanted} characters long"
+        return f"like /{wanted}/" if constraint == "pattern" else f"a {wanted}"
+
+
+@dataclass(frozen=True, slots=True)
+class Ambiguous:
+    """There are several values where a free parameter has to be equal to each."""
+
+    parameter: IRI
+
+    def said(self, name: str) -> str:
+        """The fault of the property of that name."""
+        return f"{name} has several values, so that no one {self.parameter.short} fits"
+
+
+Fault = Missing | WrongCount | NotAmong | ConstraintFailed | Ambiguous
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyUnmet:
+    """All that is wrong with one property: one obstacle, as one change of the property mends it."""
+
+    code: ClassVar[str] = "property-unmet"
+    path: IRI
+    faults: tuple[Fault, ...]
+
+    @property
+    def clause(self) -> str:
+        """The obstacle as a clause: about the component where it lacks the property, else about the property."""
+        about_component = isinstance(self.faults[0], Missing | WrongCount)
+        return f"{'it' if about_component else 'its'} {self}"
+
+    def __str__(self) -> str:
+        return "; ".join(fault.said(self.path.short) for fault in self.faults)
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterUndeclared(_Predicate):
+    """The role sets an operational parameter of a type that the component does not declare (`sc:hasParameter`)."""
+
+    code: ClassVar[str] = "parameter-undeclared"
+    type: IRI
+
+    def __str__(self) -> str:
+        return f"declares no parameter of type {self.type.short}"
+
+
+@dataclass(frozen=True, slots=True)
+class NoAlternative:
+    """The component meets too few of several alternatives (`sh:or`, `sh:xone`, `sh:and`): what each of them lacks."""
+
+    code: ClassVar[str] = "no-alternative"
+    obstacles: tuple[Obstacle, ...]
+
+    @property
+    def clause(self) -> str:
+        """The obstacles as clauses."""
+        return " and ".join(dict.fromkeys(obstacle.clause for obstacle in self.obstacles))
+
+    def __str__(self) -> str:
+        return " and ".join(dict.fromkeys(map(str, self.obstacles)))
+
+
+@dataclass(frozen=True, slots=True)
+class Excluded(_Predicate):
+    """The component meets what it must not meet (`sh:not`), or several of which it may meet one (`sh:xone`)."""
+
+    code: ClassVar[str] = "excluded"
+    several: bool = False
+
+    def __str__(self) -> str:
+        return "is several things of which it must be one" if self.several else "is what it must not be"
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeViolated(_Predicate):
+    """pySHACL finds a constraint violated that is not compiled; `path` is the property, if it is about one."""
+
+    code: ClassVar[str] = "shape-violated"
+    message: str
+    path: IRI | None = None
+
+    def __str__(self) -> str:
+        return f"violates: {self.message}"
+
+
+@dataclass(frozen=True, slots=True)
+class NoCommonValue(_Predicate):
+    """What the component states leaves a free parameter of the role no value at all."""
+
+    code: ClassVar[str] = "no-common-value"
+
+    def __str__(self) -> str:
+        return "leaves no value for a free parameter that its statements agree on"
+
+
+Obstacle = (
+    WrongType
+    | WrongComponent
+    | PropertyUnmet
+    | ParameterUndeclared
+    | NoAlternative
+    | Excluded
+    | ShapeViolated
+    | NoCommonValue
+)
+
+
+def in_words(values: Iterable[Term]) -> str:
+    """Values for people: `Astrid or Pippi`; of literals also what tells them from others, `"1"` from `1`."""
+    names = sorted(map(_word, values))
+    return " or ".join(names) if names else "nothing"
+
+
+def _word(value: Term) -> str:
+    if isinstance(value, Literal):
+        return value.turtle(lambda datatype: datatype.short)
+    return value.short if isinstance(value, IRI) else str(value)

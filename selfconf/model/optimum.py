@@ -1,0 +1,27 @@
+"""An optimum: a configuration with what it costs, and whether nothing costs less."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.term import IRI
+
+
+@dataclass(frozen=True, slots=True)
+class Optimum:
+    """A configuration, what its solution costs on each level, and what any solution costs at least."""
+
+    configuration: Configuration
+    cost: tuple[Fraction, ...]
+    bound: tuple[Fraction, ...]
+    missing: tuple[tuple[IRI, IRI], ...]
+    """Components of the solution and the properties that terms ask for in vain, with nothing said for that."""
+    proved: bool
+    """Whether there is nothing better for sure."""
+
+    @property
+    def unknown(self) -> int:
+        """How many terms of the cost are over a property that a component does not have."""
+        return len(self.missing)

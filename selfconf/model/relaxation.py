@@ -1,0 +1,104 @@
+"""Repairs: changes to an ecology or a template, each of which makes a refused task possible.
+
+A repair is a fact; it words itself as a request to whoever can do it. `code` is stable, for programs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.profile import Output
+from selfconf.model.term import IRI
+from selfconf.model.wording import listed
+
+
+@dataclass(frozen=True, slots=True)
+class Addition:
+    """Components to be added: so many for a role, each without inputs and with these outputs."""
+
+    role: IRI
+    count: int
+    outputs: tuple[Output, ...] = ()
+
+    def __str__(self) -> str:
+        number = "one more component" if self.count == 1 else f"{self.count} more components"
+        signals = listed(dict.fromkeys(output.signal.short for output in self.outputs))
+        issuing = f" that issue{'s' if self.count == 1 else ''} {signals}" if signals else ""
+        return f"{number} for the role {self.role.short}{issuing}"
+
+
+@dataclass(frozen=True, slots=True)
+class AddComponents:
+    """Fewest components whose addition makes the task possible."""
+
+    code: ClassVar[str] = "add-components"
+    additions: tuple[Addition, ...]
+
+    @property
+    def role(self) -> IRI:
+        """The first of the roles that get a component."""
+        return self.additions[0].role
+
+    def __str__(self) -> str:
+        return f"add {listed(map(str, self.additions))}"
+
+
+@dataclass(frozen=True, slots=True)
+class AskForFewer:
+    """A role that asks for fewer components, or for none, makes the task possible."""
+
+    code: ClassVar[str] = "ask-for-fewer"
+    role: IRI
+    minimum: int
+
+    def __str__(self) -> str:
+        if not self.minimum:
+            return f"let the role {self.role.short} be optional (sc:minCount 0)"
+        return f"let the role {self.role.short} ask for {self.minimum} (sc:minCount {self.minimum})"
+
+
+@dataclass(frozen=True, slots=True)
+class AskForOne:
+    """A role that asks for nobody, though others need what it issues, makes the task possible by asking for one."""
+
+    code: ClassVar[str] = "ask-for-one"
+    role: IRI
+    minimum: ClassVar[int] = 1
+
+    def __str__(self) -> str:
+        return f"let the role {self.role.short} ask for one (sc:minCount 1)"
+
+
+@dataclass(frozen=True, slots=True)
+class AddInteraction:
+    """One more interaction makes the task possible."""
+
+    code: ClassVar[str] = "add-interaction"
+    role: IRI
+    """The role that feeds."""
+    sink: IRI
+
+    def __str__(self) -> str:
+        return f"let the role {self.role.short} feed the role {self.sink.short} (sc:feeds)"
+
+
+@dataclass(frozen=True, slots=True)
+class AcceptNearMiss:
+    """A component that was kept out by one thing would make the task possible."""
+
+    code: ClassVar[str] = "accept-near-miss"
+    near: NearMiss
+    candidate: Candidate = field(repr=False)
+
+    @property
+    def role(self) -> IRI:
+        """The role that would take the component."""
+        return self.near.role
+
+    def __str__(self) -> str:
+        return f"let {self.near.component.short} play {self.near.role.short}, although {self.near}"
+
+
+Relaxation = AddComponents | AskForFewer | AskForOne | AddInteraction | AcceptNearMiss

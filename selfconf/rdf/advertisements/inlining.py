@@ -1,0 +1,156 @@
+"""Folding: documents of Turtle as clauses, with what blank nodes say inside the clause that leads to them.
+
+Making an object of every triple costs more than parsing it. So Oxigraph's parser is connected to Oxigraph's own
+serialiser, a few hundred triples at a time, and what comes out is text of one form only: a line for each predicate of
+a subject, which is a clause (`selfconf.rdf.clauses`).
+
+Blank nodes become part of the clause that leads to them: `sc:hasInput [ sc:name "pose" ; ... ]`, as their author
+wrote them. That is sound where every blank node is written in brackets or as a list, so that exactly one statement
+leads to it. Labels of blank nodes have become names before (`selfconf.rdf.pieces`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
+
+import pyoxigraph as ox
+
+from selfconf.rdf import turtle
+from selfconf.rdf.advertisements.statements import END, NEXT, NotInlinableError, Statement, StatementTable, bracketed
+from selfconf.rdf.vocabulary import FIRST, NIL, REST
+
+CHUNK_TRIPLES = 512
+"""Triples per piece of text: the text of so many stays in the processor's cache."""
+_DEPTH = 30
+"""How deep blank nodes may lie in blank nodes, where these are not written one after the other."""
+_CELL = [f"<{FIRST}>", f"<{REST}>"]
+_OBJECT = re.compile(r'<[^<>]*>|"(?:[^"\\]|\\.)*"(?:@[A-Za-z0-9-]+|\^\^<[^<>]*>)?|[^\s",<>]+')
+
+
+def inlined(
+    text: bytes, source: str, base: str | None, statements: StatementTable
+) -> dict[str, list[Statement]] | None:
+    """What a document without labels of blank nodes says of each named subject, blank nodes folded into the clauses.
+
+    None where that cannot be done: blank nodes that nobody leads to, or that are components. Raises TurtleError.
+    """
+    try:
+        try:
+            subjects = _soon(text, base, statements)
+        except NotInlinableError:
+            subjects = None
+        return _late(text, base, statements) if subjects is None else subjects
+    except (SyntaxError, MemoryError) as error:
+        raise turtle.not_turtle(error, source) from None
+    except NotInlinableError:
+        return None
+
+
+def _soon(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]] | None:
+    """The same while reading; None where what brackets say does not come just before or after them, as in lists."""
+    triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
+    subjects: dict[str, list[Statement]] = {}
+    nodes: dict[str, str] = {}
+    known, take = statements.get, nodes.pop
+    said: list[Statement] = []
+    add, last = said.append, ""
+    predicate = node = content = ""
+    # Every microsecond in this loop is one twentieth of what an advertisement costs.
+    while segment := ox.serialize(islice(triples, CHUNK_TRIPLES), format=ox.RdfFormat.TURTLE):
+        for lines in segment[: -len(END)].decode().split(END):
+            subject, _, rest = lines.partition(" ")
+            if subject != last:
+                if subject[0] == "_":
+                    if "_:" in rest:
+                        rest = NEXT.join([_folded(line, take) for line in rest.split(NEXT)])
+                    if subject == node:  # a string at the end of the brackets comes after them
+                        content = f"{content}{NEXT}{rest}" if content else rest
+                        line = f"{predicate} [ {content} ]"
+                        said[-1] = known(line) or statements[line]
+                    else:
+                        nodes[subject] = f"{nodes[subject]}{NEXT}{rest}" if subject in nodes else rest
+                    continue
+                last = subject
+                said = subjects[subject] if subject in subjects else subjects.setdefault(subject, [])
+                add = said.append
+            for line in rest.split(NEXT):
+                statement = known(line)
+                if statement is None:
+                    if "_:" in line and _leads(line):
+                        predicate, _, node = line.partition(" ")
+                        content = take(node, "")
+                        line = f"{predicate} [ {content} ]"
+                        statement = known(line)
+                    if statement is None:
+                        statement = statements[line]
+                add(statement)
+    return None if nodes else subjects
+
+
+def _leads(line: str) -> bool:
+    """Whether the object of a clause is a blank node. Raises BeyondFoldingError if it has others besides."""
+    said = line[line.index(" ") + 1 :]
+    if said.startswith("_:") and " " not in said:
+        return True
+    if any(found.startswith("_:") for found in _OBJECT.findall(said)):
+        raise NotInlinableError
+    return False
+
+
+def _folded(line: str, take: Callable[[str], str]) -> str:
+    """A clause of a blank node, with what its own blank node says in brackets."""
+    if "_:" not in line or not _leads(line):
+        return line
+    predicate, _, node = line.partition(" ")
+    try:
+        return f"{predicate} [ {take(node)} ]"
+    except KeyError:
+        raise NotInlinableError from None
+
+
+def _late(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]]:
+    """The same once all is read, with lists, and each blank node of several objects in a clause of its own."""
+    triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
+    lines: dict[str, list[str]] = {}
+    while segment := ox.serialize(islice(triples, CHUNK_TRIPLES), format=ox.RdfFormat.TURTLE):
+        for block in segment[: -len(END)].decode().split(END):
+            subject, _, rest = block.partition(" ")
+            lines.setdefault(subject, []).extend(rest.split(NEXT))
+    names = [subject for subject in lines if subject[0] != "_"]
+    subjects = {name: [statements[line] for line in _nested(lines.pop(name), lines, 0)] for name in names}
+    if lines:
+        raise NotInlinableError
+    return subjects
+
+
+def _nested(said: Iterable[str], lines: dict[str, list[str]], depth: int) -> Iterator[str]:
+    """Clauses with what blank nodes say in the place of these, which are taken out of `lines`."""
+    if depth > _DEPTH:
+        raise NotInlinableError
+    for line in said:
+        predicate, _, objects = line.partition(" ")
+        if "_:" not in objects:
+            yield line
+            continue
+        for found in _OBJECT.findall(objects):
+            yield f"{predicate} {_written(found, lines, depth)}"
+
+
+def _written(found: str, lines: dict[str, list[str]], depth: int) -> str:
+    """An object; a blank node as a list, where it is the first cell of one, or in brackets."""
+    if not found.startswith("_:"):
+        return found
+    members: list[str] = []
+    at = found
+    while [line.partition(" ")[0] for line in sorted(lines.get(at, ()))] == _CELL:
+        first, rest = sorted(lines.pop(at))
+        (member,) = _nested([first], lines, depth + 1)
+        members.append(member.partition(" ")[2])
+        at = rest.partition(" ")[2]
+    if not members:
+        return bracketed("", _nested(lines.pop(at, ()), lines, depth + 1)).lstrip()
+    if at != f"<{NIL}>":
+        raise NotInlinableError
+    return f"( {' '.join(members)} )"

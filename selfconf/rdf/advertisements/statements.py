@@ -1,0 +1,254 @@
+"""Turtle as clauses: a predicate with its objects, as text, kept once however many components say it.
+
+A line of what Oxigraph writes about a subject, one predicate with its objects, is a *clause* here. Equal text means
+equal statements, so all that follows from a clause alone is worked out once.
+"""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from decimal import Decimal
+from operator import attrgetter
+
+from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
+from selfconf.model.term import IRI, STRING, Literal, Term
+from selfconf.rdf import turtle
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.reader import STRUCTURE, allowed
+from selfconf.rdf.vocabulary import RDF, SC, TYPE, UNIT, XSD
+
+END, NEXT = " .\n", " ;\n\t"
+"""What Oxigraph writes after the last clause of a subject, and between two; no term has a line break in it."""
+_NAME = attrgetter("name")
+_SPOKEN_FOR = IRI("urn:selfconf:component")
+_KIND = IRI("urn:selfconf:kind")
+_NOTHING = Profile(_SPOKEN_FOR)
+_NO_TYPES: frozenset[IRI] = frozenset()
+_BEYOND = f"<{SC.Component}>"
+"""What a blank node may not say if it is to be folded: that it is a component itself."""
+LINKS = frozenset((SC.hasInput, SC.hasOutput, SC.hasParameter, SC.grounding, SC.rate))
+"""What leads from a component to what else its profile is made of."""
+_STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
+_SILENT = {f"<{predicate}>" for predicate in (SC.name, SC.signalType)}
+"""What says nothing of a component itself."""
+_SIMPLE = re.compile(
+    r"<(?P<predicate>[^<>]*)> (?:"
+    r"<(?P<iri>[^<>]*)>"
+    r'|"(?P<lexical>[^"\\]*)"(?:\^\^<(?P<datatype>[^<>]*)>|@(?P<language>[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*))?'
+    r"|(?P<integer>[+-]?[0-9]+)"
+    r"|(?P<decimal>[+-]?[0-9]*\.[0-9]+)"
+    r")"
+)
+_LINK = {f"<{predicate}>" for predicate in LINKS}
+_LINKS = re.compile(r"<[^<>]*>(?: , <[^<>]*>)*")
+_KINDS = r"a <[^<>]*>(?: , <[^<>]*>)*"
+_VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)?|[+-]?[0-9]+|[+-]?[0-9]*\.[0-9]+)'
+_NAMED, _TYPED = f"<{SC.name}> ", f"<{SC.base}(?P<kind>signalType|parameterType)> "
+_RATED = f"<{SC.rate}> \\[ <{SC.value}> (?P<rate>[0-9]{{1,9}}(?:\\.[0-9]{{1,9}})?){NEXT}<{SC.unit}> <{UNIT.HZ}> \\]"
+_PORT = re.compile(
+    rf"<{SC.base}(?P<link>hasInput|hasOutput|hasParameter)> \[ "
+    rf'(?:(?:{_KINDS}|{_NAMED}"(?P<name>[^"\\]+)"|{_TYPED}<(?P<type>[^<>]*)>|{_RATED}|<[^<>]*> {_VALUE})'
+    rf"(?:{NEXT}| (?=\])))+\]"
+)
+"""A port in brackets; it is well-formed if name and type are there once, and a rate at most."""
+_RATE = f"<{SC.rate}> "
+_NUMBER = re.compile(rf"<{SC.preference}> (?P<number>[+-]?[0-9]{{1,9}}(?:\.[0-9]{{1,9}})?)")
+_COMMAND = re.compile(rf'<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?<{SC.command}> "(?P<command>[^"\\]+)" \]')
+_TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
+
+
+class Statement(ABC):
+    """A predicate with its objects, as Turtle: what one or many components say."""
+
+    __slots__ = ("bracketed", "keyed", "part", "predicate", "slot")
+    types: frozenset[IRI] = frozenset()
+    """The types that it gives."""
+
+    def __init__(self, predicate: str, bracketed: bool) -> None:
+        self.predicate = predicate
+        """Its predicate, in angle brackets, or `a`."""
+        self.bracketed = bracketed
+        """Whether its object is a blank node of its own."""
+        self.part: Profile | None = None
+        """What it adds to a profile, once that is known."""
+        self.keyed: Sequence[tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]] = ()
+        """Its properties behind what properties are ordered by, once that is known."""
+        self.slot: object = self
+        """What a component can have only one of: a port of that name, a preference."""
+
+    @property
+    @abstractmethod
+    def text(self) -> str:
+        """All of it."""
+
+    @property
+    def links(self) -> Sequence[str]:
+        """The names of ports, or of a grounding, that are described elsewhere."""
+        return links(self.predicate, self.text)
+
+    @property
+    def properties(self) -> tuple[tuple[IRI, Term], ...]:
+        """The properties that it states."""
+        simple = _property(self.text)
+        return self.read().properties if simple is None else (simple,)
+
+    def read(self) -> Profile:
+        """What it adds to a profile."""
+        if self.part is None:
+            port = port_of(self.text)
+            self.part = _ported(port) if port else self.carefully()[0]
+        return self.part
+
+    def carefully(self) -> tuple[Profile, bool]:
+        """The same by the careful reader, and whether it finds fault with it."""
+        text = f"<{_SPOKEN_FOR}> a <{SC.Component}> , <{_KIND}>{NEXT}{self.text}{END}"
+        ((_, profile, problems),) = advertisements.profiles(turtle.parse(text, ""))
+        return profile or Profile(_SPOKEN_FOR), bool(problems)
+
+
+def bracketed(predicate: str, said: Iterable[str]) -> str:
+    """The text of a clause whose object is a blank node that says something."""
+    return f"{predicate} [ {NEXT.join(said)} ]"
+
+
+def links(predicate: str, text: str) -> Sequence[str]:
+    """The names of ports, or of a grounding, to which a clause links, if it does that alone."""
+    said = text[len(predicate) + 1 :]
+    return list(dict.fromkeys(said.split(" , "))) if predicate in _LINK and _LINKS.fullmatch(said) else ()
+
+
+def port_of(text: str) -> re.Match[str] | None:
+    """A clause with one port, or one operational parameter, that is in order and of a common form."""
+    if text.count(_NAMED) != 1 or text.count("Type> <") != 1 or text.count(_RATE) > 1:
+        return None
+    found = _PORT.fullmatch(text)
+    if found is None or found["name"] is None or found["type"] is None or found["type"].startswith(turtle.SKOLEM):
+        return None
+    if (found["kind"] == "parameterType") != (found["link"] == "hasParameter"):
+        return None
+    if _RATE in text and (found["rate"] is None or found["link"] != "hasOutput" or not float(found["rate"])):
+        return None
+    return found
+
+
+def _ported(found: re.Match[str]) -> Profile:
+    """The part of such a clause."""
+    name, type_ = found["name"], IRI(found["type"])
+    if found["link"] == "hasInput":
+        return Profile(_SPOKEN_FOR, ports=Ports(inputs=(Input(name, type_),)))
+    if found["link"] == "hasOutput":
+        rate = found["rate"] and float(found["rate"])
+        return Profile(_SPOKEN_FOR, ports=Ports(outputs=(Output(name, type_, rate or None),)))
+    return Profile(_SPOKEN_FOR, parameters=(OperationalParameter(name, type_),))
+
+
+def setting_of(text: str) -> Profile | None:
+    """The part of a clause with a preference or a command, in order and of a common form."""
+    command = _COMMAND.fullmatch(text)
+    if command is not None and command["command"].strip():
+        return Profile(_SPOKEN_FOR, command=command["command"])
+    number = _NUMBER.fullmatch(text)
+    return None if number is None else Profile(_SPOKEN_FOR, preference=Decimal(number["number"]))
+
+
+def _property(text: str) -> tuple[IRI, Term] | None:
+    """The property that a clause with one object of a common form states."""
+    found = _SIMPLE.fullmatch(text)
+    if found is None:
+        return None
+    predicate, iri, lexical, datatype, language, integer, decimal = found.groups()
+    value: Term
+    if iri is not None:
+        value = turtle.resource(iri)
+    elif lexical is None:
+        value = Literal(integer, XSD.integer) if integer else Literal(decimal, XSD.decimal)
+    elif language:
+        value = Literal(lexical, RDF.langString, language)
+    else:
+        value = Literal(lexical, IRI(datatype) if datatype else STRING)
+    return IRI(predicate), value
+
+
+class WrittenStatement(Statement):
+    """A clause as it was written."""
+
+    __slots__ = ("text", "types")
+    text: str
+
+    def __init__(self, predicate: str, text: str) -> None:
+        super().__init__(predicate, text.endswith(("]", ")")))
+        self.text, self.types = text, _NO_TYPES
+
+
+class NotInlinableError(Exception):
+    """Something that only the careful reader can read."""
+
+
+class StatementTable(dict[str, Statement]):
+    """Every clause of one or more documents by its text, made when it is first met."""
+
+    def __init__(self) -> None:
+        self.suspects: set[Statement] = set()
+        """Clauses about which only the careful reader can tell."""
+        self._slots: dict[object, object] = {}
+        self._predicates: dict[str, str] = {}
+        self._allowed: dict[str, bool] = {}
+
+    def __missing__(self, text: str) -> Statement:
+        predicate, _, said = text.partition(" ")
+        if said[0] in "[(" and _BEYOND in said:
+            raise NotInlinableError
+        statement = self[text] = WrittenStatement(self._predicates.setdefault(predicate, predicate), text)
+        if predicate == "a":
+            self._types(statement)
+        elif predicate in _STRUCTURE:
+            self._structure(statement, predicate)
+        else:
+            if predicate not in self._allowed:
+                self._allowed[predicate] = allowed(IRI(predicate[1:-1]), _SPOKEN_FOR)
+            if not self._allowed[predicate]:
+                self.suspects.add(statement)
+        return statement
+
+    def typed(self, said: list[Statement]) -> None:
+        """Make one clause of all that give types to a subject, unless one of them has brackets."""
+        kinds = [statement for statement in said if statement.slot is TYPE]
+        if len(kinds) > 1 and not any("[" in statement.text for statement in kinds):
+            said[said.index(kinds[0])] = self["a " + " , ".join(statement.text[len("a ") :] for statement in kinds)]
+            said[:] = [statement for statement in said if statement not in kinds]
+
+    def _types(self, statement: WrittenStatement) -> None:
+        if _TYPES.fullmatch(statement.text) and turtle.SKOLEM not in statement.text:
+            types: set[Term] = {IRI(type_) for type_ in statement.text[len("a <") : -1].split("> , <")}
+        else:
+            types = set(turtle.parse(f"<{_SPOKEN_FOR}> {statement.text}{END}", "").values(_SPOKEN_FOR, TYPE))
+        statement.slot, statement.part = TYPE, _NOTHING
+        statement.types = frozenset([type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_)])
+        if len(statement.types) < len(types):
+            self.suspects.add(statement)
+
+    def _structure(self, statement: Statement, predicate: str) -> None:
+        port = port_of(statement.text)
+        if port is None and statement.links:
+            self.suspects.add(statement)
+            return
+        names: list[str] = []
+        if port is not None:
+            names = [port["name"]]
+        elif predicate in _SILENT:
+            statement.part = _NOTHING
+        else:
+            statement.part, faulty = setting_of(statement.text), False
+            if statement.part is None:
+                statement.part, faulty = statement.carefully()
+            part = statement.part
+            names = [*map(_NAME, part.inputs), *map(_NAME, part.outputs), *map(_NAME, part.parameters)]
+            if faulty or len(names) > 1:
+                self.suspects.add(statement)
+        statement.slot = self.slot(predicate, *names)
+
+    def slot(self, predicate: str, *names: str) -> object:
+        """What only one clause of a component can have; compared by identity, which is quicker."""
+        return self._slots.setdefault((predicate, *names), object())

@@ -1,0 +1,195 @@
+"""Forms: what pieces of Turtle have in common that differ in nothing but their strings and digits.
+
+A piece without its strings and digits is its *shape*. Once several pieces of a shape have been met, one of them is read
+with marks in these places. What it says, with holes where the marks are found again, is the *form* of all of them: to
+know what another piece says, no parser is needed.
+
+That is sound because a string or a run of digits means itself wherever it stands, and may be replaced by any other.
+In an IRI that holds for what follows the last `#` or `/`, as no term that matters here has digits there.
+Shapes are left alone where it is not so: prefixes and language tags with digits, ports and the like in IRIs, escapes in
+names, strings in single quotes. A shape that has none of that shows that its pieces were taken apart between tokens.
+A datatype does not matter: no literal is looked at here, and none is refused by the parser.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from selfconf.rdf.advertisements.statements import Statement, StatementTable, port_of
+
+OCCURRENCES = 4
+"""Of how many pieces of a shape its form is made."""
+MOST_PATTERNS = 10_000
+"""How many shapes are remembered that have no form yet."""
+_ESCAPE = rb"\\(?:[tbnrf\"'\\]|u(?!0000)[0-9A-Ca-c][0-9A-Fa-f]{3})"
+_TEXT = rb'"(?!"")[^"\\\n\r\0]*(?:%b[^"\\\n\r\0]*)*"|"""[^"\\\0]*(?:(?:%b|""?(?!"))[^"\\\0]*)*"""' % (_ESCAPE, _ESCAPE)
+_RUN = rb"[0-9]+(?![^<>\s\"#/]{0,250}[#/][^<>\s\"]{0,250}>)"  # no term that matters is longer
+_STRING, _DIGITS, _HOLE = re.compile(_TEXT), re.compile(_RUN), re.compile(_TEXT + b"|" + _RUN)
+_REGULAR = re.compile(rb"(?:[^<>\"'#\\%@\0]|\"(?!\")|@[A-Za-z]|<[^<>\"'\\%@\s\[\]]*>|#[^\n\r\"'\\]*[\n\r])*")
+_RIGID = re.compile(rb"\x01[^\s,;\[\]()<>\"/]{0,250}:|:\x01[^<>\s]{0,250}>|@[A-Za-z0-9-]*\x01")
+"""Digits before a colon, or just after one in an IRI, or in a language tag."""
+_HOLES = re.compile(rb'"|\x01')
+_NAME = re.compile(r"s731([0-9]{4})")
+_MARK = re.compile(r'"s731([0-9]{4})"|731([0-9]{4})')
+
+
+def shaped(segments: Sequence[bytes]) -> list[bytes]:
+    """The shape of each piece. Raises UnicodeDecodeError where one is not UTF-8."""
+    text = b"\0".join(segments)
+    text.decode()
+    if b"\1" in text:
+        return [b""] * len(segments)
+    shapes = _DIGITS.sub(b"\1", _STRING.sub(b'"', text)).split(b"\0")
+    return shapes if len(shapes) == len(segments) else [b""] * len(segments)
+
+
+@dataclass(frozen=True, slots=True)
+class TokenTemplate:
+    """One clause that the pieces of a shape say, with holes."""
+
+    predicate: str
+    text_template: bytes
+    holes: tuple[int, ...]
+    """Which of the strings and digits of a piece belong into the holes."""
+    bracketed: bool
+    links: bool
+    name: int | None
+    """Of a port, between which quotation marks its name stands, counted from nought."""
+    rate: tuple[int, ...]
+    """Of a port, which of the digits are those of its rate."""
+    free: bool
+    """Whether what is in the holes does not matter to what such a clause is."""
+
+    def text(self, segment: bytes) -> str:
+        """The clause that a piece says."""
+        values = _HOLE.findall(segment)
+        text: bytes = self.text_template % tuple([values[hole] for hole in self.holes])
+        return text.decode()
+
+
+class TemplatedStatement(Statement):
+    """A clause that is written out when somebody asks."""
+
+    __slots__ = ("_segment", "_template")
+
+    def __init__(self, template: TokenTemplate, segment: bytes) -> None:
+        self._template, self._segment = template, segment
+        self.predicate, self.bracketed = template.predicate, template.bracketed
+        self.part, self.keyed, self.slot = None, (), self
+
+    @property
+    def text(self) -> str:
+        """All of it."""
+        return self._template.text(self._segment)
+
+    @property
+    def links(self) -> Sequence[str]:
+        """The names of ports, or of a grounding, that are described elsewhere."""
+        return self.text[len(self._template.predicate) + 1 :].split(" , ") if self._template.links else ()
+
+
+class TokenTemplates:
+    """The forms of the shapes that have been met often enough."""
+
+    def __init__(self) -> None:
+        self._met: Counter[bytes] = Counter()
+        self._templates: dict[bytes, tuple[TokenTemplate, ...]] = {}
+
+    def wanted(self, shapes: Sequence[bytes]) -> dict[bytes, bytes]:
+        """Of the shapes whose form is to be made, a piece with marks."""
+        found = {}
+        if len(self._met) > MOST_PATTERNS:
+            self._met.clear()
+        unknown = set(shapes).difference(self._templates)
+        if unknown:
+            self._met.update(shape for shape in shapes if shape in unknown)
+        for shape in unknown:
+            if self._met[shape] >= OCCURRENCES:
+                del self._met[shape]
+                self._templates[shape] = ()
+                if _HOLES.search(shape) and _REGULAR.fullmatch(shape) and not _RIGID.search(shape):
+                    found[shape] = _marked(shape)
+        return found
+
+    def learn(self, shape: bytes, statements: Sequence[Statement], known: StatementTable) -> None:
+        """Make the form of a shape from what its piece with marks says."""
+        marks = [mark for statement in statements for mark in _marks(statement.text)]
+        if sorted(marks) == list(range(len(_HOLES.findall(shape)))):
+            self._templates[shape] = tuple([_template(shape, statement, known) for statement in statements])
+
+    def fill(
+        self,
+        segments: Sequence[bytes],
+        shapes: Sequence[bytes],
+        said: dict[bytes, tuple[Statement, ...]],
+        known: StatementTable,
+    ) -> list[bytes]:
+        """Note down what pieces say whose shapes have forms; the other pieces are returned."""
+        odd: list[bytes] = []
+        templates_of = self._templates.get
+        for segment, shape in zip(segments, shapes, strict=True):
+            templates = templates_of(shape)
+            if not templates:
+                odd.append(segment)
+            else:
+                said[segment] = tuple(
+                    [TemplatedStatement(f, segment) if f.free else _filled(f, segment, known) for f in templates]
+                )
+        return odd
+
+
+def _filled(template: TokenTemplate, segment: bytes, known: StatementTable) -> Statement:
+    """The clause of a piece, where it matters what is in the holes."""
+    statement = TemplatedStatement(template, segment)
+    if template.links:
+        known.suspects.add(statement)
+        return statement
+    if (
+        template.name is None
+        or b"\\" in segment
+        or b'""' in segment
+        or (template.rate and not _common(template.rate, segment))
+    ):
+        return known[statement.text]
+    statement.slot = known.slot(template.predicate, segment.split(b'"', template.name + 1)[template.name].decode())
+    return statement
+
+
+def _common(rate: Iterable[int], segment: bytes) -> bool:
+    """Whether the digits of a rate make a number of a common size above zero."""
+    values = _HOLE.findall(segment)
+    digits = [values[hole] for hole in rate]
+    return max(map(len, digits)) < 10 and any(each.strip(b"0") for each in digits)
+
+
+def _marks(text: str) -> tuple[int, ...]:
+    """Which marks stand in a text, one after the other."""
+    return tuple([int(mark[1] or mark[2]) for mark in _MARK.finditer(text)])
+
+
+def _template(shape: bytes, statement: Statement, known: StatementTable) -> TokenTemplate:
+    """The form of a clause with marks."""
+    text = statement.text
+    port, name = port_of(text), None
+    if port is not None and (mark := _NAME.fullmatch(port["name"])):
+        strings = [number for number, hole in enumerate(_HOLES.findall(shape)) if hole == b'"']
+        name = 2 * strings.index(int(mark[1])) + 1
+    return TokenTemplate(
+        statement.predicate,
+        _MARK.sub("%b", text.replace("%", "%%")).encode(),
+        _marks(text),
+        statement.bracketed,
+        port is None and len(statement.links) > 0,
+        name,
+        () if port is None else _marks(port["rate"] or ""),
+        statement.slot is statement and statement not in known.suspects and not _MARK.search(statement.predicate),
+    )
+
+
+def _marked(shape: bytes) -> bytes:
+    """A piece of a shape, with marks for strings and digits."""
+    marks = iter(range(len(shape)))
+    return _HOLES.sub(lambda at: b'"s731%04d"' % next(marks) if at[0] == b'"' else b"731%04d" % next(marks), shape)

@@ -1,0 +1,44 @@
+"""Which components are eligible for the roles of a task, and what keeps the others out.
+
+`Partitioner` compiles the roles of a task (`CompiledRole`) and partitions an `AdvertisementIndex`. `near_misses` and
+`near_misses_by_type` find the components that one obstacle keeps out, `exclusions` everything that keeps the others
+out (`Exclusion`). `bound_shape` is the shape of a role with its parameters replaced.
+"""
+
+from selfconf.rdf.eligibility.compiler import bound_shape
+from selfconf.rdf.eligibility.index import AdvertisementIndex
+from selfconf.rdf.eligibility.nearly_eligible import Exclusion, exclusions, near_misses
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.eligibility.remote import ANYBODY, TYPES, prefaced, statements, wanted
+from selfconf.rdf.eligibility.role_tests import (
+    ClassTest,
+    CompiledRole,
+    Count,
+    ParameterTest,
+    PropertyTest,
+    RoleTest,
+    SelfTest,
+)
+from selfconf.rdf.eligibility.similar_types import near_misses_by_type
+
+__all__ = [
+    "ANYBODY",
+    "TYPES",
+    "AdvertisementIndex",
+    "ClassTest",
+    "CompiledRole",
+    "Count",
+    "Exclusion",
+    "ParameterTest",
+    "Partitioner",
+    "PropertyTest",
+    "RoleTest",
+    "SelfTest",
+    "bound_shape",
+    "exclusions",
+    "near_misses",
+    "near_misses_by_type",
+    "prefaced",
+    "statements",
+    "wanted",
+]

@@ -1,0 +1,246 @@
+"""Roles as tests: the common subset of SHACL compiled, the rest left to pySHACL.
+
+`compile_role` turns the shape of a role into tests that look at a profile and need no graph. What it compiles:
+
+* `sh:class`, `sh:in` and `sh:hasValue` on the node (SHACL 4.1.1, 4.8.2, 4.8.3);
+* property shapes over one predicate with `sh:in`, `sh:hasValue`, `sh:minCount`, `sh:maxCount` (4.8, 4.2), and what
+  `selfconf.rdf.values` knows of single values (4.1.2, 4.1.3, 4.3, 4.4);
+* `sh:and`, `sh:or`, `sh:xone`, `sh:not` and `sh:node` over shapes of that kind (4.6, 4.7.1);
+* a parameter left unbound inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
+
+A shape that says more is *incomplete* here: its tests are still necessary, so they are the prefilter, and pySHACL
+judges the survivors by the whole shape. That both ways give one partition is a property test. Left out on purpose:
+`sh:class` on the values of a property, which depends on what other advertisements say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from selfconf.errors import TemplateError
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.advertisements import STRUCTURE
+from selfconf.rdf.eligibility.role_tests import (
+    ClassTest,
+    CompiledRole,
+    Count,
+    ParameterTest,
+    PropertyTest,
+    RoleTest,
+    SelfTest,
+)
+from selfconf.rdf.shacl import compiled
+from selfconf.rdf.tasks import ROLE_STRUCTURE
+from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE
+
+SHAPE_ANNOTATIONS = frozenset(
+    (
+        LABEL,
+        RDFS.comment,
+        RDFS.isDefinedBy,
+        RDFS.seeAlso,
+        SH.name,
+        SH.description,
+        SH.message,
+        SH.order,
+        SH.group,
+    )
+)
+TARGETS = frozenset((SH.targetClass, SH.targetNode, SH.targetSubjectsOf, SH.targetObjectsOf, SH.target))
+_SILENT = SHAPE_ANNOTATIONS | TARGETS | {SH.severity, SH.deactivated, TYPE, SH.path}
+_SHAPES_OF_A_LIST = frozenset((SH["and"], SH["or"], SH.xone))
+_SHAPES = frozenset((SH["not"], SH.node, SH.property))
+_LOGIC = _SHAPES_OF_A_LIST | {SH["not"], SH.node}
+_OWN_STATEMENTS = frozenset((SH["class"], SH.closed, SH.ignoredProperties))
+"""What looks at the statements about the node it is asked about."""
+_OWN_VALUES = frozenset(
+    SH[name]
+    for name in (
+        "in", "hasValue", "nodeKind", "datatype", "pattern", "flags", "minLength", "maxLength", "languageIn",
+        "uniqueLang", "minCount", "maxCount", "minInclusive", "maxInclusive", "minExclusive", "maxExclusive", "equals",
+        "disjoint", "lessThan", "lessThanOrEquals",
+    )
+)  # fmt: skip
+"""What looks at values alone, or compares the values of two properties of the node that has them."""
+
+
+def compile_role(
+    document: Document,
+    role: IRI,
+    settings: tuple[IRI, ...],
+    bindings: Mapping[IRI, Term],
+    free: frozenset[IRI],
+) -> CompiledRole:
+    """Compile the shape of a role, with bound parameters replaced by their values; `settings` are the types it sets.
+
+    Raises TemplateError for shapes within shapes without end, or nearly so.
+    """
+    compiler = _Compiler(document, bindings, free)
+    try:
+        tests = (*compiler.shape(role), *map(ParameterTest, settings))
+        return CompiledRole(role, tests, not compiler.rest, local(document, role))
+    except RecursionError:
+        raise TemplateError(f"the shape of the role {role!r} nests too deeply", file=document.source) from None
+
+
+def bound_shape(document: Document, bindings: Mapping[IRI, Term]) -> list[Triple]:
+    """The triples of a template for pySHACL: parameters replaced, roles typed as node shapes without targets."""
+    triples: list[Triple] = []
+    roles = set(document.instances(SC.Role))
+    for subject, predicate, value in document.triples():
+        if subject in roles and (predicate in TARGETS or (predicate in ROLE_STRUCTURE and predicate != TYPE)):
+            continue
+        if predicate in SH or predicate == RDF.first:
+            value = bindings.get(value, value) if isinstance(value, IRI) else value
+        triples.append((subject, predicate, value))
+    triples.extend((role, TYPE, SH.NodeShape) for role in roles)
+    return triples
+
+
+def local(document: Document, shape: Term, at_value: bool = False, above: frozenset[Term] = frozenset()) -> bool:
+    """Whether a shape looks at nothing but statements about the node it is asked about."""
+    if shape in above:
+        return True
+    paths = document.values(shape, SH.path)
+    if paths and (at_value or not all(isinstance(path, IRI) for path in paths)):
+        return False
+    at_value = at_value or bool(paths)
+    for predicate, value in document.about(shape):
+        if predicate in _SHAPES_OF_A_LIST | _SHAPES:
+            inner = document.items(value) if predicate in _SHAPES_OF_A_LIST else [value]
+            if not all(local(document, one, at_value, above | {shape}) for one in inner):
+                return False
+        elif predicate in _OWN_STATEMENTS:
+            if at_value:
+                return False
+        elif predicate in SH and predicate not in _SILENT | _OWN_VALUES:
+            return False
+    return True
+
+
+class _Compiler:
+    """Compiles one shape; `rest` is raised as soon as something is met that only pySHACL can judge."""
+
+    def __init__(self, document: Document, bindings: Mapping[IRI, Term], free: frozenset[IRI]) -> None:
+        self.document, self.bindings, self.free = document, bindings, free
+        self.rest = False
+        self._above: list[Term] = []
+
+    def shape(self, shape: Term) -> Iterator[RoleTest]:
+        """The tests of a node shape or, inside a logical constraint, of a property shape."""
+        if self._true(shape, SH.deactivated):
+            return
+        if shape in self._above:
+            self.rest = True
+            return
+        if self.document.value(shape, SH.path) is not None:
+            yield from self._property(shape)
+            return
+        self._above.append(shape)
+        self.rest = self.rest or self._repeats(shape)
+        for predicate, raw in self.document.about(shape):
+            value = self._bound(raw)
+            if predicate == SH["class"] and isinstance(value, IRI) and value not in self.free:
+                yield ClassTest(value)
+            elif predicate == SH.hasValue and value not in self.free:
+                yield SelfTest(frozenset((value,)))
+            elif predicate == SH["in"] and not self._mentions(raw):
+                yield SelfTest(frozenset(map(self._bound, self.document.items(raw))))
+            elif predicate == SH.property:
+                yield from self._property(raw)
+            elif predicate in _LOGIC:
+                yield from self._logic(predicate, raw)
+            elif predicate in SH and predicate not in _SILENT:
+                self.rest = True
+        self._above.pop()
+
+    def _logic(self, predicate: IRI, raw: Term) -> Iterator[RoleTest]:
+        """A constraint over other shapes: how many of them the component conforms to."""
+        shapes = self.document.items(raw) if predicate in _SHAPES_OF_A_LIST else [raw]
+        wrong = predicate == SH.node and self.document.value(raw, SH.path) is not None
+        if not shapes or wrong or any(map(self._mentions, shapes)):
+            self.rest = True
+            return
+        whole, self.rest = self.rest, False
+        groups = tuple(tuple(self.shape(shape)) for shape in shapes)
+        exact, self.rest = not self.rest, whole or self.rest
+        if predicate in (SH["and"], SH.node):
+            yield Count(groups, len(groups))
+        elif predicate == SH["or"] or (predicate == SH.xone and not exact):
+            yield Count(groups, 1)
+        elif predicate == SH.xone:
+            yield Count(groups, 1, 1)
+        elif exact:
+            yield Count(groups, 0, 0)
+
+    def _property(self, shape: Term) -> Iterator[PropertyTest]:
+        """One property shape; `rest` where its path or any of its constraints is beyond the subset."""
+        paths = [self._bound(path) for path in self.document.values(shape, SH.path)]
+        path = paths[0] if len(paths) == 1 else shape
+        if self._true(shape, SH.deactivated):
+            return
+        if not isinstance(path, IRI) or not paths or path in self.free or path in STRUCTURE or path in SC:
+            self.rest = True
+            return
+        minimum, maximum = 0, None
+        allowed: list[frozenset[Term]] = []
+        required: list[Term] = []
+        free_in: list[tuple[IRI, frozenset[Term]]] = []
+        free_required: list[IRI] = []
+        others: dict[IRI, list[Term]] = {}
+        for predicate, raw in dict.fromkeys(self.document.about(shape)):
+            value = self._bound(raw)
+            if predicate == SH.minCount and isinstance(value, Literal) and value.lexical.isdecimal():
+                minimum = max(minimum, int(value.lexical))
+            elif predicate == SH.maxCount and isinstance(value, Literal) and value.lexical.isdecimal():
+                most = int(value.lexical)
+                maximum = most if maximum is None else min(maximum, most)
+            elif predicate == SH.hasValue and value in self.free and isinstance(value, IRI):
+                free_required.append(value)
+            elif predicate == SH.hasValue:
+                required.append(value)
+            elif predicate == SH["in"]:
+                members = [self._bound(member) for member in self.document.items(raw)]
+                variables = [m for m in dict.fromkeys(members) if isinstance(m, IRI) and m in self.free]
+                constants = frozenset(m for m in members if m not in variables)
+                if not variables:
+                    allowed.append(constants)
+                elif len(variables) == 1:
+                    free_in.append((variables[0], constants))
+                else:
+                    self.rest = True
+            elif predicate in SH and predicate not in _SILENT:
+                if self._mentions(raw):
+                    self.rest = True
+                else:
+                    others.setdefault(predicate, []).append(value)
+        each, covered = compiled(others)
+        self.rest = self.rest or not others.keys() <= covered or self._repeats(shape)
+        yield PropertyTest(
+            path, minimum, maximum, tuple(allowed), tuple(required), tuple(free_in), tuple(free_required), tuple(each)
+        )
+
+    def _repeats(self, shape: Term) -> bool:
+        """Whether something is stated twice that a shape may state once; pySHACL then says so."""
+        said = [predicate for predicate, _ in dict.fromkeys(self.document.about(shape))]
+        return any(said.count(predicate) > 1 for predicate in (SH["in"], SH.minCount, SH.maxCount))
+
+    def _bound(self, value: Term) -> Term:
+        return self.bindings.get(value, value) if isinstance(value, IRI) else value
+
+    def _true(self, subject: Term, predicate: IRI) -> bool:
+        value = self.document.value(subject, predicate)
+        return isinstance(value, Literal) and value.lexical in ("true", "1")
+
+    def _mentions(self, start: Term) -> bool:
+        """Whether a free parameter stands in a term or anywhere below it."""
+        waiting, seen = [start], set[Term]()
+        while waiting:
+            value = waiting.pop()
+            if value in self.free:
+                return True
+            if value not in seen:
+                seen.add(value)
+                waiting.extend(o for _, o in self.document.about(value))
+        return False

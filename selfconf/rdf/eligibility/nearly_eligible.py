@@ -1,0 +1,165 @@
+"""Who is kept out of a role, and by what: those who nearly fit, and all the others.
+
+A *near miss* is kept out by exactly one thing: one test, or one property shape, or one constraint that pySHACL finds to
+be violated, or that it leaves no value for a free parameter. Mend that and it may play the role.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from operator import attrgetter
+
+from selfconf.model.obstacle import NoCommonValue, Obstacle
+from selfconf.model.partition import NearMiss
+from selfconf.model.term import IRI, Term, sort_key
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.eligibility import free_parameters as free_values
+from selfconf.rdf.eligibility.index import AdvertisementIndex, TypeSet
+from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partitioner, Tested
+from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
+
+JUDGED = 24
+"""How many pySHACL judges at most to find near misses of a role: of those whom no test keeps out, and of the others."""
+_component = attrgetter("component")
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """A component that is not eligible for a role, and everything that keeps it out."""
+
+    component: IRI
+    obstacles: tuple[Obstacle, ...]
+    akin: bool
+    """Whether it is of the classes that the role asks for."""
+
+
+def exclusions(
+    partitioner: Partitioner, role: CompiledRole, inside: Container[IRI], advertisements: Advertisements
+) -> list[Exclusion]:
+    """All that keeps out of a role who is not inside; first those of its class, and those with few obstacles.
+
+    What only pySHACL can judge is told of those who pass all tests.
+    """
+    ecology = AdvertisementIndex.of(advertisements)
+    akin = set(partitioner.akin(role, ecology))
+    outside = {
+        advertisement: (kind in akin, verdict.obstacles)
+        for kind, alike, verdict in partitioner.tested(role, ecology, ecology.type_sets)
+        for advertisement in alike
+        if advertisement.component not in inside
+    }
+    passed = [advertisement for advertisement, (_, obstacles) in outside.items() if not obstacles]
+    if passed and not role.complete:
+        judged = partitioner.violations(role, passed, list(ecology.values()), {})
+        outside |= {a: (outside[a][0], tuple(judged[a.component])) for a in passed if a.component in judged}
+    return sorted(
+        (
+            Exclusion(a.component, reasons or (NoCommonValue(),), of_its_class)
+            for a, (of_its_class, reasons) in outside.items()
+        ),
+        key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
+    )
+
+
+def near_misses(
+    partitioner: Partitioner,
+    advertisements: Advertisements,
+    roles: Container[IRI] | None = None,
+    lost: Container[IRI] = (),
+) -> Iterator[NearMiss]:
+    """For each role the components of its class that exactly one other thing keeps out, with that obstacle.
+
+    Of some roles only, where those are given, and without the lost components; for each role by component.
+    """
+    ecology = AdvertisementIndex.of(advertisements)
+    for role in partitioner.roles:
+        if roles is None or role.iri in roles:
+            near = nearly(partitioner, role, ecology, partitioner.akin(role, ecology))
+            yield from (miss for miss in near if miss.component not in lost)
+
+
+def nearly(
+    partitioner: Partitioner, role: CompiledRole, ecology: AdvertisementIndex, type_sets: Iterable[TypeSet]
+) -> list[NearMiss]:
+    """The components of some kinds that exactly one thing keeps out of a role, by component.
+
+    Where the shape says more than the tests, pySHACL has to agree that there is nothing else; it is asked about a few.
+    """
+    few = [tested for tested in partitioner.tested(role, ecology, type_sets) if len(tested[2].obstacles) < 2]
+    found = _by_tests(partitioner, role, few) if role.complete else _judged(partitioner, role, ecology, few)
+    return sorted(found, key=_component)
+
+
+def _by_tests(partitioner: Partitioner, role: CompiledRole, few: Iterable[Tested]) -> Iterator[NearMiss]:
+    near = [
+        (alike, obstacle, _let_in(partitioner, role, alike[0]))
+        for _, alike, verdict in few
+        for obstacle in verdict.obstacles
+    ]
+    suitable = {
+        parameter: partitioner.suitable.of(parameter, frozenset().union(*(a.get(parameter, ()) for *_, a in near)))
+        for parameter in partitioner.free
+    }
+    for alike, obstacle, allows in near:
+        allowed = {parameter: values & suitable[parameter] for parameter, values in allows.items()}
+        if all(allowed.values()):
+            yield from (NearMiss(role.iri, a.component, obstacle, allowed) for a in alike)
+
+
+def _let_in(partitioner: Partitioner, role: CompiledRole, advertisement: Advertisement) -> dict[IRI, frozenset[Term]]:
+    """The values of free parameters that a component would allow, were it let in."""
+    profile, hierarchy = advertisement.profile, partitioner.hierarchy
+    passed = tuple(test for test in role.tests if test.obstacle(profile, hierarchy) is None)
+    return replace(role, tests=passed).allows(profile, hierarchy)
+
+
+def _judged(
+    partitioner: Partitioner, role: CompiledRole, ecology: AdvertisementIndex, few: Iterable[Tested]
+) -> Iterator[NearMiss]:
+    """Those whom pySHACL finds to be kept out by one thing, for some value of the parameter that is left free."""
+    obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
+    by_name = sorted(obstacles, key=_component)
+    focus = [a for a in by_name if not obstacles[a]][:JUDGED] + [a for a in by_name if obstacles[a]][:JUDGED]
+    tests = {a: _failed(partitioner, role, a) for a in focus}
+    everything = list(ecology.values())
+    subjects = partitioner.subjects(role, focus, everything)
+    reasons: dict[Advertisement, dict[Term, list[Obstacle]]] = {a: {} for a in focus}
+    parameter = partitioner.mentioned(role)
+    for value in _values(partitioner, role, parameter, focus):
+        values = {} if parameter is None else {parameter: value}
+        judged = partitioner.violations(role, focus, everything, values, subjects)
+        for a in focus:
+            violated = list(judged.get(a.component, ()))
+            told = next(
+                (one for one in violated if one.path in tests[a]), None
+            )  # by the test that failed, in its words
+            reasons[a][value] = [*obstacles[a], *(one for one in violated if one is not told)]
+    for a, by_value in reasons.items():
+        near = {value: some[0] for value, some in by_value.items() if len(some) == 1}
+        if near and all(by_value.values()):
+            constrained = parameter is not None and ANOTHER not in near
+            allows = {parameter: frozenset(near)} if parameter is not None and constrained else {}
+            yield NearMiss(role.iri, a.component, next(iter(near.values())), allows)
+
+
+def _values(
+    partitioner: Partitioner, role: CompiledRole, parameter: IRI | None, focus: Sequence[Advertisement]
+) -> list[Term]:
+    """The values of a free parameter with which a role is judged; without a parameter it is judged once."""
+    if parameter is None:
+        return [ANOTHER]
+    listed = free_values.enumerated(partitioner.document, parameter)
+    stated = listed | free_values.seen(partitioner.document, role.iri, partitioner.visible(focus))
+    suitable = sorted(partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
+    return suitable if listed else [*suitable, ANOTHER]
+
+
+def _failed(partitioner: Partitioner, role: CompiledRole, advertisement: Advertisement) -> set[IRI | None]:
+    """The property over which a test of the shape has failed, if one has; None stands for the component itself."""
+    profile, hierarchy = advertisement.profile, partitioner.hierarchy
+    return {
+        test.path if isinstance(test, PropertyTest) else None
+        for test in role.tests
+        if not isinstance(test, ParameterTest) and test.obstacle(profile, hierarchy) is not None
+    }

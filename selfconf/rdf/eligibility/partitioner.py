@@ -1,0 +1,250 @@
+"""The partition F1 ... Fn of an ecology by the roles of a task (section 3.2 of the paper).
+
+Every role is compiled once. The classes that it asks for are tested once for each set of types in the ecology, its
+other tests once for each *signature*: what a component says of the properties that the role looks at. Where the shape
+says more than the tests, pySHACL judges those who pass them, all in one call.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from selfconf.errors import TemplateError
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.obstacle import Obstacle, ShapeViolated
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable, ordered
+from selfconf.model.profile import Profile
+from selfconf.model.term import IRI, Term, sort_key
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.eligibility import free_parameters as free_values
+from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
+from selfconf.rdf.eligibility.index import AdvertisementIndex, ClassClosure, Signature, TypeSet
+from selfconf.rdf.eligibility.role_tests import CompiledRole
+from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
+from selfconf.rdf.turtle import Triple
+from selfconf.rdf.vocabulary import TYPE
+
+if TYPE_CHECKING:
+    import rdflib
+
+Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
+ANOTHER = IRI("urn:selfconf:another-value")
+"""A value that no component has: what it lets pass, any value lets pass."""
+_NOTHING: Mapping[IRI, frozenset[Term]] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class EligibleComponent:
+    """A component that is eligible for a role, and for each free parameter it constrains, the values it allows."""
+
+    profile: Profile
+    allows: Mapping[IRI, frozenset[Term]]
+    forbids: Mapping[IRI, frozenset[Term]]
+    """For each free parameter that may be anything else, the values that it may not be."""
+
+
+@dataclass(frozen=True, slots=True)
+class TestOutcome:
+    """What the tests of a role say of a profile: everything that keeps it out, or the values it allows."""
+
+    obstacles: tuple[Obstacle, ...]
+    allows: Mapping[IRI, frozenset[Term]]
+
+
+Tested = tuple[TypeSet, Sequence[Advertisement], TestOutcome]
+"""Some components that are alike, with their kind and what the tests of a role say of them."""
+
+
+class Partitioner:
+    """Partitions ecologies for one task; compile once, use for each new set of advertisements."""
+
+    def __init__(self, given: TaskDocument, hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
+        self.task, self.document, self.hierarchy = given.task, given.document, hierarchy
+        self.free = free_parameters(given.task.template, given.task.bindings)
+        self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
+        self.roles = tuple(
+            compile_role(given.document, role.iri, tuple(s.type for s in role.settings), given.task.bindings, self.free)
+            for role in given.task.template.roles
+        )
+        self._above = ClassClosure(hierarchy)
+        self.suitable = free_values.Suitable(self._parameters, given.document)
+
+    def under(self, hierarchy: Hierarchy) -> Partitioner:
+        """The same task for roles that see another hierarchy."""
+        other = copy(self)
+        other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
+        return other
+
+    def partition(self, advertisements: Advertisements) -> Partition:
+        """F1 ... Fn and the variables that the free parameters are. Raises TemplateError for a shape that is none."""
+        eligible = self.eligible(AdvertisementIndex.of(advertisements))
+        variables = tuple(self._variables(eligible))
+        bits = [{value: 1 << number for number, value in enumerate(variable.domain)} for variable in variables]
+
+        masks: dict[tuple[int, ...], tuple[int, ...]] = {}
+
+        def admits(found: EligibleComponent) -> tuple[int, ...]:
+            allowed = tuple([_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True)])
+            return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity who is alike
+
+        return Partition(
+            tuple(ordered([Candidate(found.profile, admits(found)) for found in role]) for role in eligible), variables
+        )
+
+    def akin(self, role: CompiledRole, ecology: AdvertisementIndex) -> Iterator[TypeSet]:
+        """The kinds that are of the classes that a role asks for."""
+        classes = {test.kind for test in role.classes}
+        return (kind for kind in ecology.type_sets if classes <= self._above[kind])
+
+    def tested(self, role: CompiledRole, ecology: AdvertisementIndex, type_sets: Iterable[TypeSet]) -> Iterator[Tested]:
+        """What the tests of a role say of the components of some kinds; of those that are alike they say the same."""
+        signature = Signature(role.tests, self.hierarchy)
+        for kind in type_sets:
+            for alike in ecology.alike(kind, signature):
+                profile = alike[0].profile
+                obstacles = tuple(role.obstacles(profile, self.hierarchy))
+                yield kind, alike, TestOutcome(obstacles, {} if obstacles else role.allows(profile, self.hierarchy))
+
+    def eligible(self, ecology: AdvertisementIndex) -> list[list[EligibleComponent]]:
+        """For each role the components that conform to it, unordered. Raises TemplateError."""
+        everything = [] if all(role.complete for role in self.roles) else list(ecology.values())
+        found: list[list[EligibleComponent]] = []
+        by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
+        for number, role in enumerate(self.roles):
+            tested = self.tested(role, ecology, self.akin(role, ecology))
+            passed = [(alike, verdict.allows) for _, alike, verdict in tested if not verdict.obstacles]
+            if role.complete:
+                found.append(
+                    [EligibleComponent(a.profile, allows, _NOTHING) for alike, allows in passed for a in alike]
+                )
+                continue
+            survivors = [a for alike, _ in passed for a in alike]
+            if parameter := self.mentioned(role):
+                by_value[number] = parameter, survivors
+                found.append([])
+            else:
+                outside = self.violations(role, survivors, everything, {})
+                found.append(
+                    [EligibleComponent(a.profile, {}, _NOTHING) for a in survivors if a.component not in outside]
+                )
+        if not self.free:
+            return found
+        stated: dict[IRI, set[Term]] = {parameter: set() for parameter in self.free}
+        for one in (one for some in found for one in some):
+            for parameter, values in one.allows.items():
+                stated[parameter] |= values
+        for number, (parameter, survivors) in by_value.items():
+            shown = self.visible(survivors if self.roles[number].local else everything)
+            stated[parameter] |= free_values.seen(self.document, self.roles[number].iri, shown)
+            stated[parameter] |= free_values.enumerated(self.document, parameter)
+        suitable = {parameter: self.suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
+        for number, (parameter, survivors) in by_value.items():
+            found[number] = list(
+                self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, everything)
+            )
+        return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
+
+    def mentioned(self, role: CompiledRole) -> IRI | None:
+        """The free parameter that the shape of a role mentions, if it does."""
+        parameters = mentions(self.document, role.iri, self.free)
+        if len(parameters) > 1:
+            names = " and ".join(sorted(self._parameters[parameter].name for parameter in parameters))
+            raise TemplateError(
+                f"the role {role.iri!r} mentions the free parameters {names} in one shape that is judged by pySHACL; "
+                "bind all but one of them",
+                file=self.document.source,
+            )
+        return next(iter(parameters), None)
+
+    def _judged_by_value(
+        self,
+        role: CompiledRole,
+        parameter: IRI,
+        values: frozenset[Term],
+        survivors: Sequence[Advertisement],
+        everything: Sequence[Advertisement],
+    ) -> Iterator[EligibleComponent]:
+        """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
+        allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
+        subjects = self.subjects(role, survivors, everything)
+        others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
+        for value in (*sorted(values, key=sort_key), *others):
+            outside = self.violations(role, survivors, everything, {parameter: value}, subjects)
+            for component in allowed.keys() - outside.keys():
+                allowed[component].add(value)
+        for advertisement in survivors:
+            found = frozenset(allowed[advertisement.component])
+            if ANOTHER not in found:
+                yield EligibleComponent(advertisement.profile, {parameter: found}, _NOTHING)
+            else:
+                yield EligibleComponent(advertisement.profile, {}, {parameter: values - found})
+
+    def violations(
+        self,
+        role: CompiledRole,
+        focus: Sequence[Advertisement],
+        everything: Sequence[Advertisement],
+        values: Mapping[IRI, Term],
+        subjects: rdflib.Graph | None = None,
+    ) -> dict[IRI, list[ShapeViolated]]:
+        """What pySHACL finds wrong with some components, parameters replaced by their values."""
+        if not focus:
+            return {}
+        # Most roles are compiled in full, and then neither rdflib nor pySHACL is loaded.
+        from selfconf.rdf.conformance import violations
+        from selfconf.rdf.rdflib_terms import to_rdflib
+
+        shapes = to_rdflib(bound_shape(self.document, {**self.task.bindings, **values}))
+        seen = self.subjects(role, focus, everything) if subjects is None else subjects
+        return violations(seen, shapes, role.iri, [a.component for a in focus], self.document.source)
+
+    def subjects(
+        self, role: CompiledRole, focus: Sequence[Advertisement], everything: Sequence[Advertisement]
+    ) -> rdflib.Graph:
+        """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
+        from selfconf.rdf.rdflib_terms import to_rdflib
+
+        return to_rdflib(self.visible(focus if role.local else everything))
+
+    def visible(self, advertisements: Sequence[Advertisement]) -> Iterator[Triple]:
+        """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.
+
+        Each speaks for its own component: what it says about another is not seen.
+        """
+        components = {advertisement.component for advertisement in advertisements}
+        for advertisement in advertisements:
+            for subject, predicate, value in advertisement.triples:
+                if subject != advertisement.component and subject in components:
+                    continue
+                yield subject, predicate, value
+                for above in self.hierarchy.superproperties(predicate):
+                    yield subject, above, value
+                if predicate == TYPE and isinstance(value, IRI):
+                    for kind in self.hierarchy.superclasses(value):
+                        yield subject, TYPE, kind
+
+    def _variables(self, eligible: list[list[EligibleComponent]]) -> Iterator[Variable]:
+        for parameter in sorted(self.free):
+            listed = self.suitable.of(parameter, frozenset(free_values.enumerated(self.document, parameter)))
+            domain = listed.union(*(e.allows.get(parameter, ()) for role in eligible for e in role))
+            if domain:
+                yield Variable(parameter, tuple(sorted(domain, key=sort_key)), bool(listed))
+
+
+def _suited(suitable: Mapping[IRI, frozenset[Term]], eligible: EligibleComponent) -> EligibleComponent:
+    """With only the values that parameters may have."""
+    if all(values <= suitable[parameter] for parameter, values in eligible.allows.items()):
+        return eligible
+    allows = {parameter: values & suitable[parameter] for parameter, values in eligible.allows.items()}
+    return EligibleComponent(eligible.profile, allows, eligible.forbids)
+
+
+def _mask(eligible: EligibleComponent, parameter: IRI, bits: Mapping[Term, int]) -> int:
+    allowed = eligible.allows.get(parameter)
+    if allowed is None:
+        return ANY_VALUE & ~sum(bits.get(value, 0) for value in eligible.forbids.get(parameter, ()))
+    return sum(bits[value] for value in allowed)

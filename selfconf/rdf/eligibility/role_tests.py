@@ -1,0 +1,181 @@
+"""The tests that a role makes of a profile, compiled from its shape: a component that passes them all is eligible.
+
+Each test returns the obstacle by which it keeps a component out (`selfconf.model.obstacle`), or None.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.obstacle import (
+    Ambiguous,
+    ConstraintFailed,
+    Excluded,
+    Fault,
+    Missing,
+    NoAlternative,
+    NotAmong,
+    Obstacle,
+    ParameterUndeclared,
+    PropertyUnmet,
+    WrongComponent,
+    WrongCount,
+    WrongType,
+)
+from selfconf.model.profile import Profile
+from selfconf.model.term import IRI, Term
+from selfconf.rdf.shacl import ValueTest
+
+
+@dataclass(frozen=True, slots=True)
+class ClassTest:
+    """The component's type is at or below a class."""
+
+    kind: IRI
+
+    def admits(self, types: Iterable[IRI], hierarchy: Hierarchy) -> bool:
+        """Whether one of some types serves."""
+        return any(hierarchy.matches(offered, self.kind) for offered in types)
+
+    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
+        return None if self.admits(profile.types, hierarchy) else WrongType(self.kind)
+
+
+@dataclass(frozen=True, slots=True)
+class SelfTest:
+    """The component is one of some components."""
+
+    members: frozenset[Term]
+
+    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
+        return None if profile.component in self.members else WrongComponent(self.members)
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyTest:
+    """The values of one property: how many, which ones are allowed, which ones must be there, what each is like."""
+
+    path: IRI
+    minimum: int = 0
+    maximum: int | None = None
+    allowed: tuple[frozenset[Term], ...] = ()
+    required: tuple[Term, ...] = ()
+    free_in: tuple[tuple[IRI, frozenset[Term]], ...] = ()
+    """For each `sh:in` that mentions a free parameter: the parameter, and the other members of the list."""
+    free_required: tuple[IRI, ...] = ()
+    """The free parameters that stand in `sh:hasValue`."""
+    each: tuple[ValueTest, ...] = ()
+
+    def values(self, profile: Profile, hierarchy: Hierarchy) -> set[Term]:
+        """The values of the path: those of the property itself and of every property below it."""
+        return {value for key, value in profile.properties if self.path in hierarchy.superproperties(key)}
+
+    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
+        faults = tuple(self._faults(frozenset(self.values(profile, hierarchy))))
+        return PropertyUnmet(self.path, faults) if faults else None
+
+    def _faults(self, values: frozenset[Term]) -> Iterator[Fault]:
+        """All that is wrong with some values: one property is one obstacle, with all that it takes to mend it."""
+        if not values and (self.minimum or self.required or self.free_required):
+            yield Missing()
+            return
+        if len(values) < self.minimum:
+            yield WrongCount(len(values), too_many=False)
+        if self.maximum is not None and len(values) > self.maximum:
+            yield WrongCount(len(values), too_many=True)
+        for members in self.allowed:
+            if not values <= members:
+                yield NotAmong(values - members, members)
+        for value in self.required:
+            if value not in values:
+                yield NotAmong(values, frozenset((value,)))
+        for test in self.each:
+            wrong = frozenset([value for value in values if not test.passes(value)])
+            if wrong:
+                yield ConstraintFailed(wrong, test.constraint, test.wanted)
+        for parameter, members in self.free_in:
+            if len(values - members) > 1:
+                yield Ambiguous(parameter)
+
+    def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
+        """For each free parameter that this component constrains, the values it allows."""
+        found: dict[IRI, frozenset[Term]] = {}
+        values = frozenset(self.values(profile, hierarchy))
+        for parameter, members in self.free_in:
+            rest = values - members
+            if rest:
+                found[parameter] = found.get(parameter, rest) & rest
+        for parameter in self.free_required:
+            found[parameter] = found.get(parameter, values) & values
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterTest:
+    """The component declares an operational parameter of the type that the role sets."""
+
+    type: IRI
+
+    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
+        if any(hierarchy.matches(self.type, declared.type) for declared in profile.parameters):
+            return None
+        return ParameterUndeclared(self.type)
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """Of several groups of tests, at least and at most so many are passed: `sh:or`, `sh:xone`, `sh:not`, `sh:and`."""
+
+    groups: tuple[tuple[RoleTest, ...], ...]
+    minimum: int
+    maximum: int | None = None
+
+    def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
+        found = [
+            next((reason for test in group if (reason := test.obstacle(profile, hierarchy)) is not None), None)
+            for group in self.groups
+        ]
+        lacking = tuple(obstacle for obstacle in found if obstacle is not None)
+        passed = len(found) - len(lacking)
+        if passed < self.minimum:
+            return NoAlternative(lacking)
+        if self.maximum is not None and passed > self.maximum:
+            return Excluded(several=self.maximum > 0)
+        return None
+
+
+RoleTest = ClassTest | SelfTest | PropertyTest | ParameterTest | Count
+
+
+@dataclass(frozen=True, slots=True)
+class CompiledRole:
+    """The tests of a role, and whether they say all that its shape says."""
+
+    iri: IRI
+    tests: tuple[RoleTest, ...]
+    complete: bool
+    local: bool = True
+    """Whether the shape looks at nothing but the component's own statements."""
+
+    @property
+    def classes(self) -> tuple[ClassTest, ...]:
+        """The tests of which the types alone decide."""
+        return tuple(test for test in self.tests if isinstance(test, ClassTest))
+
+    def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[Obstacle]:
+        """Everything that keeps a component out, in the order of the shape."""
+        for test in self.tests:
+            reason = test.obstacle(profile, hierarchy)
+            if reason is not None:
+                yield reason
+
+    def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
+        """For each free parameter that the component constrains, the values it allows (perhaps none)."""
+        found: dict[IRI, frozenset[Term]] = {}
+        for test in self.tests:
+            if isinstance(test, PropertyTest) and (test.free_in or test.free_required):
+                for parameter, values in test.allows(profile, hierarchy).items():
+                    found[parameter] = found.get(parameter, values) & values
+        return found

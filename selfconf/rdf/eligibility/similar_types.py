@@ -1,0 +1,76 @@
+"""Who would play a role if only its type were the one that is asked for: misspelt, or above or below it.
+
+A role that asks for :Clok finds nobody, and nothing is wrong with the components. So those whose type alone keeps them
+out are near misses too, if the type is written nearly like the one wanted, or related to it by the ontologies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from difflib import SequenceMatcher
+from functools import lru_cache
+
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.obstacle import TypeRelation, WrongType
+from selfconf.model.partition import NearMiss
+from selfconf.model.term import IRI
+from selfconf.rdf.eligibility.index import AdvertisementIndex
+from selfconf.rdf.eligibility.nearly_eligible import nearly
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.eligibility.role_tests import ClassTest, CompiledRole
+from selfconf.rdf.vocabulary import SC
+
+CLOSE = 0.8
+"""How alike two local names are (0 to 1) to be taken for one that is misspelt: one letter of five."""
+MOST_NAMED = 5
+"""How many are named for one role."""
+
+
+def near_misses_by_type(
+    role: CompiledRole, partitioner: Partitioner, ecology: AdvertisementIndex, known: Hierarchy
+) -> Iterator[NearMiss]:
+    """Those whom one class test alone keeps out, the misspelt ones first, then by what was meant and by component.
+
+    `known` is the hierarchy that the ontologies have, whatever the role sees.
+    """
+    found = {kind: _kinship(role.classes, kind, partitioner.hierarchy, known) for kind in ecology.type_sets}
+    likely = [(relation, types) for types, relation in found.items() if relation is not None]
+    type_sets = sorted(likely, key=lambda one: (one[0][0], str(one[0][1]), sorted(one[1])))
+    left = MOST_NAMED
+    for (_, obstacle), kind in type_sets:
+        near = nearly(partitioner, role, ecology, [kind])[:left]
+        yield from (replace(miss, obstacle=obstacle) for miss in near)
+        left -= len(near)
+        if not left:
+            return
+
+
+def _kinship(
+    classes: Iterable[ClassTest], types: frozenset[IRI], seen: Hierarchy, known: Hierarchy
+) -> tuple[int, WrongType] | None:
+    """How likely (0 most) and in what words the one test that these types fail was meant to pass them."""
+    failed = [test.kind for test in classes if not test.admits(types, seen)]
+    if len(failed) != 1:
+        return None
+    (wanted,) = failed
+    for offered in sorted(types - {SC.Component}):
+        if _alike(offered, wanted):
+            return 0, WrongType(wanted, offered, TypeRelation.SIMILAR)
+        if known.matches(offered, wanted):
+            return 1, WrongType(wanted, offered, TypeRelation.BELOW)
+        if known.matches(wanted, offered):
+            return 2, WrongType(wanted, offered, TypeRelation.ABOVE)
+    return None
+
+
+def _alike(offered: IRI, wanted: IRI) -> bool:
+    matcher = _matcher(wanted)
+    matcher.set_seq1(offered.short.lower())
+    return matcher.real_quick_ratio() >= CLOSE and matcher.quick_ratio() >= CLOSE and matcher.ratio() >= CLOSE
+
+
+@lru_cache(maxsize=64)
+def _matcher(wanted: IRI) -> SequenceMatcher[str]:
+    """What compares names with a wanted one: one name with many is quicker than many pairs."""
+    return SequenceMatcher(None, "", wanted.short.lower(), autojunk=False)

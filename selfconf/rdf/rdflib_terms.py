@@ -1,0 +1,41 @@
+"""The model's terms as rdflib's, and back: what pySHACL and owlrl work on. Loading rdflib takes some 40 ms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import rdflib
+
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.turtle import Triple
+
+
+def to_rdflib(triples: Iterable[Triple]) -> rdflib.Graph:
+    """The triples as an rdflib graph in memory, which is what pySHACL and owlrl are fastest on."""
+    graph = rdflib.Graph()
+    for subject, predicate, value in triples:
+        graph.add((rdflib_term(subject), rdflib.URIRef(predicate), rdflib_term(value)))
+    return graph
+
+
+def rdflib_term(value: Term) -> rdflib.URIRef | rdflib.BNode | rdflib.Literal:
+    """A value of the model as one of rdflib's terms."""
+    if isinstance(value, IRI):
+        return rdflib.URIRef(value)
+    if isinstance(value, Literal):
+        if value.language:
+            return rdflib.Literal(value.lexical, lang=value.language, normalize=False)
+        return rdflib.Literal(value.lexical, datatype=rdflib.URIRef(value.datatype), normalize=False)
+    return rdflib.BNode(value[2:])
+
+
+def from_rdflib(node: rdflib.term.Node) -> Term:
+    """One of rdflib's terms as a value of the model."""
+    if isinstance(node, rdflib.URIRef):
+        return IRI(node)
+    if isinstance(node, rdflib.Literal):
+        datatype = IRI(node.datatype) if node.datatype else IRI("http://www.w3.org/2001/XMLSchema#string")
+        if node.language:
+            datatype = IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString")
+        return Literal(str(node), datatype, node.language)
+    return BlankNode(f"_:{node}")

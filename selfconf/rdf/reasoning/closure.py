@@ -1,0 +1,59 @@
+"""From ontologies to the hierarchy that a reasoning mode lets a role's shape see.
+
+`subclass` reads `rdfs:subClassOf`, `rdfs:subPropertyOf`, `owl:equivalentClass` and `owl:equivalentProperty` and
+closes them itself. `owl-rl` first lets owlrl infer what it can from the ontology alone: it never sees a property
+value of a component, because owlrl gives values that it takes for equal to subjects that never had them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
+from selfconf.model.term import IRI
+from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.vocabulary import OWL, RDFS
+
+HIERARCHY = (RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty)
+Entailment = Callable[[Iterable[Triple]], Iterable[Triple]]
+
+
+def owlrl_owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
+    """The hierarchy in the OWL 2 RL closure of an ontology by owlrl, without the literal subjects that it emits."""
+    # Loaded here, as the other modes need neither.
+    import rdflib
+    from owlrl import DeductiveClosure, OWLRL_Semantics
+
+    from selfconf.rdf.rdflib_terms import to_rdflib
+
+    graph = to_rdflib(triples)
+    DeductiveClosure(OWLRL_Semantics).expand(graph)
+    for predicate in HIERARCHY:
+        for subject, value in graph.subject_objects(rdflib.URIRef(predicate)):
+            if isinstance(subject, rdflib.URIRef) and isinstance(value, rdflib.URIRef):
+                yield IRI(subject), predicate, IRI(value)
+
+
+def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning, entail: Entailment = owlrl_owl_rl) -> Hierarchy:
+    """The hierarchy that the ontologies state (`subclass`) or entail (`owl-rl`); empty for `syntactic`."""
+    if reasoning is Reasoning.SYNTACTIC:
+        return NOTHING_ABOVE
+    triples: Iterable[Triple] = [triple for document in ontologies for triple in document.triples()]
+    if reasoning is Reasoning.OWL_RL:
+        triples = list(entail(triples))
+    return Hierarchy(
+        edges(triples, RDFS.subClassOf, OWL.equivalentClass),
+        edges(triples, RDFS.subPropertyOf, OWL.equivalentProperty),
+    )
+
+
+def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IRI, IRI]]:
+    """The pairs (lower, higher) between named terms; an equivalence is a pair in each direction."""
+    for subject, predicate, value in triples:
+        if predicate not in (below, same) or not isinstance(subject, IRI) or not isinstance(value, IRI):
+            continue
+        if value in (OWL.Thing, RDFS.Resource):
+            continue
+        yield subject, value
+        if predicate == same:
+            yield value, subject

@@ -1,0 +1,113 @@
+"""What may stand as the value of SHACL's own properties (SHACL, appendix C), as far as readers of templates must know.
+
+`wellformed` asks the shape of shapes, and a rehearsal, and knows the place of what is wrong. This is the same in one
+pass over the statements of a role, without a graph; a test over files that are wrong holds the two together.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+import pyoxigraph as ox
+
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.sparql import fault
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import FIRST, NIL, SH, XSD
+
+
+def _terms(*names: str) -> frozenset[IRI]:
+    return frozenset(SH[name] for name in names)
+
+
+COUNTS = _terms("minCount", "maxCount", "minLength", "maxLength", "qualifiedMinCount", "qualifiedMaxCount")
+SWITCHES = _terms("closed", "deactivated", "uniqueLang", "qualifiedValueShapesDisjoint")
+LISTS = _terms("in", "languageIn", "and", "or", "xone", "ignoredProperties")
+NAMES = _terms("class", "datatype", "equals", "disjoint", "lessThan", "lessThanOrEquals")
+LIMITS = _terms("minInclusive", "maxInclusive", "minExclusive", "maxExclusive")
+LITERAL = COUNTS | SWITCHES | LIMITS | _terms("pattern", "flags")
+"""What has a literal as its value."""
+NODES = _terms("node", "not", "property", "qualifiedValueShape", "sparql")
+NODE_KINDS = _terms("IRI", "BlankNode", "Literal", "BlankNodeOrIRI", "BlankNodeOrLiteral", "IRIOrLiteral")
+ONLY_WITH_A_PATH = _terms("minCount", "maxCount", "uniqueLang", "lessThan", "lessThanOrEquals", "qualifiedValueShape")
+
+
+ILL_FORMED = "This is not a well-formed shape."
+"""What is said of a shape where no more can be told."""
+WANTED: dict[IRI, str] = {
+    **dict.fromkeys(COUNTS, "a whole number"),
+    **dict.fromkeys(SWITCHES, "true or false"),
+    **dict.fromkeys(LISTS, "a list in parentheses"),
+    **dict.fromkeys(NAMES, "an IRI"),
+    **dict.fromkeys(LIMITS, "a literal"),
+    **dict.fromkeys(NODES, "a shape, not a literal"),
+    SH.nodeKind: f"one of {', '.join(sorted(f'sh:{kind.short}' for kind in NODE_KINDS))}",
+    SH.property: "a property shape, which has one sh:path",
+    SH.pattern: "a regular expression",
+    SH.path: "a property or a path of properties",
+    SH.sparql: "a constraint with a SPARQL query that asks nobody else",
+}
+"""What the value of each property has to be, in words."""
+
+
+def unfit(predicate: IRI) -> str:
+    """A sentence about a value that cannot stand where it does."""
+    wanted = WANTED.get(predicate)
+    return f"The value of sh:{predicate.short} has to be {wanted}." if wanted else ILL_FORMED
+
+
+def misfit(document: Document, statements: Iterable[tuple[IRI, Term]], variables: frozenset[Term]) -> str | None:
+    """A sentence about the first value that cannot stand where it does; `variables` may stand anywhere."""
+    for predicate, value in statements:
+        if predicate in WANTED and value not in variables and not _fits(document, predicate, value):
+            return unfit(predicate).rstrip(".")
+    return None
+
+
+def _fits(document: Document, predicate: IRI, value: Term) -> bool:
+    """Whether a value may be that of one of SHACL's properties."""
+    literal = value if isinstance(value, Literal) else None
+    if predicate in COUNTS:
+        return literal is not None and literal.datatype == XSD.integer and literal.lexical.isdecimal()
+    if predicate in SWITCHES:
+        return literal is not None and literal.datatype == XSD.boolean
+    if predicate in LISTS:
+        return value == NIL or document.value(value, FIRST) is not None
+    if predicate in NAMES:
+        return isinstance(value, IRI)
+    if predicate in LIMITS:
+        return literal is not None
+    if predicate == SH.nodeKind:
+        return value in NODE_KINDS
+    if predicate == SH.property:
+        return len(document.values(value, SH.path)) == 1
+    if predicate == SH.pattern:
+        return literal is not None and _compiles(literal.lexical)
+    return literal is None and (predicate != SH.sparql or _asks(document, value))
+
+
+def _compiles(pattern: str) -> bool:
+    try:
+        re.compile(pattern)
+    except re.error:
+        return False
+    return True
+
+
+def _asks(document: Document, constraint: Term) -> bool:
+    """Whether the queries of a constraint are SPARQL that asks nobody else (SHACL, 5.3.1)."""
+    declared = {
+        str(document.value(each, SH.prefix)): str(document.value(each, SH.namespace))
+        for owner in document.values(constraint, SH.prefixes)
+        for each in document.values(owner, SH.declare)
+    }
+    queries = [*document.values(constraint, SH.select), *document.values(constraint, SH.ask)]
+    try:
+        for query in queries:
+            if fault(str(query)) is not None:
+                return False
+            ox.Store().query(str(query), prefixes=declared)
+    except SyntaxError:
+        return False
+    return True

@@ -1,0 +1,138 @@
+"""What SHACL asks of one value: its kind, datatype, range, length and pattern (SHACL 4.1.2, 4.1.3, 4.3, 4.4).
+
+Whether a literal is well-formed, and which of two is the greater, is decided by rdflib (`selfconf.rdf.literals`), as
+it is in pySHACL: two opinions on what `"07"^^xsd:integer` is would be one too many. Verdicts are remembered, as values recur.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from types import ModuleType
+
+from selfconf.errors import TemplateError
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.rdf.deadline import TimeUp, deadline
+from selfconf.rdf.vocabulary import RDFS, SH, XSD
+
+PATTERN_SECONDS = 5.0
+"""How long a pattern may be matched against one value."""
+_KINDS: Mapping[IRI, tuple[type, ...]] = {
+    SH.IRI: (IRI,),
+    SH.BlankNode: (BlankNode,),
+    SH.Literal: (Literal,),
+    SH.BlankNodeOrIRI: (BlankNode, IRI),
+    SH.BlankNodeOrLiteral: (BlankNode, Literal),
+    SH.IRIOrLiteral: (IRI, Literal),
+}
+_LIMITS: Mapping[IRI, Callable[[int], bool]] = {
+    SH.minInclusive: lambda order: order >= 0,
+    SH.minExclusive: lambda order: order > 0,
+    SH.maxInclusive: lambda order: order <= 0,
+    SH.maxExclusive: lambda order: order < 0,
+}
+_LENGTHS = frozenset((SH.minLength, SH.maxLength))
+_SOLE = frozenset((SH.nodeKind, SH.datatype, SH.minLength, SH.maxLength))
+"""Constraints of which a shape may state only one."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValueTest:
+    """One constraint on each value: the SHACL parameter, its value, and for patterns the flags."""
+
+    constraint: IRI
+    wanted: Term
+    flags: str = ""
+
+    def passes(self, value: Term) -> bool:
+        """Whether a value is as wanted."""
+        return _passes(self, value)
+
+
+def compiled(constraints: Mapping[IRI, list[Term]]) -> tuple[list[ValueTest], set[IRI]]:
+    """The tests for those constraints that are compiled, and the constraints that they cover."""
+    tests: list[ValueTest] = []
+    covered: set[IRI] = set()
+    for constraint, wanted in constraints.items():
+        flags = constraints.get(SH.flags, []) if constraint == SH.pattern else []
+        if len(flags) > 1 or (constraint in _SOLE and len(wanted) > 1):
+            continue
+        found = [ValueTest(constraint, value, str(flags[0]) if flags else "") for value in wanted]
+        if all(map(_compiles, found)):
+            tests += found
+            covered |= {constraint, SH.flags} if constraint == SH.pattern else {constraint}
+    return tests, covered
+
+
+def _compiles(test: ValueTest) -> bool:
+    """Whether the constraint is one of those here and its value is one that it can have."""
+    wanted = test.wanted
+    if test.constraint == SH.nodeKind:
+        return wanted in _KINDS
+    if test.constraint == SH.datatype:
+        return isinstance(wanted, IRI) and wanted not in (RDFS.Literal, RDFS.Datatype)
+    if not isinstance(wanted, Literal):
+        return False
+    if test.constraint in _LENGTHS:
+        return wanted.datatype == XSD.integer and wanted.lexical.isdecimal()
+    if test.constraint in _LIMITS:
+        return bool(_literals().has_value(wanted))
+    if test.constraint != SH.pattern or wanted.datatype != XSD.string:
+        return False
+    try:
+        _expression(wanted.lexical, test.flags)
+    except re.error:
+        return False
+    return True
+
+
+@lru_cache(maxsize=1024)
+def _expression(pattern: str, flags: str) -> re.Pattern[str]:
+    """A pattern as pySHACL reads it: of the flags, `i` and `m`."""
+    options = (re.IGNORECASE if "i" in flags.lower() else 0) | (re.MULTILINE if "m" in flags.lower() else 0)
+    return re.compile(pattern, options)
+
+
+@lru_cache(maxsize=1 << 16)
+def _passes(test: ValueTest, value: Term) -> bool:
+    wanted = test.wanted
+    if test.constraint == SH.nodeKind:
+        assert isinstance(wanted, IRI)
+        return isinstance(value, _KINDS[wanted])
+    if test.constraint == SH.datatype:
+        if not isinstance(value, Literal) or value.datatype != wanted:
+            return False
+        return bool(wanted == STRING or _literals().well_typed(value))  # every lexical form is a string
+    if test.constraint in _LIMITS:
+        order = _literals().order(value, wanted)
+        return order is not None and _LIMITS[test.constraint](order)
+    if test.constraint in _LENGTHS:
+        least = test.constraint == SH.minLength
+        number = int(str(wanted))
+        if least and number == 0:
+            return True
+        return not isinstance(value, BlankNode) and (len(str(value)) >= number if least else len(str(value)) <= number)
+    return not isinstance(value, BlankNode) and _matches(_expression(str(wanted), test.flags), str(value))
+
+
+def _matches(expression: re.Pattern[str], value: str) -> bool:
+    """Whether a pattern is found in a value. Raises TemplateError where that would take for ever."""
+    if len(value) < 16:  # too short for the worst of patterns to take long
+        return expression.search(value) is not None
+    try:
+        with deadline(PATTERN_SECONDS):
+            return expression.search(value) is not None
+    except TimeUp:
+        raise TemplateError(
+            f"matching the sh:pattern {expression.pattern!r} takes more than {PATTERN_SECONDS:g} s; "
+            "it probably repeats what is repeated already, as ^(a+)+$ does"
+        ) from None
+
+
+def _literals() -> ModuleType:
+    """rdflib's and pySHACL's view of literals, loaded when a value first needs it: most tasks ask for none."""
+    from selfconf.rdf import literals
+
+    return literals

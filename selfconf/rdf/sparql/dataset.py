@@ -1,0 +1,65 @@
+"""The discovered ecology as an RDF dataset, one named graph per advertisement, for SPARQL.
+
+The name of an advertisement's graph is the component's IRI; the default graph is the union of all. Queries run on
+Oxigraph. They read the dataset and nothing else: SERVICE is refused, and FROM only chooses among the graphs there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import pyoxigraph as ox
+
+from selfconf.errors import QueryError
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.sparql.mistakes import mistake
+from selfconf.rdf.sparql.read_only import only_reads, says
+from selfconf.rdf.turtle import Triple, ox_term
+from selfconf.rdf.vocabulary import PROV, RDF, RDFS, ROB, SC, SH, XSD
+
+QUERY_PREFIXES = {
+    "sc": SC.base,
+    "rob": ROB.base,
+    "home": "https://w3id.org/selfconf/peis-home#",
+    "sh": SH.base,
+    "rdf": RDF.base,
+    "rdfs": RDFS.base,
+    "xsd": XSD.base,
+    "prov": PROV.base,
+}
+QueryAnswer = ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples
+
+
+class Dataset:
+    """Named graphs, and questions to them."""
+
+    def __init__(self) -> None:
+        self._store = ox.Store()
+
+    def add_advertisements(self, found: Iterable[Advertisement]) -> None:
+        """Add each advertisement as the graph that its component names."""
+        for advertisement in found:
+            self.add(advertisement.profile.component, advertisement.triples)
+
+    def add(self, name: IRI, triples: Iterable[Triple]) -> None:
+        """Add triples to a named graph."""
+        graph = ox.NamedNode(name)
+        self._store.extend(ox.Quad(ox_term(s), ox.NamedNode(p), ox_term(o), graph) for s, p, o in triples)
+
+    def dump(self) -> bytes:
+        """Everything in it, as N-Quads."""
+        return self._store.dump(format=ox.RdfFormat.N_QUADS) or b""
+
+    def load(self, quads: bytes) -> None:
+        """Add what another dataset has dumped."""
+        self._store.bulk_load(quads, format=ox.RdfFormat.N_QUADS)
+
+    def query(self, text: str, prefixes: Mapping[str, str] | None = None) -> QueryAnswer:
+        """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it."""
+        only_reads(text)
+        lent = {**QUERY_PREFIXES, **(prefixes or {})}
+        try:
+            return self._store.query(text, prefixes=lent, use_default_graph_as_union=not says(text, "FROM"))
+        except (SyntaxError, ValueError, OSError) as error:
+            raise QueryError(f"not a SPARQL query: {mistake(text, str(error), lent)}") from None

@@ -1,0 +1,47 @@
+"""What is wrong with a SPARQL query, in a few words: the parser names every token that it expected, not the cause."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container
+
+from selfconf.rdf.sparql.read_only import without
+
+BEGINNINGS = ("PREFIX", "BASE", "SELECT", "ASK", "CONSTRUCT", "DESCRIBE")
+_PROLOGUE = re.compile(r"\A(?:\s*(?:prefix\s+[^\s:]*\s*:|base)\s*<[^<>\s]*>)*\s*", re.IGNORECASE)
+_DECLARED = re.compile(r"\bprefix\s+([^\s:]*)\s*:", re.IGNORECASE)
+_PREFIX = re.compile(r"(?<![\w?$@:.-])((?:[^\W\d_][\w.-]*)?):(?!//)")
+_COMPLAINT = re.compile(r"error at (\d+):(\d+): expected (?:one of )?(.*)", re.DOTALL)
+_SENTENCE = re.compile(r"(?:^|, )([A-Z][A-Za-z]*(?: [A-Za-z*]+){2,})(?=,|$)")
+LONGEST_EXCERPT = 30
+"""Characters of the query that are shown."""
+
+
+def mistake(text: str, complaint: str, known: Container[str]) -> str:
+    """What is wrong with a query that Oxigraph complains of; `known` are the prefixes it need not declare."""
+    code = _PROLOGUE.sub("", without(text, "#"), count=1)
+    if not code:
+        return "it is empty"
+    if re.split(r"[^\w:]", code, maxsplit=1)[0].upper() not in BEGINNINGS:
+        return f"it begins with {_short(code)}; a query only asks, by SELECT, ASK, CONSTRUCT or DESCRIBE"
+    bare = without(text, "#", '"', "'", "<")
+    declared = set(_DECLARED.findall(bare))
+    for prefix in _PREFIX.findall(bare):
+        if prefix not in declared and prefix not in known:
+            return f"the prefix {prefix}: is not declared; begin with PREFIX {prefix}: <...>"
+    found = _COMPLAINT.fullmatch(complaint)
+    if found is None:
+        return " ".join(complaint.split())
+    line, column = int(found[1]), int(found[2])
+    place = f"at {line}:{column}"
+    sentence = _SENTENCE.search(found[3])
+    if sentence is not None:
+        return f"{place}: {sentence[1]}"
+    rest = "\n".join(text.split("\n")[line - 1 :])[column - 1 :]
+    return f"{place} something is wrong before {_short(rest)}" if rest.strip() else f"{place} it ends too soon"
+
+
+def _short(text: str) -> str:
+    """The first word of a text, in quotes."""
+    word = (text.split(maxsplit=1) or [""])[0]
+    return f"'{word if len(word) <= LONGEST_EXCERPT else word[:LONGEST_EXCERPT] + '...'}'"

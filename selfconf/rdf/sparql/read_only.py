@@ -1,0 +1,61 @@
+"""What a SPARQL query must not say, so that it reads the graph that is there and nothing else.
+
+rdflib, on which pySHACL evaluates the queries of shapes, fetches what SERVICE and FROM name, and writes keywords with
+escapes: `ser\\u0076ice` is SERVICE to it. Oxigraph cannot be interrupted, and takes hours for brackets nested deep.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import accumulate
+
+from selfconf.errors import QueryError
+
+LONGEST_QUERY = 20_000
+"""Characters of the query of a shape."""
+DEEPEST_QUERY = 100
+"""How deep its brackets may nest."""
+_STRINGS_IRIS_COMMENTS = re.compile(
+    r'"""(?:[^"\\]|\\.|"(?!""))*"""'
+    r"|'''(?:[^'\\]|\\.|'(?!''))*'''"
+    r'|"(?:[^"\\\n]|\\.)*"'
+    r"|'(?:[^'\\\n]|\\.)*'"
+    r"|<[^<>\"{}|^`\\\s]*>"
+    r"|\#[^\n]*"
+)
+
+
+def says(text: str, word: str) -> bool:
+    """Whether a query has a word as a keyword, not in a string, an IRI, a comment, a variable or a name."""
+    bare = without(text, "#", '"', "'", "<")
+    return re.search(rf"(?<![\w?$:@.-]){word}(?![\w:-])", bare, re.IGNORECASE) is not None
+
+
+def without(text: str, *marks: str) -> str:
+    """A query with a blank for each of its strings, IRIs or comments that begins with one of some marks."""
+    return _STRINGS_IRIS_COMMENTS.sub(lambda token: " " if token[0].startswith(marks) else token[0], text)
+
+
+def only_reads(text: str) -> None:
+    """Raises QueryError for a query of a user that asks others, however that is spelt."""
+    if says(text, "SERVICE") or says(_expanded(text), "SERVICE"):
+        raise QueryError("SERVICE is not allowed: a query reads the ecology and nothing else")
+
+
+def fault(text: str) -> str | None:
+    """Why the query of a shape is not evaluated, in a sentence; None if it may be."""
+    depth = max(accumulate((mark in "([{") - (mark in ")]}") for mark in text), default=0)
+    if len(text) > LONGEST_QUERY or depth > DEEPEST_QUERY:
+        return "This query is too long, or nests too deeply, to be judged."
+    expanded = _expanded(text)
+    for word in ("SERVICE", "FROM", "GRAPH", "LOAD"):
+        if says(text, word) or says(expanded, word):
+            return f"The query of a role reads the advertisements and nothing else: leave out {word}."
+    return None
+
+
+def _expanded(text: str) -> str:
+    """A query with its escapes `\\uXXXX` expanded, as rdflib does before it reads one."""
+    from rdflib.plugins.sparql.parser import expandUnicodeEscapes  # loads what most commands never need
+
+    return str(expandUnicodeEscapes(text))

@@ -1,0 +1,24 @@
+"""Templates and tasks: read from RDF, with values bound to their parameters.
+
+`TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one. `bind`, `complete` and
+`read_term` give parameters their values, `suitable` and `misfits` tell which values a parameter can and cannot have, and `free_parameters`
+which ones are left. `mentions`, `shape_statements` and `ROLE_STRUCTURE` are for readers of the roles' shapes.
+"""
+
+from selfconf.rdf.tasks.bindings import bind, complete, free_parameters, read_term
+from selfconf.rdf.tasks.parameter_values import misfits, suitable
+from selfconf.rdf.tasks.templates import ROLE_STRUCTURE, TaskDocument, mentions, read_task, shape_statements
+
+__all__ = [
+    "ROLE_STRUCTURE",
+    "TaskDocument",
+    "bind",
+    "complete",
+    "free_parameters",
+    "mentions",
+    "misfits",
+    "read_task",
+    "read_term",
+    "shape_statements",
+    "suitable",
+]

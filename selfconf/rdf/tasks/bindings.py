@@ -1,0 +1,140 @@
+"""Values for the parameters of a template: reading them from a command line, checking them, filling in defaults."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterable, Mapping
+from functools import partial
+
+import pyoxigraph as ox
+
+from selfconf.errors import BindingError
+from selfconf.model.template import Parameter, Task, Template
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf import turtle
+from selfconf.rdf.shacl import LITERAL
+from selfconf.rdf.tasks.parameter_values import misfits
+from selfconf.rdf.tasks.templates import TaskDocument, shape_statements
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import SH, XSD
+
+_CURIE = re.compile(r"([A-Za-z][\w.-]*)?:[^\s\"'<>()]*")
+_LOCAL = re.compile(r"[A-Za-z]\w*")
+_PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
+_NUMBER_OR_BOOLEAN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|true|false")
+
+
+def read_term(text: str, prefixes: Mapping[str, str]) -> Term:
+    """A CURIE in those prefixes, an `<IRI>` or a Turtle literal; plain words are a string. Raises BindingError."""
+    words = text.strip()
+    if _NUMBER_OR_BOOLEAN.fullmatch(words) or words[:1] in ("<", '"', "'"):
+        return _turtle_term(words, prefixes)
+    if _CURIE.fullmatch(words):
+        prefix = words.partition(":")[0]
+        if prefix in prefixes:
+            return _turtle_term(words, prefixes)
+        if prefix in ("http", "https", "urn", "file", "mailto", "tag"):
+            raise BindingError(f"{words} looks like an IRI; write it in angle brackets: '<{words}>'")
+        known = ", ".join(f"{name}:" for name in sorted(prefixes)) or "none"
+        raise BindingError(
+            f"the template declares no prefix {prefix}: (it has {known}); for a string write '\"{words}\"'"
+        )
+    return Literal(text)
+
+
+def _turtle_term(words: str, prefixes: Mapping[str, str]) -> Term:
+    head = "".join(f"@prefix {name}: <{iri}> .\n" for name, iri in prefixes.items())
+    try:
+        quads = list(ox.parse(f"{head}<urn:s> <urn:p> {words} .", format=ox.RdfFormat.TURTLE))
+    except SyntaxError:
+        quads = []
+    if len(quads) != 1:
+        raise BindingError(f"{words} is no Turtle term; write a CURIE, an <IRI>, a literal or plain words")
+    return turtle.term(quads[0].object)
+
+
+def bind(given: TaskDocument, assignments: Iterable[tuple[str, str]]) -> TaskDocument:
+    """The task with values for its parameters by name, as text; raises BindingError for what cannot be bound."""
+    task, document = given.task, given.document
+    by_name = {parameter.name: parameter for parameter in task.template.parameters}
+    bindings = dict(task.bindings)
+    for name, text in assignments:
+        parameter = by_name.get(name)
+        if parameter is None:
+            known = ", ".join(sorted(by_name)) or "none"
+            raise BindingError(f"the template has no parameter {name!r}; it has: {known}")
+        if parameter.iri in bindings:
+            raise BindingError(f"the parameter {name!r} is bound twice")
+        bindings[parameter.iri] = read_term(text, document.prefixes)
+    return TaskDocument(Task(task.template, bindings, task.iri), document)
+
+
+def complete(given: TaskDocument) -> TaskDocument:
+    """The task with defaults filled in and every value checked against its parameter. Raises BindingError."""
+    task, document = given.task, given.document
+    bindings = dict(task.bindings)
+    for parameter in task.template.parameters:
+        if parameter.iri not in bindings:
+            if parameter.default is not None:
+                bindings[parameter.iri] = parameter.default
+            elif parameter.is_set and not parameter.in_shape:
+                raise BindingError(
+                    f"the parameter {parameter.name!r} needs a value; give it with --bind {parameter.name}=..."
+                )
+            elif place := _rigid(given, parameter):
+                raise BindingError(
+                    f"the parameter {parameter.name!r} cannot be left free, for it stands in sh:{place.short}; "
+                    f"give it a value with --bind {parameter.name}=..."
+                )
+        if parameter.iri in bindings:
+            _check(parameter, bindings[parameter.iri], document)
+    return TaskDocument(Task(task.template, bindings, task.iri), document)
+
+
+def _rigid(given: TaskDocument, parameter: Parameter) -> IRI | None:
+    """The property of a shape in which a parameter stands and which asks for a literal, or a path: none is searched."""
+    for role in given.task.template.roles:
+        for predicate, value in shape_statements(given.document, role.iri):
+            if value == parameter.iri and (predicate in LITERAL or predicate in _PATHS):
+                return predicate
+    return None
+
+
+def _check(parameter: Parameter, value: Term, document: Document) -> None:
+    for problem in misfits(parameter, (value,), document).values():
+        name = partial(_curie, prefixes=document.prefixes)
+        said = value.turtle(name) if isinstance(value, Literal) else f"<{value}>"
+        hint = ""
+        if isinstance(value, Literal) and "IRI" in problem:
+            hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
+        elif (meant := _meant(parameter, value, document)) is not None:
+            hint = f"; write --bind {parameter.name}={shlex.quote(meant.turtle(name))}"
+        raise BindingError(f"{said} cannot stand for the parameter {parameter.name!r}: {_plain(problem)}{hint}")
+
+
+def _meant(parameter: Parameter, value: Term, document: Document) -> Literal | None:
+    """The literal of the datatype that a parameter asks for, if it would do instead of one of another."""
+    datatype = document.value(parameter.iri, SH.datatype)
+    if not isinstance(value, Literal) or not isinstance(datatype, IRI) or value.datatype in (datatype, XSD.double):
+        return None
+    whole = datatype == XSD.decimal and value.datatype == XSD.integer
+    meant = Literal(f"{value.lexical}.0" if whole else value.lexical, datatype)
+    return None if misfits(parameter, (meant,), document) else meant
+
+
+def _curie(iri: IRI, prefixes: Mapping[str, str]) -> str:
+    """An IRI as the command line takes it."""
+    for name, base in prefixes.items():
+        if iri.startswith(base) and _LOCAL.fullmatch(iri[len(base) :]):
+            return f"{name}:{iri[len(base) :]}"
+    return f"<{iri}>"
+
+
+def _plain(message: str) -> str:
+    return message[0].lower() + message[1:] if message else "it does not conform"
+
+
+def free_parameters(template: Template, bindings: Mapping[IRI, Term]) -> frozenset[IRI]:
+    """The parameters that are left unbound: the variables of the search."""
+    return frozenset(parameter.iri for parameter in template.parameters if parameter.iri not in bindings)

@@ -1,0 +1,181 @@
+"""Validation of many files at once: texts in, a report out.
+
+Two passes. The first reads every file by Oxigraph and learns which terms there are; a file in which
+nothing is suspicious has passed then. The second looks closely at the others: places by rdflib's parser,
+violations by pySHACL, malformed roles, lints. Each file is judged on its own triples. What the files of a
+run share is only the knowledge which terms exist, which can make a warning of a term or take it away, and
+which components are described twice. An ontology is known alike whether it is among the files, given as an
+ontology, or ships with selfconf.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from selfconf.errors import TurtleError
+from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
+from selfconf.rdf.validation.prefilter import Prefiltered, prefilter
+from selfconf.rdf.validation.syntax import hint, telling
+from selfconf.rdf.validation.term_index import TermIndex, index_of
+
+_NOTHING = "There is no component, template, task, configuration or ontology in this file: nothing to validate."
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+
+@dataclass(frozen=True, slots=True)
+class SourceText:
+    """A text with the name to blame it by, and the IRI against which its relative IRIs are resolved."""
+
+    name: str
+    octets: bytes
+    base: str = "file:///"
+
+    def text(self) -> str:
+        """The text without a byte order mark; raises UnicodeDecodeError if it is not UTF-8."""
+        return self.octets.removeprefix(_BYTE_ORDER_MARK).decode("utf-8")
+
+    def line(self, number: int) -> str:
+        """One line of the text, as far as it is UTF-8."""
+        lines = self.octets.removeprefix(_BYTE_ORDER_MARK).decode("utf-8", "replace").split("\n")
+        return lines[number - 1].rstrip("\r") if number <= len(lines) else ""
+
+
+@dataclass(frozen=True, slots=True)
+class UnclearedFile:
+    """A file that did not pass at first sight."""
+
+    source: SourceText
+    elsewhere: dict[str, str] = field(default_factory=dict)
+    """Components of it that another file, which is named, describes as well."""
+
+
+@dataclass(frozen=True)
+class FileChecker:
+    """The close look at one file, and all that its outcome depends on besides the file."""
+
+    shapes: tuple[SourceText, ...]
+    familiar: TermIndex
+
+    def __call__(self, suspect: UnclearedFile) -> list[Diagnostic]:
+        """The problems of a file."""
+        # rdflib and pySHACL take longer to load than thousands of good files take to pass.
+        from selfconf.rdf.validation import file_check as scrutiny
+
+        close = scrutiny.FileCheck(scrutiny.shapes_of(*(source.text() for source in self.shapes)), self.familiar)
+        return close.of(suspect.source.text(), suspect.source.name, suspect.source.base, suspect.elsewhere)
+
+    @cached_property
+    def knowledge(self) -> bytes:
+        """A digest of the shapes and of the terms that are known."""
+        known = (self.familiar.terms, self.familiar.object_properties, self.familiar.covered)
+        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.familiar.above)))
+        return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
+
+    def key(self, suspect: UnclearedFile) -> str:
+        """A digest of all that the outcome depends on; whoever remembers outcomes adds the versions of the programs."""
+        source = suspect.source
+        elsewhere = repr(sorted(suspect.elsewhere.items()))
+        said = (source.name, source.base, elsewhere)
+        return _digest(self.knowledge, source.octets, *(text.encode() for text in said)).hexdigest()
+
+
+CheckEach = Callable[[FileChecker, Sequence[UnclearedFile]], Iterable[list[Diagnostic]]]
+"""Calls a judge for each suspect, in whatever order, process or memory; `map` is one."""
+
+
+def validate(
+    sources: Iterable[SourceText], shapes: Iterable[SourceText], ontologies: Iterable[SourceText], each: CheckEach = map
+) -> Report:
+    """Every problem of every source; raises TurtleError if an ontology is not Turtle."""
+    files = list(sources)
+    diagnostics: list[Diagnostic] = []
+    seen: dict[str, Prefiltered] = {}
+    familiar = index_of(_loaded(source) for source in ontologies)
+    for source in files:
+        problems = list(_encoding(source))
+        if not problems:
+            screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
+            problems = list(_syntax(source, screened))
+            if not problems:
+                seen[source.name] = screened
+                familiar.learn(screened)
+        diagnostics += problems
+    elsewhere = described_twice(seen)
+    suspects = [
+        UnclearedFile(source, elsewhere.get(source.name, {}))
+        for source in files
+        if source.name in seen
+        and (source.name in elsewhere or not (seen[source.name].clear and familiar.clear(seen[source.name])))
+    ]
+    for problems in each(FileChecker(tuple(shapes), familiar), suspects):
+        diagnostics += problems
+    concerned = {found.file for found in diagnostics}
+    for name, screened in seen.items():
+        if not screened.relevant and name not in concerned:
+            diagnostics.append(Diagnostic(name, 1, 1, "SC-S04", _NOTHING, Severity.WARNING))
+    return report((source.name for source in files), diagnostics)
+
+
+def described_twice(seen: dict[str, Prefiltered]) -> dict[str, dict[str, str]]:
+    """For each file but the first that describes a component: the component, and the file that was first."""
+    first: dict[str, str] = {}
+    again: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in sorted(seen):
+        for component in seen[name].components:
+            if not component.startswith("_:") and first.setdefault(component, name) != name:
+                again[name][component] = first[component]
+    return dict(again)
+
+
+def _digest(*parts: bytes) -> hashlib.blake2s:
+    """Of some octets, each set off from the next by its length."""
+    found = hashlib.blake2s(digest_size=16)
+    for part in parts:
+        found.update(len(part).to_bytes(8, "big") + part)
+    return found
+
+
+def _loaded(source: SourceText) -> Prefiltered:
+    for fault in _encoding(source):
+        raise TurtleError(fault.message, file=source.name, line=fault.line, column=fault.column)
+    screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
+    if screened.problems:
+        problem = screened.problems[0]
+        raise TurtleError(problem.message, file=source.name, line=problem.line, column=problem.column)
+    return screened
+
+
+def _encoding(source: SourceText) -> Iterator[Diagnostic]:
+    try:
+        source.octets.decode("utf-8")
+    except UnicodeDecodeError as error:
+        before = source.octets[: error.start].decode("utf-8").removeprefix("\ufeff")
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        octet = source.octets[error.start]
+        message = f"This is not UTF-8: the byte 0x{octet:02X} cannot stand here."
+        advice = "Save the file in the encoding UTF-8."
+        yield Diagnostic(source.name, line, column, "SC-S02", message, hint=advice, source=source.line(line))
+        return
+    before, nul, _ = source.octets.decode("utf-8").removeprefix("\ufeff").partition("\0")
+    if nul:
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        yield Diagnostic(source.name, line, column, "SC-S01", "This is not Turtle: it holds a NUL, as binary files do.")
+
+
+def _syntax(source: SourceText, screened: Prefiltered) -> Iterator[Diagnostic]:
+    for problem in telling(screened.problems):
+        message = f"This is not Turtle: {problem.message.rstrip('.')}."
+        yield Diagnostic(
+            source.name,
+            problem.line,
+            problem.column,
+            "SC-S01",
+            message,
+            width=problem.width,
+            hint=hint(problem.message),
+            source=source.line(problem.line),
+        )

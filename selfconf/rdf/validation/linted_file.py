@@ -1,0 +1,64 @@
+"""What a lint looks at: one file, what is known besides, and how the file itself would write it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from decimal import Decimal
+from functools import cached_property
+
+from rdflib import RDF, Graph, Literal, URIRef
+from rdflib.term import Node
+
+from selfconf.rdf.positions import Positions
+from selfconf.rdf.validation.lints.normal_form import ShapeSource
+from selfconf.rdf.validation.term_index import TermIndex, namespace
+
+
+@dataclass(frozen=True)
+class LintedFile:
+    """One file with the places of its statements."""
+
+    graph: Graph
+    positions: Positions
+    familiar: TermIndex
+    elsewhere: Mapping[str, str]
+    """Components of this file that another file, which is named, describes as well."""
+    shapes: Graph = field(default_factory=Graph)
+    """What every advertisement and template keeps to."""
+
+    @cached_property
+    def source(self) -> ShapeSource:
+        """The shapes of the file, and beside them those that hold of every advertisement."""
+        return ShapeSource(self.graph, self.shapes)
+
+    def short(self, iri: str) -> str:
+        """An IRI as the file would write it."""
+        home = namespace(iri)
+        for prefix, known, _ in self.positions.prefixes:
+            if known == home:
+                return f"{prefix}:{iri[len(home) :]}"
+        return f"<{iri}>"
+
+    def offset(self, node: Node) -> int:
+        """Where a node is described."""
+        return self.positions.offset(node) or 0
+
+    def items(self, head: Node) -> Iterator[Node]:
+        """The members of a list, as far as it is one."""
+        seen: set[Node] = set()
+        cell: Node | None = head
+        while cell is not None and cell not in seen:
+            seen.add(cell)
+            yield from self.graph.objects(cell, RDF.first)
+            cell = self.graph.value(cell, RDF.rest)
+
+    def said(self, statement: tuple[Node, Node, Node]) -> str:
+        """Predicate and object of a statement, the object only if it has a short form."""
+        _, predicate, value = statement
+        word = self.short(str(predicate))
+        if isinstance(value, URIRef) and value != RDF.nil:
+            return f"{word} {self.short(str(value))}"
+        if isinstance(value, Literal) and isinstance(value.value, (bool, int, float, Decimal)):
+            return f"{word} {value}"
+        return f'{word} "{value}"' if isinstance(value, Literal) else word

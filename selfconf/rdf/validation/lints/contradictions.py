@@ -1,0 +1,262 @@
+"""Demands that cannot hold at once: two statements of a shape, or of several, of which no value can satisfy both.
+
+Only what is certain is found: whatever the advertisements say, and whatever a reasoning mode adds to them, no node
+conforms. That is a property test against pySHACL. The converse cannot be had for the asking, since to tell whether a
+shape of SHACL can be satisfied at all is undecidable (Pareti, Konstantinidis, Mogavero, Norman: *SHACL Satisfiability
+and Containment*, ISWC 2020).
+"""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Iterator
+from decimal import Decimal
+from itertools import islice
+from typing import NamedTuple
+
+from rdflib import RDF, SH, XSD, BNode, Literal, URIRef
+from rdflib.term import Node
+
+from selfconf.errors import TemplateError
+from selfconf.model.term import IRI
+from selfconf.rdf.rdflib_terms import from_rdflib
+from selfconf.rdf.shacl.value_tests import compiled
+from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
+
+_KINDS: dict[Node, frozenset[type]] = {
+    SH.IRI: frozenset((URIRef,)),
+    SH.BlankNode: frozenset((BNode,)),
+    SH.Literal: frozenset((Literal,)),
+    SH.BlankNodeOrIRI: frozenset((BNode, URIRef)),
+    SH.BlankNodeOrLiteral: frozenset((BNode, Literal)),
+    SH.IRIOrLiteral: frozenset((URIRef, Literal)),
+}
+_ANY = frozenset((URIRef, BNode, Literal))
+_LOWER, _UPPER = (SH.minInclusive, SH.minExclusive), (SH.maxInclusive, SH.maxExclusive)
+_KINDS_OF: dict[Node, frozenset[type]] = {
+    SH["class"]: _KINDS[SH.BlankNodeOrIRI],
+    SH.datatype: _KINDS[SH.Literal],
+    SH.languageIn: _KINDS[SH.Literal],
+    SH.pattern: _KINDS[SH.IRIOrLiteral],
+    **dict.fromkeys((*_LOWER, *_UPPER), _KINDS[SH.Literal]),
+}
+_OF_THE_TEXT = (SH.pattern, SH.minLength, SH.maxLength)
+_TEXTS = (None, XSD.string, RDF.langString)
+
+
+class ShapeContradiction(NamedTuple):
+    """Two statements that cannot both hold, the one that gives way first."""
+
+    one: ShapeStatement
+    other: ShapeStatement
+
+
+def contradictions(demands: NormalForm, choosing: bool = True) -> Iterator[ShapeContradiction]:
+    """What makes it impossible to satisfy the demands, at most once for the node itself and for each path."""
+    yield from islice(_own(demands), 1)
+    for path, values in list(demands.values.items()):
+        yield from islice(_values(demands, values), 1)
+        needed = values.needed()
+        if needed is not None and isinstance(path[0], URIRef) and len(path) == 1:
+            yield from (
+                ShapeContradiction(closed, needed[1])
+                for closed in demands.closed
+                if path[0] not in _allowed(demands, closed)
+            )
+    for refused in demands.nots:
+        if _asked(demands, refused[2]):
+            yield ShapeContradiction(refused, refused)
+            continue
+        basis = _entailed(demands, refused[2])
+        if basis is not None:
+            yield ShapeContradiction(refused, basis)
+    for choice in demands.choices if choosing else ():
+        ways = demands.source.items(choice[2])
+        if ways and all(_with(demands, way) for way in ways):
+            yield ShapeContradiction(choice, choice)
+
+
+def _with(demands: NormalForm, shape: Node) -> ShapeContradiction | None:
+    """Why the demands cannot be satisfied together with a further shape."""
+    return next(contradictions(demands.plus(shape), choosing=False), None)
+
+
+def _own(demands: NormalForm) -> Iterator[ShapeContradiction]:
+    """Of the node itself: every two statements about it, and the values that are left of its lists."""
+    own = demands.own
+    for number, one in enumerate(own):
+        yield from (ShapeContradiction(one, other) for other in own[:number] if _exclude(one, other))
+    for one in own:
+        if one[1] == SH["in"]:
+            culprits = [_culprit(demands, value, one) for value in demands.source.items(one[2])]
+            if all(culprits):
+                yield ShapeContradiction(one, next((culprit for culprit in culprits if culprit), one))
+        elif one[1] == SH.hasValue:
+            culprit = _culprit(demands, one[2], one)
+            if culprit is not None:
+                yield ShapeContradiction(one, culprit)
+        elif _kinds(one).isdisjoint((URIRef, BNode)):
+            yield from (ShapeContradiction(one, needed) for needed in _of_properties(demands))
+
+
+def _values(demands: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContradiction]:
+    """Of the values of a path: their number, those that have to be there, and what holds of each."""
+    needed = values.needed()
+    for most, statement in values.most:
+        if needed is not None and needed[0] > most:
+            yield ShapeContradiction(needed[1], statement)
+        required = [one for one in values.required if most < len({other[2] for other in values.required})]
+        yield from (ShapeContradiction(one, statement) for one in required)
+    for one in values.required:
+        culprit = _culprit(values.each, one[2], one)
+        if culprit is not None:
+            yield ShapeContradiction(one, culprit)
+    if needed is None:
+        return
+    for one in values.each.own:
+        if one[1] == SH["in"]:
+            left = [value for value in demands.source.items(one[2]) if _culprit(values.each, value, one) is None]
+            literals = [value for value in left if isinstance(value, Literal)]  # may be equal only to rdflib
+            if len(literals) + len({value for value in left if not isinstance(value, Literal)}) < needed[0]:
+                yield ShapeContradiction(one, needed[1])
+    yield from contradictions(values.each)
+
+
+def _culprit(demands: NormalForm, value: Node, besides: ShapeStatement) -> ShapeStatement | None:
+    """A statement that a value certainly does not satisfy."""
+    if isinstance(value, Literal) and (needed := _of_properties(demands)):
+        return needed[0]
+    return next((one for one in demands.own if one != besides and _fails(demands, one, value)), None)
+
+
+def _of_properties(demands: NormalForm) -> list[ShapeStatement]:
+    """What asks the node itself to have properties, which a literal has not."""
+    return [found[1] for values in demands.values.values() if (found := values.needed())]
+
+
+def _fails(demands: NormalForm, statement: ShapeStatement, value: Node) -> bool:
+    shape, predicate, wanted = statement
+    if predicate == SH["in"]:
+        return value not in demands.source.items(wanted)
+    if predicate == SH.hasValue:
+        return value != wanted
+    if not any(isinstance(value, kind) for kind in _kinds(statement)):
+        return True
+    if predicate in _OF_THE_TEXT and isinstance(value, Literal) and value.datatype not in _TEXTS:
+        return False  # rdflib may have written it in another way
+    flags = [from_rdflib(flag) for flag in demands.source.values(shape, SH.flags)]
+    tests, _ = compiled({IRI(str(predicate)): [from_rdflib(wanted)], **({IRI(str(SH.flags)): flags} if flags else {})})
+    try:
+        return not all(test.passes(from_rdflib(value)) for test in tests)
+    except TemplateError:
+        return False  # a pattern without an end; who asks in earnest will be told
+
+
+def _kinds(statement: ShapeStatement) -> frozenset[type]:
+    """What a value can be at all: an IRI, a blank node, a literal."""
+    _, predicate, wanted = statement
+    if predicate == SH.nodeKind:
+        return _KINDS.get(wanted, _ANY)
+    if predicate == SH.hasValue:
+        return frozenset((type(wanted),)) if type(wanted) in _ANY else _ANY
+    return _KINDS_OF.get(predicate, _ANY)
+
+
+def _exclude(one: ShapeStatement, other: ShapeStatement) -> bool:
+    """Whether no value satisfies both of two statements, neither of which names values."""
+    if _kinds(one).isdisjoint(_kinds(other)):
+        return True
+    (_, first, wanted), (_, second, asked) = one, other
+    if first == second:
+        return first in (SH.datatype, SH.hasValue) and wanted != asked
+    if {first, second} == {SH.minLength, SH.maxLength}:
+        low, high = (wanted, asked) if first == SH.minLength else (asked, wanted)
+        return _number(low) > _number(high)
+    if first in _UPPER and second in _LOWER:
+        return _empty(second, asked, first, wanted)
+    if first in _LOWER and second in _UPPER:
+        return _empty(first, wanted, second, asked)
+    limited = next((value for word, value in ((first, wanted), (second, asked)) if word in (*_LOWER, *_UPPER)), None)
+    datatype = next((value for word, value in ((first, wanted), (second, asked)) if word == SH.datatype), None)
+    return datatype == XSD.string and isinstance(limited, Literal) and not isinstance(limited.value, str)
+
+
+def _number(value: Node) -> int:
+    return value.value if isinstance(value, Literal) and isinstance(value.value, int) else 0
+
+
+def _empty(lower: Node, low: Node, upper: Node, high: Node) -> bool:
+    """Whether nothing lies between two limits; only where it is certain how they compare."""
+    if not isinstance(low, Literal) or not isinstance(high, Literal):
+        return False
+    bottom, top = low.value, high.value
+    strict = lower == SH.minExclusive or upper == SH.maxExclusive
+    if isinstance(bottom, (int, float, Decimal)) and isinstance(top, (int, float, Decimal)):
+        return bottom > top or (strict and bottom == top)
+    if type(bottom) is type(top) is datetime.date or (
+        isinstance(bottom, datetime.datetime)
+        and isinstance(top, datetime.datetime)
+        and (bottom.tzinfo is None) == (top.tzinfo is None)
+    ):
+        return bool(bottom > top or (strict and bottom == top))
+    return False
+
+
+def _allowed(demands: NormalForm, closed: ShapeStatement) -> set[Node]:
+    """The properties that a closed shape allows (SHACL, 4.8.1)."""
+    source, shape = demands.source, closed[0]
+    ignored = {item for head in source.values(shape, SH.ignoredProperties) for item in source.items(head)}
+    return ignored | {path for each in source.values(shape, SH.property) for path in source.values(each, SH.path)}
+
+
+def _asked(demands: NormalForm, shape: Node) -> bool:
+    """Whether the very shape is one of those that make the demands."""
+    paths = [demands.source.path(path) for path in demands.source.values(shape, SH.path)]
+    if paths:
+        return paths[0] in demands.values and shape in demands.values[paths[0]].shapes
+    return shape in demands.shapes
+
+
+def _entailed(demands: NormalForm, shape: Node) -> ShapeStatement | None:
+    """A statement by which all that satisfies the demands conforms to a shape, if that is certain."""
+    basis: list[ShapeStatement] = []
+    return basis[-1] if _covers(demands, NormalForm(demands.source, (shape,)), basis) and basis else None
+
+
+def _covers(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> bool:
+    """Whether whatever satisfies `more` satisfies `less`; what shows it is added to `basis`."""
+    if not less.whole or less.closed or less.nots or less.choices or not _all_in(more, less, basis):
+        return False
+    for path, values in less.values.items():
+        ours = more.along(path) if path in more.values else None
+        if ours is None or not _all_in(ours.each, values.each, basis) or values.each.values:
+            return False
+        wanted = {one[2] for one in values.required}
+        fewer = [pair[1] for most in values.most for pair in ours.most if pair[0] <= most[0]][: len(values.most)]
+        enough = [pair[1] for least in values.least for pair in ours.least if pair[0] >= least[0]]
+        if (
+            not values.each.whole
+            or not wanted <= {one[2] for one in ours.required}
+            or any(all(pair[0] > most for pair in ours.most) for most, _ in values.most)
+            or any(all(pair[0] < least for pair in ours.least) for least, _ in values.least)
+        ):
+            return False
+        basis += [*fewer, *enough]
+    return True
+
+
+def _all_in(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> bool:
+    """Whether each statement about the node itself is made by `more` as well."""
+    source = more.source
+    for shape, predicate, value in less.own:
+        same = [
+            one
+            for one in more.own
+            if one[1] == predicate
+            and source.form(one[2]) == source.form(value)
+            and (predicate != SH.pattern or source.values(one[0], SH.flags) == source.values(shape, SH.flags))
+        ]
+        if not same:
+            return False
+        basis += same[:1]
+    return True

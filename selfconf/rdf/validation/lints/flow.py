@@ -1,0 +1,187 @@
+"""Signals of a template that come to nothing: loops that lead nowhere, inputs that nobody feeds.
+
+A cycle of `sc:feeds` is no mistake by itself: closed loops are what control is about. But a loop acts on the world
+through an actuator in it, or hands something on; one that does neither only keeps itself busy.
+
+An input that a role asks its component to have has to be fed, or nobody who has it can play the role. Most templates
+leave ports to the components. Where one speaks of them, what is asked of the one end is held against what is asked of
+the other; whether signals match is seen in the widest sense, that of the loaded ontologies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from rdflib import RDF, SH, Literal, URIRef
+from rdflib.term import Node
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.wording import listed
+from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement
+from selfconf.rdf.vocabulary import ROB, SC
+
+_FEEDS, _NAME, _SIGNAL = URIRef(SC.feeds), URIRef(SC.name), URIRef(SC.signalType)
+_INPUT, _OUTPUT = URIRef(SC.hasInput), URIRef(SC.hasOutput)
+
+
+class RoleLink(NamedTuple):
+    """One role feeds another, perhaps from one port to another."""
+
+    source: Node
+    sink: Node
+    output: Node | None
+    input: Node | None
+    offset: int
+
+
+class Ask(NamedTuple):
+    """A port that a component has to have to play a role: its name and its signal type, where they are told."""
+
+    name: Node | None
+    signal: Node | None
+    statement: ShapeStatement
+
+
+def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
+    """Loops of roles that feed only each other, with no actuator among them."""
+    for roles, links in _templates(file):
+        feeds: dict[Node, set[Node]] = {}
+        for link in links:
+            feeds.setdefault(link.source, set()).add(link.sink)
+        after = {role: _reached(role, feeds) for role in roles}
+        loops = {frozenset(two for two in after[one] if one in after[two]) for one in roles if one in after[one]}
+        for loop in loops:
+            inside = [link for link in links if link.source in loop]
+            if all(link.sink in loop for link in inside) and not any(_acts(file, role) for role in loop):
+                names = listed([file.short(str(role)) for role in roles if role in loop])
+                who = (
+                    f"The role {names} feeds only itself"
+                    if len(loop) == 1
+                    else f"The roles {names} feed only each other"
+                )
+                closing = [link.offset for link in inside if roles.index(link.sink) <= roles.index(link.source)]
+                message = f"{who}, without an actuator: nothing comes of this loop."
+                hint = "Let it feed a role outside, or a kind of rob:Actuator."
+                yield at(file.positions, max(closing), "SC-L12", message, hint=hint)
+
+
+def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:
+    """Inputs that a role asks for and no role that feeds it could feed."""
+    for roles, links in _templates(file):
+        demands = {role: NormalForm(file.source, (role,)) for role in roles}
+        for sink in roles:
+            feeding = [link for link in links if link.sink == sink]
+            for asked in _asked(demands[sink], _INPUT):
+                if any(_could(file, demands[link.source], link, asked) for link in feeding):
+                    continue
+                what = " ".join(["an input", *_described(file, asked)])
+                feeders = listed(sorted({file.short(str(link.source)) for link in feeding}))
+                if feeders:
+                    message = f"This asks for {what}, which nothing that {feeders} is asked for could feed."
+                    hint = (
+                        "Ask for such an output there, let another role feed this one, or let an interaction name it."
+                    )
+                else:
+                    message = f"This asks for {what}, and no role feeds the role {file.short(str(sink))}."
+                    hint = f"Let a role sc:feeds {file.short(str(sink))}."
+                yield at(file.positions, _place(file, asked.statement), "SC-L13", message, hint=hint)
+
+
+def _templates(file: LintedFile) -> Iterator[tuple[list[Node], list[RoleLink]]]:
+    """The roles of each template, in order, and which feeds which."""
+    graph, places = file.graph, file.positions.triples
+    for head in set(graph.objects(None, URIRef(SC.roles))):
+        roles = list(file.items(head))
+        links = [
+            RoleLink(role, sink, None, None, places[role, _FEEDS, sink].object)
+            for role in roles
+            for sink in graph.objects(role, _FEEDS)
+            if sink in roles
+        ]
+        for node in graph.subjects(RDF.type, URIRef(SC.Interaction)):
+            source, sink = graph.value(node, URIRef(SC["from"])), graph.value(node, URIRef(SC.to))
+            if source in roles and sink in roles and source is not None and sink is not None:
+                ports = graph.value(node, URIRef(SC.output)), graph.value(node, URIRef(SC.input))
+                links.append(RoleLink(source, sink, *ports, places[node, URIRef(SC.to), sink].object))
+        yield roles, links
+
+
+def _reached(role: Node, feeds: Mapping[Node, set[Node]]) -> set[Node]:
+    """The roles that a role feeds, also by way of others."""
+    found: set[Node] = set()
+    waiting = [role]
+    while waiting:
+        source = waiting.pop()
+        fed = feeds.get(source, set()) - found
+        found |= fed
+        waiting += fed
+    return found
+
+
+def _acts(file: LintedFile, role: Node) -> bool:
+    """Whether a role may act on the world: it is an actuator, or of a kind that no loaded ontology tells about."""
+    kinds = [str(kind) for kind in file.graph.objects(role, SH["class"])]
+    return not kinds or any(
+        file.familiar.serves(kind, ROB.Actuator) or file.familiar.undeclared(kind) for kind in kinds
+    )
+
+
+def _asked(demands: NormalForm, link: URIRef) -> Iterator[Ask]:
+    """The inputs or outputs that a role asks for."""
+    for along, signals in ((_SIGNAL, True), (_NAME, False)):
+        values = demands.values.get((RDF.first, link, along))
+        for one in values.required if values else ():
+            yield Ask(None, one[2], one) if signals else Ask(one[2], None, one)
+    ports = demands.values.get((link,))
+    needed = ports.needed() if ports else None
+    if ports is None or needed is None:
+        return
+    source = demands.source
+    shapes = [
+        (shape, inner)
+        for shape in ports.shapes
+        for inner in source.values(shape, SH.qualifiedValueShape)
+        if any(isinstance(n, Literal) and n.value for n in source.values(shape, SH.qualifiedMinCount))
+    ]
+    for shape, inner in shapes:
+        port = NormalForm(source, (inner,))
+        yield Ask(_only(port, _NAME), _only(port, _SIGNAL), (shape, SH.qualifiedValueShape, inner))
+    if not shapes:
+        yield Ask(None, _only(ports.each, _SIGNAL), needed[1])
+
+
+def _only(port: NormalForm, path: URIRef) -> Node | None:
+    """The value that a port has to have, if one is asked for."""
+    values = port.values.get((path,))
+    if values is None:
+        return None
+    listed = [items for one in values.each.own if one[1] == SH["in"] and len(items := port.source.items(one[2])) == 1]
+    return next((one[2] for one in values.required), listed[0][0] if listed and path == _SIGNAL else None)
+
+
+def _could(file: LintedFile, source: NormalForm, link: RoleLink, wanted: Ask) -> bool:
+    """Whether what is asked of a source leaves room for an output that feeds the input."""
+    if link.input is not None and wanted.name is not None and link.input != wanted.name:
+        return False
+    outputs = source.values.get((_OUTPUT,))
+    if outputs is not None and any(most == 0 for most, _ in outputs.most):
+        return False
+    offered = [ask.signal for ask in _asked(source, _OUTPUT) if ask.signal is not None]
+    if wanted.signal is None or not offered:
+        return True
+    return any(file.familiar.serves(str(signal), str(wanted.signal)) for signal in offered)
+
+
+def _described(file: LintedFile, asked: Ask) -> Iterator[str]:
+    if asked.name is not None:
+        yield f'"{asked.name}"'
+    if asked.signal is not None:
+        yield f"of {file.short(str(asked.signal))}"
+
+
+def _place(file: LintedFile, statement: ShapeStatement) -> int:
+    places = file.positions.triples.get(statement)
+    return places.object if places else file.offset(statement[0])

@@ -1,0 +1,117 @@
+"""What is well-formed in a template and probably not what was meant: roles that nobody lists, or nobody can play."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from rdflib import RDF, SH, BNode, URIRef
+from rdflib.term import Node
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.sparql import without
+from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.contradictions import ShapeContradiction, contradictions
+from selfconf.rdf.validation.lints.normal_form import NormalForm
+from selfconf.rdf.vocabulary import SC
+
+_NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
+"""An IRI in a query, or a prefix and what follows it."""
+
+
+def unlisted_roles(file: LintedFile) -> Iterator[Diagnostic]:
+    """Roles that stand in no list of roles."""
+    listed = {role for roles in file.graph.objects(None, URIRef(SC.roles)) for role in file.items(roles)}
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))) - listed:
+        message = "This role stands in the list of roles of no template, so nobody will play it."
+        yield at(file.positions, file.offset(role), "SC-L09", message)
+
+
+def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
+    """Roles that are given the type that their component should have."""
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        for kind in file.graph.objects(role, RDF.type):
+            if isinstance(kind, URIRef) and file.familiar.serves(str(kind), SC.Component):
+                message = f"This says that the role is a component of the type {file.short(kind)}; it asks for none."
+                hint = f"Write sh:class {file.short(kind)}."
+                yield at(
+                    file.positions, file.positions.triples[role, RDF.type, kind].object, "SC-L14", message, hint=hint
+                )
+
+
+def unlisted_parameters(file: LintedFile) -> Iterator[Diagnostic]:
+    """Parameters that no template has."""
+    listed = set(file.graph.objects(None, URIRef(SC.parameter)))
+    for parameter in set(file.graph.subjects(RDF.type, URIRef(SC.Parameter))) - listed:
+        message = "No template has this parameter, so it stands for itself and never for a value."
+        hint = f"Say sc:parameter {file.short(str(parameter))} of its template."
+        yield at(file.positions, file.offset(parameter), "SC-L15", message, hint=hint)
+
+
+def unused_parameters(file: LintedFile) -> Iterator[Diagnostic]:
+    """Parameters that no role mentions."""
+    graph = file.graph
+    for parameter in graph.objects(None, URIRef(SC.parameter)):
+        uses = [predicate for _, predicate in graph.subject_predicates(parameter)]
+        owners = [owner for owner in graph.subjects(URIRef(SC.parameter), parameter) if not isinstance(owner, BNode)]
+        if owners and all(str(predicate) == SC.parameter for predicate in uses):
+            offset = min(file.positions.triples[owner, URIRef(SC.parameter), parameter].object for owner in owners)
+            message = f"No role mentions the parameter {file.short(str(parameter))}."
+            yield at(file.positions, offset, "SC-L10", message)
+
+
+def queried_parameters(file: LintedFile) -> Iterator[Diagnostic]:
+    """Parameters in the text of a query, which is taken as it stands."""
+    parameters = {str(one) for one in file.graph.objects(None, URIRef(SC.parameter)) if isinstance(one, URIRef)}
+    for predicate in (SH.select, SH.ask) if parameters else ():
+        for subject, query in file.graph.subject_objects(predicate):
+            named = _named(file, without(str(query), "#", '"', "'"))
+            for parameter in sorted(parameters & named):
+                short = file.short(parameter)
+                message = f"The parameter {short} stands for itself in a query, and never for a value."
+                hint = f"Ask for its value beside the query, as by sh:in ( {short} )."
+                offset = file.positions.triples[subject, predicate, query].object
+                yield at(file.positions, offset, "SC-L16", message, hint=hint)
+
+
+def _named(file: LintedFile, query: str) -> set[str]:
+    """The IRIs that a query names, by the prefixes of its file and those that shapes declare for it."""
+    declared = {
+        str(file.graph.value(one, SH.prefix)): str(file.graph.value(one, SH.namespace))
+        for one in file.graph.objects(None, SH.declare)
+    }
+    known = {prefix: base for prefix, base, _ in file.positions.prefixes} | declared
+    names = _NAME.findall(query)
+    return {iri or f"{known.get(prefix, '')}{local}" for iri, prefix, local in names}
+
+
+def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
+    """Roles whose shapes contradict themselves, or what holds of every advertisement."""
+    always = list(file.source.subjects(SH.targetClass, URIRef(SC.Component)))
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        for conflict in contradictions(NormalForm(file.source, (role, *always))):
+            yield _contradiction(file, role, conflict)
+
+
+def _contradiction(file: LintedFile, role: Node, conflict: ShapeContradiction) -> Diagnostic:
+    """The later of two statements, with the place of the earlier."""
+    places = {one: file.positions.triples[one].predicate for one in conflict if one in file.positions.triples}
+    later = max(places, key=lambda one: places[one], default=conflict.one)
+    earlier = conflict.other if later == conflict.one else conflict.one
+    offset = places.get(later, file.offset(role))
+    nobody = f"nobody can play the role {file.short(str(role))}"
+    hint = None
+    if later == earlier:
+        what = "No alternative of this can hold" if later[1] in (SH["or"], SH.xone) else "This cannot hold"
+        message = f"{what} beside what else is asked for, so {nobody}."
+    elif earlier in places:
+        there, here = file.positions.place(places[earlier]), file.positions.place(offset)
+        where = f"line {there.line}" if there.line != here.line else f"column {there.column}"
+        message = f"{file.said(later)} and {file.said(earlier)} ({where}) exclude each other, so {nobody}."
+    else:
+        always = next(iter(file.source.values(earlier[0], SH.message)), "All advertisements differ from this.")
+        message = f"{file.said(later)} cannot hold of any advertisement, so {nobody}. {always}"
+    if SH.closed in (later[1], earlier[1]):
+        hint = "List what else a component may say in sh:ignoredProperties, at least rdf:type."
+    return at(file.positions, offset, "SC-L11", message, hint=hint)

@@ -1,0 +1,172 @@
+"""What reads well and is probably not what was meant: misspelt terms, confused namespaces, unused roles.
+
+SHACL checks what it finds and passes over what it does not know: `sh:minCnt` asks for nothing, and a
+component whose prefix has https where http belongs is no component at all. Each lint is a function from
+one file to what it finds there. Only terms of sc: and sh: are errors, since there no one else can have
+declared them; all else warns. Here are the lints about words; `template_lints` and `flow_lints` have those about
+templates.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterator
+
+from rdflib import OWL, RDF, RDFS, SH, XSD, Literal, URIRef
+from rdflib.namespace import DefinedNamespace
+from rdflib.term import Node
+
+from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.rdf import vocabulary
+from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
+from selfconf.rdf.validation.lints.templates import (
+    impossible_roles,
+    queried_parameters,
+    typed_roles,
+    unlisted_parameters,
+    unlisted_roles,
+    unused_parameters,
+)
+from selfconf.rdf.validation.prefilter import TERM_POSITIONS
+from selfconf.rdf.validation.term_index import TermIndex, namespace
+
+_STANDARD: dict[str, type[DefinedNamespace]] = {str(words._NS): words for words in (RDF, RDFS, OWL, XSD, SH)}
+_SC, _SH = vocabulary.SC, vocabulary.SH
+LIKE = 0.7
+"""How alike two words have to be for one to be a misspelling of the other; 1 is equal."""
+_MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
+
+
+def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
+    """Everything that the lints find in a file; about the make-up of a template only if it `conforms`."""
+    checks = (*WORDS, *TEMPLATES) if conforms else WORDS
+    return [found for check in checks for found in check(file)]
+
+
+def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
+    """Terms of a known namespace that nobody declares."""
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        used: list[tuple[Node | None, int]] = [(predicate, offsets.predicate)]
+        if isinstance(value, Literal):
+            used.append((value.datatype, offsets.object))
+        elif str(predicate) in TERM_POSITIONS or str(value) in _SC or str(value) in _SH:
+            used.append((value, offsets.object))
+        for term, offset in used:
+            if isinstance(term, URIRef) and not _known(str(term), file.familiar):
+                yield _unknown(file, str(term), offset)
+
+
+def _known(iri: str, familiar: TermIndex) -> bool:
+    if not familiar.strange(iri):
+        return True
+    words = _STANDARD.get(namespace(iri))
+    return words is not None and (URIRef(iri) in words or bool(_MEMBERSHIP.fullmatch(iri)))
+
+
+def _unknown(file: LintedFile, iri: str, offset: int) -> Diagnostic:
+    home = namespace(iri)
+    words = _STANDARD.get(home)
+    known = [str(term) for term in dir(words)] if words else sorted(file.familiar.terms)
+    meant = _elsewhere(iri, file) or _closest(iri[len(home) :], [term for term in known if term.startswith(home)])
+    hint = f"Did you mean {file.short(meant)}?" if meant else None
+    short = file.short(iri)
+    fixed = home in _STANDARD or home == _SC.base
+    message = f"There is no term {short}." if fixed else f"No loaded ontology declares {short}."
+    return at(file.positions, offset, "SC-L01" if home in (_SC.base, _SH.base) else "SC-L02", message, hint=hint)
+
+
+def _elsewhere(iri: str, file: LintedFile) -> str | None:
+    """The term with that very name in another known namespace, for which this one has the wrong prefix."""
+    name = iri[len(namespace(iri)) :]
+    fixed = [URIRef(base + name) for base, words in _STANDARD.items() if URIRef(base + name) in words]
+    declared = [term for term in file.familiar.terms if term[len(namespace(term)) :] == name]
+    return min((*map(str, fixed), *declared), default=None)
+
+
+def _closest(word: str, known: list[str]) -> str | None:
+    """The known term whose name is most like a word, of equals the one that is a class or property as the word is."""
+    names = {term: term[len(namespace(term)) :] for term in known}
+    close = difflib.get_close_matches(word.lower(), [name.lower() for name in names.values()], n=1, cutoff=LIKE)
+    alike = sorted(
+        (term for term, name in names.items() if [name.lower()] == close),
+        key=lambda term: names[term][:1].isupper() != word[:1].isupper(),
+    )
+    return alike[0] if alike else None
+
+
+def undeclared_signals(file: LintedFile) -> Iterator[Diagnostic]:
+    """Signal types in a namespace that no loaded ontology covers."""
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        signal = str(value)
+        if str(predicate) != _SC.signalType or not isinstance(value, URIRef):
+            continue
+        nearly = file.familiar.confused(namespace(signal)) is not None  # which is said of its prefix already
+        if file.familiar.undeclared(signal) and _known(signal, file.familiar) and not nearly:
+            message = f"No loaded ontology declares the signal type {file.short(signal)}."
+            hint = "Give the ontology that declares it with --ontology FILE."
+            yield at(file.positions, offsets.object, "SC-L03", message, hint=hint)
+
+
+def repeated_components(file: LintedFile) -> Iterator[Diagnostic]:
+    """Components that another file describes as well."""
+    for component, other in file.elsewhere.items():
+        offset = file.offset(URIRef(component))
+        message = f"The component {file.short(component)} is described in {other} as well."
+        yield at(file.positions, offset, "SC-L04", message)
+
+
+def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
+    """Prefixes with two meanings, and namespaces that are nearly, but not quite, known ones."""
+    first: dict[str, str] = {}
+    for prefix, iri, offset in file.positions.prefixes:
+        if first.setdefault(prefix, iri) != iri:
+            message = f"The prefix {prefix}: has been bound to <{first[prefix]}> before, and is now <{iri}>."
+            yield at(file.positions, offset, "SC-L05", message)
+        meant = file.familiar.confused(iri)
+        if meant is not None:
+            severity = Severity.ERROR if meant in (_SC.base, _SH.base) else Severity.WARNING
+            message = f"The namespace <{iri}> is not <{meant}>."
+            yield at(file.positions, offset, "SC-L06", message, severity, f"Did you mean <{meant}>?")
+
+
+def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
+    """Literals where the property wants a thing."""
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        ours = str(predicate) in _SC  # what selfconf's own properties want is a matter of the shapes
+        if isinstance(value, Literal) and not ours and str(predicate) in file.familiar.object_properties:
+            message = f"The value of {file.short(str(predicate))} is a thing with an IRI, not a literal."
+            hint = f"Write an IRI, such as :{re.sub(r'[^A-Za-z0-9]+', '-', value).strip('-') or 'kitchen'}."
+            yield at(file.positions, offsets.object, "SC-L07", message, hint=hint)
+
+
+def local_components(file: LintedFile) -> Iterator[Diagnostic]:
+    """Components whose IRI depends on where the file lies."""
+    kinds = file.graph.subjects(RDF.type, URIRef(_SC.Component))
+    for component in kinds:
+        if isinstance(component, URIRef) and component.startswith("file:"):
+            message = "The IRI of this component is relative, so it changes with the place of the file."
+            hint = "Declare a prefix, or a @base that starts with https:."
+            yield at(file.positions, file.offset(component), "SC-L08", message, hint=hint)
+
+
+WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
+    unknown_terms,
+    undeclared_signals,
+    repeated_components,
+    prefixes,
+    literals_for_iris,
+    local_components,
+)
+TEMPLATES = (
+    unlisted_roles,
+    typed_roles,
+    unused_parameters,
+    unlisted_parameters,
+    queried_parameters,
+    impossible_roles,
+    idle_loops,
+    starving_inputs,
+)

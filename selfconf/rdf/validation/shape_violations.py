@@ -1,0 +1,230 @@
+"""Judging one file by the shapes: pySHACL finds the violations, and each is taken to its place in the text.
+
+A file is judged alone, on its own triples, so that no file can change the verdict on another; the shapes
+come from nowhere else than from selfconf. A violation (SHACL, 3.6.2) names a focus node and mostly a
+value or a path. It is shown where its author would look for it: at the value that must not be there, at
+the second of two values where one is allowed, at the node that lacks something.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import pyshacl
+from pyshacl.errors import ReportableRuntimeError, ValidationFailure
+from rdflib import RDF, Graph, Literal, Namespace, URIRef
+from rdflib.term import Node
+
+from selfconf.model.codes import BY_SHAPE
+from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.rdf.positions import Positions
+from selfconf.rdf.validation.diagnostics import at
+
+SC = Namespace("https://w3id.org/selfconf#")
+SH = Namespace("http://www.w3.org/ns/shacl#")
+SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
+
+_MADE_DISTINCT_BY: dict[Node, URIRef] = {
+    SHAPES.PortNamesDistinct: SC.name,
+    SHAPES.OperationalNamesDistinct: SC.name,
+    SHAPES.ParameterNamesDistinct: SC.name,
+    SHAPES.BindingsDistinct: SC.parameter,
+    SHAPES.ComponentPlaysOnce: SC.component,
+}
+"""Shapes that want values to differ, and the property in which they have to."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReportedViolation:
+    """One result of a validation report."""
+
+    shape: URIRef
+    message: str
+    severity: Severity
+    focus: Node
+    path: Node | None
+    value: Node | None
+    constraint: Node | None
+    """The constraint component that was broken."""
+
+    @property
+    def too_many(self) -> bool:
+        """Whether there are more values than allowed, so that no one value is to blame."""
+        return self.constraint == SH.MaxCountConstraintComponent
+
+
+_NAMING = (SHAPES.PortNamesDistinct, SHAPES.OperationalNamesDistinct)
+"""Shapes whose queries only find what `_names_repeat` sees first."""
+_LISTING = (SHAPES.RolesList, SHAPES.RolesDistinct, SHAPES.FedRoleListed)
+"""Shapes whose queries only find what `_lists_stray` sees first; rdflib goes down a list by recursion."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shapes:
+    """The shapes, and what is left of them for a file in which no component repeats a name and no list of roles strays.
+
+    pySHACL parses the query of a SPARQL constraint for each focus node, which takes longer than all else.
+    """
+
+    all: Graph
+    simple: Graph
+
+    @classmethod
+    def of(cls, shapes: Graph) -> Shapes:
+        """Set aside what is not always needed."""
+        simple = Graph()
+        for triple in shapes:
+            if triple[0] not in (*_NAMING, *_LISTING):
+                simple.add(triple)
+        return cls(shapes, simple)
+
+    def needed(self, graph: Graph) -> Graph:
+        """The shapes that a file may violate."""
+        return self.all if _names_repeat(graph) or _lists_stray(graph) else self.simple
+
+
+def _names_repeat(graph: Graph) -> bool:
+    for link in (SC.hasInput, SC.hasOutput, SC.hasParameter):
+        for component in set(graph.subjects(link)):
+            names = [name for node in graph.objects(component, link) for name in graph.objects(node, SC.name)]
+            if len(names) != len(set(names)):
+                return True
+    return False
+
+
+def _lists_stray(graph: Graph) -> bool:
+    """Whether a list of roles has no end or two, repeats a role, or holds one that feeds what is not in it."""
+    for template in set(graph.subjects(SC.roles)):
+        roles: list[Node] = []
+        passed: set[Node] = set()
+        cells = list(graph.objects(template, SC.roles))
+        while len(cells) == 1 and cells[0] != RDF.nil and cells[0] not in passed:
+            passed.add(cells[0])
+            roles += graph.objects(cells[0], RDF.first)
+            cells = list(graph.objects(cells[0], RDF.rest))
+        known = set(roles)
+        if cells != [RDF.nil] or len(known) != len(roles):
+            return True
+        if any(fed not in known for role in known for fed in graph.objects(role, SC.feeds)):
+            return True
+    return False
+
+
+def reported_violations(graph: Graph, shapes: Graph) -> Iterator[ReportedViolation]:
+    """What pySHACL finds in a graph."""
+    _, report, text = pyshacl.validate(graph, shacl_graph=shapes, inference="none")
+    if isinstance(report, ValidationFailure) or not isinstance(report, Graph):
+        raise ReportableRuntimeError(f"pySHACL cannot judge this file: {text}")
+    for result in report.objects(predicate=SH.result):
+        shape = report.value(result, SH.sourceShape)
+        focus = report.value(result, SH.focusNode)
+        path = report.value(result, SH.resultPath)
+        if not isinstance(shape, URIRef) or focus is None:
+            continue
+        if isinstance(focus, Literal) and path is not None:
+            continue  # that it is a literal at all is the finding of another shape
+        yield ReportedViolation(
+            shape,
+            str(report.value(result, SH.resultMessage)),
+            Severity.WARNING if report.value(result, SH.resultSeverity) == SH.Warning else Severity.ERROR,
+            focus,
+            path,
+            report.value(result, SH.value),
+            report.value(result, SH.sourceConstraintComponent),
+        )
+
+
+def shape_violations(graph: Graph, positions: Positions, shapes: Shapes) -> list[Diagnostic]:
+    """Every violation in one file, in no particular order."""
+    places = _Places(graph, positions, shapes.all)
+    found = [(places.offset(violation), violation) for violation in reported_violations(graph, shapes.needed(graph))]
+    return [
+        at(
+            positions,
+            offset,
+            BY_SHAPE[violation.shape.removeprefix(SHAPES)].code,
+            violation.message,
+            violation.severity,
+            shape=str(violation.shape),
+        )
+        for offset, violation in _without_firsts(found, graph)
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class _Places:
+    """Takes violations to their places in one text."""
+
+    graph: Graph
+    positions: Positions
+    shapes: Graph
+
+    def offset(self, violation: ReportedViolation) -> int:
+        predicates = self._predicates(violation)
+        distinct_by = _MADE_DISTINCT_BY.get(violation.shape)
+        if distinct_by is not None and violation.value is not None:
+            candidates = self._objects(violation.value, frozenset((distinct_by,)))
+        elif violation.too_many:
+            values = self._objects(violation.focus, predicates)
+            candidates = values[1:] or values
+        elif isinstance(violation.focus, Literal):
+            candidates = self._mentions(violation.focus, self._links(violation.shape))
+        elif violation.value is not None and predicates:
+            own = self._objects(violation.focus, predicates, violation.value)
+            candidates = own or self._mentions(violation.value, predicates)
+        else:
+            candidates = []
+        return candidates[0] if candidates else self.positions.offset(violation.focus) or 0
+
+    def _objects(self, subject: Node, predicates: frozenset[Node], value: Node | None = None) -> list[int]:
+        """Where the objects of a subject stand, or those equal to `value`, in the order of the text."""
+        return sorted(
+            self.positions.triples[subject, predicate, other].object
+            for predicate in predicates
+            for other in self.graph.objects(subject, predicate)
+            if value is None or other == value
+        )
+
+    def _mentions(self, value: Node, predicates: frozenset[Node]) -> list[int]:
+        """Where a value stands as the object of one of the predicates, in the order of the text."""
+        return sorted(
+            self.positions.triples[subject, predicate, value].object
+            for predicate in predicates
+            for subject in self.graph.subjects(predicate, value)
+        )
+
+    def _predicates(self, violation: ReportedViolation) -> frozenset[Node]:
+        """The predicates that the path of a violation goes along."""
+        if isinstance(violation.path, URIRef):
+            return frozenset((violation.path,))
+        path = self.shapes.value(violation.shape, SH.path) if violation.path is not None else None
+        return frozenset() if path is None else _iris(path, self.shapes)
+
+    def _links(self, shape: Node) -> frozenset[Node]:
+        """The predicates whose objects a shape is about."""
+        return frozenset(self.shapes.objects(shape, SH.targetObjectsOf))
+
+
+def _iris(path: Node, shapes: Graph) -> frozenset[Node]:
+    """The predicates in a property path (SHACL, 2.3.1)."""
+    if isinstance(path, URIRef):
+        return frozenset((path,)) - {RDF.nil}
+    return frozenset(iri for part in shapes.objects(path) for iri in _iris(part, shapes))
+
+
+def _without_firsts(
+    found: Iterable[tuple[int, ReportedViolation]], graph: Graph
+) -> Iterator[tuple[int, ReportedViolation]]:
+    """Of values that have to differ and do not, the first is not to blame."""
+    equals: dict[tuple[Node | None, ...], list[tuple[int, ReportedViolation]]] = defaultdict(list)
+    for offset, violation in found:
+        distinct_by = _MADE_DISTINCT_BY.get(violation.shape)
+        if distinct_by is None or violation.value is None:
+            yield offset, violation
+        else:
+            name = graph.value(violation.value, distinct_by)
+            equals[violation.shape, violation.focus, violation.path, name].append((offset, violation))
+    for group in equals.values():
+        yield from sorted(group, key=lambda pair: pair[0])[1:]

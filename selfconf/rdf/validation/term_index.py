@@ -1,0 +1,110 @@
+"""Which terms are known: those that the loaded ontologies declare, and what a file may use without a second
+look.
+
+An ontology covers the namespaces in which it declares classes or properties. A term of a covered
+namespace that nobody declares is most probably misspelt, and RDF would pass over it in silence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from selfconf.rdf.validation.prefilter import Prefiltered
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, XSD
+
+_USUAL = frozenset(
+    (
+        *(RDF[name] for name in ("type", "first", "rest", "nil", "value", "langString")),
+        *(RDFS[name] for name in ("label", "comment", "seeAlso", "isDefinedBy")),
+        *(XSD[name] for name in ("string", "integer", "decimal", "double", "float", "boolean", "date", "dateTime")),
+    )
+)
+STANDARD = tuple(namespace.base for namespace in (RDF, RDFS, OWL, XSD, SH))
+"""Namespaces whose words are fixed by W3C recommendations."""
+
+
+def namespace(iri: str) -> str:
+    """An IRI up to its last # or /."""
+    return iri[: max(iri.rfind("#"), iri.rfind("/")) + 1]
+
+
+def skeleton(iri: str) -> str:
+    """A namespace without scheme and last character: the same for two that are easily confused."""
+    return iri.partition("://")[2].rstrip("#/").removeprefix("www.").lower()
+
+
+@dataclass
+class TermIndex:
+    """The terms that are known in one run."""
+
+    terms: set[str] = field(default_factory=set)
+    object_properties: set[str] = field(default_factory=set)
+    covered: set[str] = field(default_factory=lambda: {SC.base})
+    above: set[tuple[str, str]] = field(default_factory=set)
+    """What the files say of the hierarchy of classes: a class, and one right above it."""
+    _strange: dict[str, bool] = field(default_factory=dict)
+
+    def learn(self, seen: Prefiltered) -> None:
+        """Take up what a file declares; of one that declares classes or properties, everything that it speaks of.
+
+        So it does not matter whether an ontology is given as such, or is validated beside what uses it.
+        """
+        self.object_properties |= seen.object_properties
+        self.above |= seen.above
+        self.terms |= seen.placed
+        if seen.terms:
+            self.terms |= seen.terms | seen.subjects
+            self.covered |= {namespace(term) for term in seen.terms} - {""}  # as of urn:x
+        self._strange.clear()
+
+    def strange(self, iri: str) -> bool:
+        """Whether an IRI lies in a covered or standard namespace, but is not known there at first sight."""
+        known = self._strange.get(iri)
+        if known is None:
+            home = namespace(iri)
+            known = self._strange[iri] = iri not in self.terms and (
+                home in self.covered or (home in STANDARD and iri not in _USUAL)
+            )
+        return known
+
+    def undeclared(self, signal: str) -> bool:
+        """Whether a signal type is one that no loaded ontology speaks of."""
+        return signal not in self.terms
+
+    def serves(self, offered: str, wanted: str) -> bool:
+        """Whether a class is another or lies below it, by what the loaded ontologies say."""
+        found, waiting = {offered}, [offered]
+        while waiting:
+            lower = waiting.pop()
+            higher = {upper for one, upper in self.above if one == lower} - found
+            found |= higher
+            waiting += higher
+        return wanted in found
+
+    def confused(self, iri: str) -> str | None:
+        """The known namespace that this one is easily confused with, if it is another."""
+        if iri in self.covered or iri in STANDARD:
+            return None
+        key = skeleton(iri)
+        return next((known for known in (*sorted(self.covered), *STANDARD) if skeleton(known) == key), None)
+
+    def clear(self, seen: Prefiltered) -> bool:
+        """Whether nothing in a file needs a second look."""
+        prefixes = [prefix for prefix, _ in seen.prefixes]
+        return not (
+            any(self.strange(iri) for iri in seen.used)
+            or any(self.undeclared(signal) for signal in seen.signals)
+            or not self.object_properties.isdisjoint(seen.literal_of)
+            or len(prefixes) != len(set(prefixes))
+            or any(self.confused(iri) for _, iri in seen.prefixes)
+            or any(component.startswith("file:") for component in seen.components)
+        )
+
+
+def index_of(ontologies: Iterable[Prefiltered]) -> TermIndex:
+    """What a run knows from its ontologies."""
+    familiar = TermIndex()
+    for seen in ontologies:
+        familiar.learn(seen)
+    return familiar

@@ -1,0 +1,193 @@
+"""Whether the shape of a role is well-formed SHACL, so that it can be asked about a component at all.
+
+The shape that W3C gives for shapes (SHACL, appendix C; pySHACL brings it along) finds most of what can be
+wrong, and knows where. Patterns have to be regular expressions and queries SPARQL, which it does not look
+at. What is left shows in a rehearsal: each role is asked about nobody in particular.
+
+A parameter stands where its value will stand, so both look at the template with a sample in its place:
+one of the parameter's datatype. What a parameter of no particular datatype does in a shape cannot be told
+beforehand.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from importlib.resources import files
+
+import pyoxigraph as ox
+import pyshacl
+from pyshacl.errors import ReportableRuntimeError, ValidationFailure
+from rdflib import RDF, SH, XSD, Graph, Literal, URIRef
+from rdflib.term import Node
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.term import IRI
+from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
+from selfconf.rdf.positions import Positions
+from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, unfit
+from selfconf.rdf.sparql import fault
+from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.vocabulary import SC
+
+_SAMPLES: dict[Node, Literal] = {
+    XSD.string: Literal("sample"),
+    XSD.boolean: Literal(True),
+    XSD.integer: Literal(1),
+    XSD.decimal: Literal("1.0", datatype=XSD.decimal),
+    XSD.double: Literal(1.0),
+    XSD.date: Literal("2000-01-01", datatype=XSD.date),
+    XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
+}
+_NOBODY = URIRef("urn:x-selfconf:nobody")
+
+
+def endless_lists(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """Lists that come back to one of their own cells; each is reported once."""
+    finished: set[Node] = set()
+    for start in set(graph.subjects(RDF.rest)):
+        passed: set[Node] = set()
+        cell: Node | None = start
+        while cell is not None and cell not in finished and cell not in passed:
+            passed.add(cell)
+            cell = graph.value(cell, RDF.rest)
+        if cell in passed and cell is not None:
+            yield at(positions, positions.offset(cell) or 0, "SC-S06", "This list has no end.")
+        finished |= passed
+
+
+def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """What keeps the roles of a file from being shapes."""
+    roles = sorted({str(role) for role in graph.subjects(RDF.type, URIRef(SC.Role)) if isinstance(role, URIRef)})
+    if not roles:
+        return
+    shapes = _with_samples(graph)
+    for role in roles:
+        shapes.add((URIRef(role), RDF.type, SH.NodeShape))
+    faults = [fault for look in (_faults, _literals) for fault in look(shapes, positions)]
+    faults += [fault for look in (_patterns, _queries) for fault in look(graph, positions)]
+    plain = [fault for fault in faults if fault.message != ILL_FORMED]
+    yield from plain or faults
+    for role in () if faults or _rehearse(shapes, *roles) is None else roles:
+        reason = _rehearse(shapes, role)
+        if reason:
+            message = f"The shape of this role cannot be evaluated: {reason}"
+            yield at(positions, positions.offset(URIRef(role)) or 0, "SC-T13", message)
+
+
+def _with_samples(graph: Graph) -> Graph:
+    """The graph with samples for parameters, without what says nothing before the parameter is bound."""
+    samples: dict[Node, Node | None] = {}
+    for parameter in graph.subjects(RDF.type, URIRef(SC.Parameter)):
+        datatype = graph.value(parameter, SH.datatype)
+        kind = graph.value(parameter, SH.nodeKind)
+        samples[parameter] = parameter if kind == SH.IRI else _SAMPLES.get(datatype) if datatype else None
+    shapes = Graph()
+    for subject, predicate, value in graph:
+        sample = samples.get(value, value)
+        if sample is None and (predicate == RDF.first or predicate == SH.hasValue):
+            sample = value  # any term will do there
+        if sample is not None:
+            shapes.add((subject, predicate, sample))
+    for prefix, namespace in graph.namespaces():
+        shapes.bind(prefix, namespace, replace=True)
+    return shapes
+
+
+@cache
+def shape_of_shapes() -> Graph:
+    """The shape to which every shapes graph has to conform."""
+    return Graph().parse(data=(files("pyshacl") / "assets" / "shacl-shacl.ttl").read_text("utf-8"))
+
+
+def _faults(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    _, report, _ = pyshacl.validate(shapes, shacl_graph=shape_of_shapes(), inference="none")
+    if not isinstance(report, Graph):
+        return
+    for result in report.objects(predicate=SH.result):
+        focus, path = report.value(result, SH.focusNode), report.value(result, SH.resultPath)
+        value = report.value(result, SH.value)
+        if focus is None:
+            continue
+        offsets = positions.triples.get((focus, path, value)) if path is not None and value is not None else None
+        if offsets is not None and isinstance(path, URIRef):
+            yield at(positions, offsets.object, "SC-T13", unfit(IRI(path)))
+        else:
+            offset, message = _malformed(shapes, positions, focus)
+            yield at(positions, offset, "SC-T13", message)
+
+
+def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, str]:
+    """What is wrong with a shape as a whole, and where."""
+    offset = positions.offset(focus) or 0
+    if (None, SH.property, focus) in shapes and len(set(shapes.objects(focus, SH.path))) != 1:
+        return offset, "A property shape has exactly one sh:path, the property that it is about."
+    for predicate, value in shapes.predicate_objects(focus):
+        statement = positions.triples.get((focus, predicate, value))
+        if statement and isinstance(predicate, URIRef) and IRI(predicate) in ONLY_WITH_A_PATH:
+            word = predicate.removeprefix(str(SH))
+            message = (
+                f"sh:{word} is asked of the values of a property: write sh:property [ sh:path ... ; sh:{word} ... ]"
+            )
+            instead = f"; how many play a role is sc:{word}" if word in ("minCount", "maxCount") else ""
+            return statement.predicate, f"{message}{instead}."
+    return offset, ILL_FORMED
+
+
+def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """Literals where a shape has to stand, which the shape of shapes overlooks."""
+    for predicate in (SH.node, SH["not"], SH.qualifiedValueShape):
+        for shape, value in shapes.subject_objects(predicate):
+            offsets = positions.triples.get((shape, predicate, value))
+            if isinstance(value, Literal) and offsets is not None:
+                yield at(positions, offsets.object, "SC-T13", unfit(IRI(predicate)))
+
+
+def _patterns(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """Values of sh:pattern that are no regular expressions."""
+    for shape, pattern in graph.subject_objects(SH.pattern):
+        try:
+            re.compile(str(pattern) if isinstance(pattern, Literal) else "")
+        except re.error as error:
+            offset = positions.triples[shape, SH.pattern, pattern].object
+            yield at(positions, offset, "SC-T13", f"This is no regular expression: {error}.")
+
+
+def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """Queries of roles that are no SPARQL, or that would leave this machine."""
+    for predicate in (SH.select, SH.ask):
+        for constraint, query in graph.subject_objects(predicate):
+            offset = positions.triples[constraint, predicate, query].object
+            reason = fault(str(query))
+            if reason is not None:
+                yield at(positions, offset, "SC-T13", reason)
+                continue
+            try:
+                ox.Store().query(str(query), prefixes=dict(_declared(graph, constraint)))
+            except SyntaxError as error:
+                yield at(positions, offset, "SC-T13", f"This is not SPARQL: {error.msg.partition(': ')[2]}.")
+
+
+def _declared(graph: Graph, constraint: Node) -> Iterator[tuple[str, str]]:
+    """The prefixes of a SPARQL constraint (SHACL, 5.2.1)."""
+    for owner in graph.objects(constraint, SH.prefixes):
+        for declaration in graph.objects(owner, SH.declare):
+            prefix, namespace = graph.value(declaration, SH.prefix), graph.value(declaration, SH.namespace)
+            if prefix is not None and namespace is not None:
+                yield str(prefix), str(namespace)
+
+
+def _rehearse(shapes: Graph, *roles: str) -> str | None:
+    """Why some roles cannot be evaluated, or None if they can."""
+    stage = Graph()
+    stage.add((_NOBODY, RDF.type, URIRef(SC.Component)))
+    try:
+        report, text = judged(stage, aimed(shapes, map(IRI, roles), [IRI(_NOBODY)]))
+    except (ReportableRuntimeError, AssertionError, ValueError, TypeError, KeyError) as error:
+        return _sentence(reason_of(error))
+    return _sentence(first_line(text)) if isinstance(report, ValidationFailure) else None
+
+
+def _sentence(text: str) -> str:
+    return text if text.endswith(".") else f"{text}."

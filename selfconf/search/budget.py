@@ -1,0 +1,31 @@
+"""How many steps a search may take; a step means the same on every machine, unlike a second."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+
+@dataclass(slots=True)
+class Budget:
+    """How many steps are left, one for each option tried; shared by the engines that work on one question."""
+
+    steps: int | None = None
+
+    def part(self, most: int) -> Budget:
+        """A budget of at most so many of the steps that are left."""
+        return Budget(most if self.steps is None else min(most, self.steps))
+
+    @contextmanager
+    def portion(self, most: int) -> Iterator[Budget]:
+        """A part of the budget, of which what was spent is taken away in the end."""
+        part = self.part(most)
+        given = part.steps or 0
+        yield part
+        self.spend(given - (part.steps or 0))
+
+    def spend(self, steps: int) -> None:
+        """Take away steps that were done; at zero the budget is used up."""
+        if self.steps is not None:
+            self.steps = max(0, self.steps - steps)

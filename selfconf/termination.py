@@ -1,0 +1,88 @@
+"""When a program of selfconf ends: SIGINT, SIGTERM, or because the program that started it is gone.
+
+A program that starts others puts `environment()` into their environment; they look at intervals whether it is still
+there, so that a parent that is killed with -9 leaves nobody behind.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import FrameType
+
+from selfconf.bus.port import Bus
+
+PARENT_CHECK = 0.5
+"""How often, in seconds, a program looks whether the one that started it is still there."""
+_PARENT = "SELFCONF_PARENT"
+
+
+def parent_environment() -> Mapping[str, str]:
+    """What a started program needs to know in order to end with this one."""
+    return {_PARENT: str(os.getpid())}
+
+
+def orphaned(parent: int) -> bool:
+    """Whether this program, whose parent process at first was `parent`, was started by another one that is gone.
+
+    The parent is the one that started it, or a shell in between; a shell goes on when that one is gone.
+    """
+    starter = os.environ.get(_PARENT)
+    if starter is None or not starter.isdigit():
+        return False
+    return os.getppid() != parent or (parent != int(starter) and not alive(int(starter)))
+
+
+def alive(process: int) -> bool:
+    """Whether a process of this machine is there. One that has ended is not, even if its parent has not heard yet."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return not _zombie(process)
+
+
+def _zombie(process: int) -> bool:
+    try:
+        status = Path(f"/proc/{process}/stat").read_bytes()
+    except OSError:  # it is gone by now, or this system has no such files
+        return False
+    return status.rpartition(b")")[2].split()[:1] in ([b"Z"], [b"X"])
+
+
+def end_as_by_ctrl_c() -> None:
+    """From now on SIGTERM raises KeyboardInterrupt, as SIGINT does; until an `Ending` hears of both."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+
+class Termination:
+    """Holds, when called, once the program is to end; `then` is called once, on the bus's thread."""
+
+    def __init__(self, bus: Bus, then: Callable[[], None] = lambda: None) -> None:
+        self._bus, self._then, self._told = bus, then, False
+        self._parent = os.getppid()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._signalled)
+        if _PARENT in os.environ:
+            self._look()
+
+    def __call__(self) -> bool:
+        return self._told
+
+    def _signalled(self, _: int, __: FrameType | None) -> None:
+        self._bus.wake_up(self._tell)
+
+    def _tell(self) -> None:
+        if not self._told:
+            self._told = True
+            self._then()
+
+    def _look(self) -> None:
+        if orphaned(self._parent):
+            self._tell()
+        else:
+            self._bus.later(PARENT_CHECK, self._look)
