@@ -140,6 +140,11 @@ def differences(recorded: Any, found: Any, path: str = "") -> Iterator[str]:
     elif isinstance(recorded, list) and isinstance(found, list) and len(recorded) == len(found):
         for number, pair in enumerate(zip(recorded, found, strict=True)):
             yield from differences(*pair, f"{path}[{number}]")
+    elif isinstance(recorded, str) and isinstance(found, str) and recorded != found:
+        same = next((at for at, pair in enumerate(zip(recorded, found, strict=False)) if pair[0] != pair[1]), 0)
+        begins = max(0, same - 40) if len(recorded) > 300 else 0
+        where = f" from character {begins}" if begins else ""
+        yield f"{path}{where}: was {_short(recorded[begins : begins + 160])}, is {_short(found[begins : begins + 160])}"
     elif recorded != found or type(recorded) is not type(found):
         yield f"{path}: was {_short(recorded)}, is {_short(found)}"
 
