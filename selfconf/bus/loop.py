@@ -8,6 +8,7 @@ import logging
 import queue
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 log = logging.getLogger(__name__)
 
@@ -17,10 +18,14 @@ class Loop:
 
     MOST_AT_ONCE = 1000
     """How many things a call of `poll` says at most, so that `run` gets to ask whether to go on, whatever comes in."""
+    FEW_TIMERS = 64
+    """How many timers are kept without asking how many of them were taken back."""
 
     def __init__(self) -> None:
         self._waiting: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._timers: list[tuple[float, int, _Timer]] = []
+        self._taken_back = 0
+        """How many entries of the heap were taken back; they stay until their time, or until they are the majority."""
         self._count = itertools.count()
         self._ended = False
 
@@ -36,7 +41,14 @@ class Loop:
         """Call `action` once, after that time; the result takes it back."""
         timer = _Timer(action)
         heapq.heappush(self._timers, (self.now() + seconds, next(self._count), timer))
-        return timer.undo
+
+        def undo() -> None:
+            if timer.action is not None:
+                timer.action = None
+                self._taken_back += 1
+                self._drop_taken_back()
+
+        return undo
 
     def poll(self, seconds: float = 0.0) -> None:
         """Say everything there is to say; wait up to that long for something if there is nothing."""
@@ -56,14 +68,25 @@ class Loop:
         """Say nothing any more."""
         self._ended = True
         self._timers.clear()
+        self._taken_back = 0
 
     def _due(self) -> Callable[[], None] | None:
         """The timer whose time has come; timers go first, or whoever says much would hold them up."""
         while self._timers and (self._timers[0][2].action is None or self._timers[0][0] <= self.now()):
-            action = heapq.heappop(self._timers)[2].action
-            if action is not None:
-                return action
+            timer = heapq.heappop(self._timers)[2]
+            if timer.action is None:
+                self._taken_back -= 1
+                continue
+            action, timer.action = timer.action, None  # taking it back from now on does nothing
+            return action
         return None
+
+    def _drop_taken_back(self) -> None:
+        """Build the heap anew once most of it was taken back: constant cost per timer, as none is dropped twice."""
+        if len(self._timers) > self.FEW_TIMERS and 2 * self._taken_back > len(self._timers):
+            self._timers = [entry for entry in self._timers if entry[2].action is not None]
+            heapq.heapify(self._timers)
+            self._taken_back = 0
 
     def _next(self, deadline: float | None) -> Callable[[], None] | None:
         """The next thing to say, be it a timer; it is waited for until the deadline, if there is one."""
@@ -86,13 +109,8 @@ class Loop:
             log.exception("a callback broke; going on")
 
 
+@dataclass(slots=True, eq=False)
 class _Timer:
-    """Something to be said at a time, until it is taken back."""
+    """Something to be said at a time; no action is left once it was said or taken back."""
 
-    __slots__ = ("action",)
-
-    def __init__(self, action: Callable[[], None]) -> None:
-        self.action: Callable[[], None] | None = action
-
-    def undo(self) -> None:
-        self.action = None
+    action: Callable[[], None] | None

@@ -68,7 +68,8 @@ class Body:
         self._following: dict[tuple[str, Wire], Following] = {}
         self._last: dict[str, tuple[bytes, bytes]] = {}
         self._sequence = itertools.count(1)
-        self._timers: list[Undo] = []
+        self._timers: dict[int, Undo] = {}
+        self._timer_numbers = itertools.count()
         self._supervision: list[Undo] = []
         self._supervisor = ""
         """Whose life is watched."""
@@ -130,13 +131,16 @@ class Body:
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` at that interval until the component stops or fails."""
+        number = next(self._timer_numbers)
 
         def tick() -> None:
             if self.active:
-                self._timers.append(self.bus.later(seconds, tick))
+                self._timers[number] = self.bus.later(seconds, tick)
                 self._guarded(action)
+            else:
+                del self._timers[number]
 
-        self._timers.append(self.bus.later(seconds, tick))
+        self._timers[number] = self.bus.later(seconds, tick)
 
     def _fell(self) -> None:
         """Take on the life of one that has failed."""
@@ -235,7 +239,7 @@ class Body:
     def _rest(self) -> None:
         """Be off: no timers, no inputs, no supervisor, and the component's code at rest."""
         self.active = False
-        for undo in self._timers:
+        for undo in self._timers.values():
             undo()
         for following in self._following.values():
             following.end()

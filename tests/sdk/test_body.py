@@ -475,6 +475,30 @@ def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
     assert len(ticks) == 8
 
 
+def test_a_timer_that_has_ticked_for_a_long_time_is_kept_once() -> None:
+    ticks: list[float] = []
+
+    class Ticking(Recorder):
+        def started(self) -> None:
+            self.every(0.1, lambda: ticks.append(stage.network.time))
+
+    stage = Stage(Ticking())
+    stage.call(Apply(1, US))
+    stage.let_pass(100.05)
+    assert len(ticks) == 1000
+    assert len(stage.body._timers) == 1
+    stage.call(Release(2, US))
+    assert not stage.body._timers
+
+
+def test_a_timer_of_a_component_that_is_not_active_is_not_kept() -> None:
+    stage = Stage()
+    for _ in range(100):
+        stage.component.every(0.1, print)
+    stage.let_pass(0.2)
+    assert not stage.body._timers
+
+
 def test_a_component_that_is_part_of_no_ecology_says_so() -> None:
     component = Component()
     for use in (lambda: component.emit("a", 1), lambda: component.fail("x"), lambda: component.every(1.0, print)):
