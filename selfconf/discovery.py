@@ -39,12 +39,15 @@ class FoundAdvertisement:
 
 @dataclass(slots=True)
 class Discovery:
-    """What a discovery has found: the advertisements by component, the sites, and which of them did not answer."""
+    """What a discovery has found: the advertisements by component, and the sites."""
 
     found: dict[IRI, FoundAdvertisement] = field(default_factory=dict)
     sites: tuple[str, ...] = ()
+    """Every site that lives or has answered, sorted."""
     missing: tuple[str, ...] = ()
+    """The sites that did not answer, or not in full: what they advertise may be missing from `found`. Sorted."""
     complaints: list[str] = field(default_factory=list)
+    """What was left out, and why, in sentences."""
 
 
 class EcologyView:
@@ -118,7 +121,8 @@ class _Inquiry:
     def _replied(self, replies: Replies) -> None:
         for sample in replies.samples:
             self._take(sample)
-        incomplete = [site for site in self._sites if not self._complete(site)]
+        # A site may begin to answer and die, or begin to live after the roll-call: pages count as much as a token.
+        incomplete = [site for site in sorted({*self._sites, *self._pages}) if not self._complete(site)]
         if incomplete and self._attempt < DISCOVERY_ATTEMPTS and replies.complete:
             self._ask(incomplete[0] if len(incomplete) == 1 else "*")
         else:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
 from selfconf.configurator.machine import State
 from selfconf.deployment.calls import Calls
@@ -44,6 +45,7 @@ class Liveness:
         self._sites: set[str] = set()
         self._unheard: dict[str, str] = {}
         self._link, self._cut_off = self.bus.link, False
+        self._ask_again: Undo = lambda: None
 
     def discovered(self, discovery: Discovery) -> None:
         """From the first discovery on, lives are followed; a site that did not answer counts as news later."""
@@ -52,8 +54,9 @@ class Liveness:
             self._unheard = dict(self.ecology.lives)
             self.bus.later(SETTLING, self._end_unheard)
         self.ecology.follow(self._life_changed, self._site_changed)
+        self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
         if discovery.missing:
-            self.bus.later(ASK_AGAIN, lambda: self._step(Appeared({})))
+            self._ask_again = self.bus.later(ASK_AGAIN, lambda: self._step(Appeared({})))
 
     def _life_changed(self, key: str, alive: bool) -> None:
         chunk, life = owner_of(key), life_of(key)
