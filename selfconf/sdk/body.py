@@ -27,8 +27,8 @@ from typing import Any
 
 from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import PeerError, ProgrammerError
+from selfconf.model.number import as_python
 from selfconf.model.profile import Profile
-from selfconf.model.term import Literal, Term
 from selfconf.protocol import life as lives
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of, owner_of
@@ -257,7 +257,7 @@ class Body:
             if name not in known:
                 return f"it declares no parameter {name!r}"
             try:
-                self.component.parameter_set(name, _python(value))
+                self.component.parameter_set(name, as_python(value))
             except Refused as refusal:
                 return str(refusal) or f"it refuses {name} = {value}"
             except Exception as error:
@@ -343,16 +343,3 @@ class Body:
         self._grace = None
         log.warning("%s: its configurator is gone; turning off", self.profile.component.short)
         self._become(*lives.orphan(self.life))
-
-
-def _python(value: Term) -> Any:
-    """A term as a component's code likes it: a truth value or a number where the literal is one, else text."""
-    if isinstance(value, Literal):
-        kind = value.datatype.rpartition("#")[2]
-        if kind == "boolean":
-            return value.lexical in ("true", "1")
-        if kind in ("integer", "int", "long", "short", "byte", "nonNegativeInteger", "positiveInteger"):
-            return int(value.lexical)
-        if kind in ("decimal", "double", "float"):
-            return float(value.lexical)
-    return str(value)
