@@ -1,7 +1,7 @@
-"""How programs on one machine find each other's routers: a small file for each site, in the user's runtime folder.
+"""How a program finds its ecology: by its arguments, by its environment, or by the sites that run on this machine.
 
-Across machines endpoints are given (`--connect`); on one machine none is needed. A file whose process is gone is
-passed over, and removed.
+Across machines endpoints are given (`--connect`, or `SELFCONF_CONNECT`); on one machine none is needed, for each site
+writes a small file into the user's runtime folder. A file whose process is gone is passed over, and removed.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,6 +21,10 @@ from selfconf.errors import NetworkError
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 from selfconf.termination import alive
 
+ECOLOGY_VARIABLE = "SELFCONF_ECOLOGY"
+"""The variable that names the ecology of a program to which none is given."""
+CONNECT_VARIABLE = "SELFCONF_CONNECT"
+"""The variable with the endpoints, apart by spaces, that a program connects to when none are given."""
 ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
 USUAL_PORTS = range(20000, 32768)
@@ -127,12 +131,24 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
     return found
 
 
-def find(ecology: str | None, connect: list[str]) -> tuple[str, list[str]]:
-    """The ecology and the endpoints to connect to; raises NetworkError, saying what to try, if there are none."""
+def environment(ecology: str, endpoint: str) -> dict[str, str]:
+    """The variables by which a program that is started finds an ecology."""
+    return {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
+
+
+def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
+    """The ecology and the endpoints to connect to.
+
+    Each is what is given, else what the environment says, else that of the sites on this machine. Raises NetworkError,
+    saying what to try, if there are none, and AuthorError for what cannot name an ecology.
+    """
+    if ecology is None:
+        ecology = os.environ.get(ECOLOGY_VARIABLE) or None
+    endpoints = list(connect) or os.environ.get(CONNECT_VARIABLE, "").split()
     if ecology is not None:
         checked_name(ecology, "an ecology")
-    if connect:
-        return ecology or _ecology_at(connect), connect
+    if endpoints:
+        return ecology or _ecology_at(endpoints), endpoints
     found = local_sites(ecology)
     names = sorted({meeting.ecology for meeting in found})
     if not names:

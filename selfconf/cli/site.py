@@ -59,7 +59,7 @@ def run(given: argparse.Namespace) -> int:
         others = [meeting.endpoint for meeting in rendezvous.local_sites(given.ecology)]
         bus = _router(given.listen, given.ecology, list(dict.fromkeys([*given.connect, *others])))
         ending = Termination(bus)
-        environment = {"SELFCONF_ECOLOGY": given.ecology, "SELFCONF_CONNECT": bus.endpoint}
+        environment = rendezvous.environment(given.ecology, bus.endpoint)
         site = Site(bus, given.ecology, name, shelf, environment)
         meeting = rendezvous.announce(LocalSite(given.ecology, name, bus.endpoint, os.getpid()))
     count = len(site.shelf.advertisements)

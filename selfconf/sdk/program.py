@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
@@ -53,9 +52,7 @@ def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
 
 def join(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
     """A host for components in an ecology. Raises NetworkError if it cannot be reached."""
-    ecology = ecology or os.environ.get("SELFCONF_ECOLOGY")
-    endpoints = list(connect) or os.environ.get("SELFCONF_CONNECT", "").split()
-    name, endpoints = rendezvous.find(ecology, endpoints)
+    name, endpoints = rendezvous.find(ecology, connect)
     return Host(client(endpoints), name)
 
 
