@@ -27,7 +27,6 @@ from typing import Any
 
 from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import PeerError, ProgrammerError
-from selfconf.model.number import as_python
 from selfconf.model.profile import Profile
 from selfconf.protocol import life as lives
 from selfconf.protocol.codec import decode, encode
@@ -47,6 +46,7 @@ from selfconf.protocol.messages import (
 )
 from selfconf.sdk.component import Component, Refused, Signal
 from selfconf.sdk.following import RAW, Following
+from selfconf.sdk.values import as_python
 
 log = logging.getLogger(__name__)
 

@@ -11,7 +11,6 @@ import pytest
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.errors import ProgrammerError
-from selfconf.model.number import WHOLE
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.protocol.codec import decode, encode
@@ -151,7 +150,7 @@ def test_parameters_are_set_by_name_and_as_values_that_code_likes() -> None:
         (Literal("(AT BEDROOM)"), "(AT BEDROOM)"),
         (IRI("urn:x"), "urn:x"),
         (Literal("3", IRI(XSD + "integer")), 3),
-        *((Literal("1", datatype), 1) for datatype in sorted(WHOLE)),
+        (Literal("1", IRI(XSD + "unsignedInt")), 1),
         (Literal("0.5", IRI(XSD + "decimal")), 0.5),
         (Literal("0.5", IRI(XSD + "double")), 0.5),
         (Literal("0.5", IRI(XSD + "float")), 0.5),

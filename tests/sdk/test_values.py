@@ -1,13 +1,12 @@
-"""Which datatypes are numbers, and what a literal is in Python."""
+"""What the values of operational parameters are in Python."""
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
-from selfconf.model.number import NUMERIC, WHOLE, as_python
+from selfconf.model.number import DATATYPES, WHOLE
 from selfconf.model.term import IRI, XSD, BlankNode, Literal, Term
+from selfconf.sdk.values import as_python
 
 
 def typed(lexical: str, datatype: str) -> Literal:
@@ -15,13 +14,14 @@ def typed(lexical: str, datatype: str) -> Literal:
 
 
 def test_xsd_has_sixteen_datatypes_of_numbers_thirteen_of_them_whole() -> None:
-    assert (len(NUMERIC), len(WHOLE)) == (16, 13)
+    assert (len(DATATYPES), len(WHOLE)) == (16, 13)
 
 
-@pytest.mark.parametrize("datatype", sorted(NUMERIC), ids=lambda datatype: datatype.short)
-def test_a_number_of_every_numeric_datatype_is_a_number_in_python(datatype: IRI) -> None:
-    value = as_python(Literal("1", datatype))
-    assert value == 1
+@pytest.mark.parametrize("datatype", sorted(DATATYPES), ids=lambda datatype: IRI(datatype).short)
+def test_a_number_of_every_numeric_datatype_is_a_number_in_python(datatype: str) -> None:
+    lexical = "-1" if datatype.endswith(("nonPositiveInteger", "negativeInteger")) else "1"
+    value = as_python(Literal(lexical, IRI(datatype)))
+    assert value == int(lexical)
     assert type(value) is (int if datatype in WHOLE else float)
 
 
@@ -30,10 +30,8 @@ def test_a_number_of_every_numeric_datatype_is_a_number_in_python(datatype: IRI)
     [
         (typed("-7", "long"), -7),
         (typed("+3", "integer"), 3),
-        (typed(" 3\n", "integer"), 3),
         (typed("0.5", "decimal"), 0.5),
         (typed(".5e1", "double"), 5.0),
-        (typed("-INF", "float"), -math.inf),
         (typed("true", "boolean"), True),
         (typed("1", "boolean"), True),
         (typed("false", "boolean"), False),
@@ -47,11 +45,7 @@ def test_a_number_of_every_numeric_datatype_is_a_number_in_python(datatype: IRI)
 )
 def test_a_term_is_a_truth_value_a_number_or_its_text(term: Term, value: object) -> None:
     found = as_python(term)
-    assert (found, type(found)) == (value, str if isinstance(term, IRI | BlankNode) else type(value))
-
-
-def test_not_a_number_is_the_number_that_equals_none() -> None:
-    assert math.isnan(float(as_python(typed("NaN", "double"))))
+    assert (found, type(found)) == (value, type(value))
 
 
 @pytest.mark.parametrize(
@@ -60,10 +54,9 @@ def test_not_a_number_is_the_number_that_equals_none() -> None:
         typed("three", "integer"),
         typed("1_000", "int"),
         typed("1.0", "unsignedInt"),
-        typed("٣", "integer"),
+        typed("-1", "unsignedInt"),
         typed("", "decimal"),
-        typed("nan", "double"),
-        typed("infinity", "float"),
+        typed("NaN", "double"),
         typed("yes", "boolean"),
     ],
     ids=str,
