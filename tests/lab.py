@@ -20,7 +20,7 @@ from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component, Signal
-from selfconf.site.site import Shelf, Site
+from selfconf.site import Shelf, Site
 
 PREFIXES = """@prefix sc:  <https://w3id.org/selfconf#> .
 @prefix rob: <https://w3id.org/selfconf/robotics#> .

@@ -15,7 +15,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Page, Release
 from selfconf.rdf.vocabulary import RDFS
-from selfconf.site.site import Shelf, Site
+from selfconf.site import Shelf, Site
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
 
 KEYS = Keys("lab")

@@ -17,7 +17,7 @@ from selfconf.deployment import TaskRunner
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.component import Refused
-from selfconf.site.site import Site
+from selfconf.site import Site
 from tests.lab import ADVERTISEMENTS, Lab
 
 SETTLED = 60.0
