@@ -46,6 +46,8 @@ class Discovery:
     """Every site that lives or has answered, sorted."""
     missing: tuple[str, ...] = ()
     """The sites that did not answer, or not in full: what they advertise may be missing from `found`. Sorted."""
+    site_tokens: frozenset[str] = frozenset()
+    """The liveliness keys of the sites at the roll-call: which life of which site was asked."""
     complaints: list[str] = field(default_factory=list)
     """What was left out, and why, in sentences."""
 
@@ -90,6 +92,7 @@ class _Inquiry:
 
     def __init__(self, ecology: EcologyView, done: Callable[[Discovery], None]) -> None:
         self.ecology, self.bus, self.keys, self._done = ecology, ecology.bus, ecology.keys, done
+        self._tokens: tuple[str, ...] = ()
         self._sites: tuple[str, ...] = ()
         self._pages: dict[str, dict[int, tuple[Page, Sample]]] = {}
         self._expected: dict[str, tuple[int, int]] = {}
@@ -111,7 +114,7 @@ class _Inquiry:
         self.bus.roll_call(self.keys.any_site_life(), DISCOVERY, self._called)
 
     def _called(self, keys: tuple[str, ...]) -> None:
-        self._sites = tuple(sorted({owner_of(key) for key in keys}))
+        self._tokens, self._sites = keys, tuple(sorted({owner_of(key) for key in keys}))
         self._ask("*")
 
     def _ask(self, site: str) -> None:
@@ -158,7 +161,8 @@ class _Inquiry:
                     self._complaints.append(f"left out {component} of site {site}: site {other} advertises it too")
                 else:
                     found[component] = FoundAdvertisement(advertisement, site, page.source, page.startable)
-        return Discovery(found, tuple(sorted({*self._sites, *self._pages})), missing, self._complaints)
+        sites = tuple(sorted({*self._sites, *self._pages}))
+        return Discovery(found, sites, missing, frozenset(self._tokens), self._complaints)
 
     def _advertisement(self, site: str, page: Page, payload: bytes) -> Advertisement | None:
         """What a site says is untrusted: it must be one advertisement, of the component it is said to be of."""

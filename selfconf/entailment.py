@@ -105,8 +105,12 @@ def _keep(path: Path, entailed: bytes) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as temporary:
-            temporary.write(entailed)
-        Path(temporary.name).replace(path)
+            try:
+                temporary.write(entailed)
+                temporary.close()
+                Path(temporary.name).replace(path)
+            except OSError:
+                Path(temporary.name).unlink(missing_ok=True)
     except OSError:
         return
 

@@ -11,7 +11,7 @@ import pytest
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.events import Failed
 from selfconf.configurator.machine import Phase, Policy
-from selfconf.deployment.calls import CALL, STARTING
+from selfconf.deployment.calls import CALL, STARTING, WAKING
 from selfconf.deployment.liveness import ASK_AGAIN, SETTLING
 from selfconf.deployment.runner import TRY_AGAIN
 from selfconf.discovery import DISCOVERY_ATTEMPTS
@@ -672,6 +672,50 @@ def test_a_site_that_does_not_answer_is_asked_again_at_one_interval_whatever_els
     asked.clear()
     lab.let_pass(10 * ASK_AGAIN)
     assert len(asked) <= 10 * DISCOVERY_ATTEMPTS
+
+
+def test_a_site_that_is_started_again_is_news_though_its_earlier_life_has_not_ended_yet(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    first = lab.site("living-room", "pippi")
+    agent = lab.agent(patient=True)
+    lab.let_pass(2 * ASK_AGAIN)
+    assert agent.state.phase is Phase.REFUSED
+    (tmp_path / "living-room" / "pippi.ttl").unlink()
+    lab.site("living-room", "tracker")
+    first.bus.close()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK, "odometry")
+    for name in (*TASK, "odometry"):
+        lab.component(name)
+    tracker, node = iri("person-tracker"), lab.network.node()
+    page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
+
+    def advertise(request: Request) -> None:
+        payload = (PREFIXES + ADVERTISEMENTS["tracker"]).encode()
+        request.reply(lab.keys.advertisement("living-room", tracker), payload, page)
+        request.finish()
+
+    def wake(request: Request) -> None:
+        request.reply(lab.keys.wake("living-room"), b"started")
+        request.finish()
+        node.publisher(lab.keys.fail(tracker), Urgency.EVENT).put(encode(Fail(tracker, "", 0, Cause.CRASH, "code 1")))
+
+    node.announce(lab.keys.site_life("living-room", "1"))
+    node.serve(lab.keys.advertisements("living-room"), advertise)
+    node.serve(lab.keys.wake("living-room"), wake)
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert agent.state.lost[tracker].detail == "code 1"
+    lab.let_pass(2 * WAKING)
+    assert lab.acts("unreachable") == []
 
 
 # What others ask of it.

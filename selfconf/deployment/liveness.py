@@ -43,13 +43,14 @@ class Liveness:
         self.bus, self.ecology = ecology.bus, ecology
         self._state, self._step, self._tell, self._calls = state, step, tell, calls
         self._sites: set[str] = set()
+        """The liveliness keys of the sites that have answered: a site that was started again has another one."""
         self._unheard: dict[str, str] = {}
         self._link, self._cut_off = self.bus.link, False
         self._ask_again: Undo = lambda: None
 
     def discovered(self, discovery: Discovery) -> None:
         """From the first discovery on, lives are followed; a site that did not answer counts as news later."""
-        self._sites.update(set(discovery.sites) - set(discovery.missing))
+        self._sites.update(key for key in discovery.site_tokens if owner_of(key) not in discovery.missing)
         if not self.ecology.followed:
             self._unheard = dict(self.ecology.lives)
             self.bus.later(SETTLING, self._end_unheard)
@@ -120,12 +121,11 @@ class Liveness:
         return held.life if held is not None else None
 
     def _site_changed(self, key: str, alive: bool) -> None:
-        site = owner_of(key)
-        if alive and site not in self._sites:
-            self._sites.add(site)
+        if alive and key not in self._sites:
+            self._sites.add(key)
             self._step(Appeared({}))
         elif not alive:
-            self._sites.discard(site)
+            self._sites.discard(key)
 
     def _await_link(self) -> None:
         """Who is cut off sees everybody die, and cannot tell; what has become of them is asked afterwards."""
