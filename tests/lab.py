@@ -18,8 +18,8 @@ from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
-from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component, Signal
+from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Shelf, Site
 
 PREFIXES = """@prefix sc:  <https://w3id.org/selfconf#> .
@@ -116,7 +116,7 @@ class Lab:
         self.folder = folder
         self.keys = Keys("lab")
         self.components: dict[str, Recorder] = {}
-        self.bodies: dict[str, Body] = {}
+        self.bodies: dict[str, ComponentRuntime] = {}
         self.complaints: list[str] = []
         self.accounts: list[Account] = []
         self.ended: list[Refusal | None] = []
@@ -132,7 +132,7 @@ class Lab:
         (advertisement,), _ = advertisements.read(document)
         recorder = recorder or Recorder()
         life = f"{name}{len(self.network.nodes)}"
-        self.bodies[name] = Body(self.network.node(), self.keys, advertisement.profile, recorder, life)
+        self.bodies[name] = ComponentRuntime(self.network.node(), self.keys, advertisement.profile, recorder, life)
         self.components[name] = recorder
         return recorder
 

@@ -22,7 +22,7 @@ from selfconf.protocol.messages import CallAnswer, Cause, Fail, Page, Release, S
 from selfconf.rdf import conformance as shacl
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import PROV, SC
-from selfconf.sdk.body import GRACE
+from selfconf.sdk.supervision import GRACE
 from selfconf.sdk.component import Refused
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
 
@@ -461,7 +461,7 @@ def test_patience_goes_on_when_a_component_that_another_configurator_held_is_fre
     first.stop()
     assert lab.running(second)
     assert lab.active() == TASK | {"tracker"}
-    assert lab.bodies["drive"].life.supervisor == second.supervisor
+    assert lab.bodies["drive"].activation.supervisor == second.supervisor
 
 
 def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
@@ -514,7 +514,7 @@ def test_a_configurator_that_was_suspended_yields_to_the_one_that_has_taken_over
     lab.rejoin(first)
     assert lab.until(lambda: first.state.phase is Phase.REFUSED)
     assert lab.active() == TASK | {"tracker"}
-    assert all(lab.bodies[name].life.supervisor == second.supervisor for name in TASK | {"tracker"})
+    assert all(lab.bodies[name].activation.supervisor == second.supervisor for name in TASK | {"tracker"})
 
 
 def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_configuration(lab: Lab) -> None:

@@ -59,7 +59,9 @@ def test_a_cache_that_cannot_be_written_is_done_without(cache: Path, monkeypatch
     assert ("Tracker", "Sensor") in closed()
 
 
-def test_a_closure_that_cannot_be_kept_leaves_no_half_of_it_behind(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_closure_that_cannot_be_kept_leaves_no_half_of_it_behind(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     closed()
     (kept,) = cache.rglob("*.nt")
     kept.unlink()

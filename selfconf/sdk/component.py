@@ -12,7 +12,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.term import IRI
 
 if TYPE_CHECKING:
-    from selfconf.sdk.body import Body
+    from selfconf.sdk.runtime import ComponentRuntime
 
 
 class Refused(Exception):
@@ -41,7 +41,7 @@ class Component:
     component: ClassVar[str] = ""
     """The IRI of the component, needed only where the file advertises several."""
 
-    _body: Body | None = None
+    _runtime: ComponentRuntime | None = None
 
     def started(self) -> None:
         """The component has been activated. Raise Refused if it cannot act.
@@ -77,12 +77,12 @@ class Component:
     @property
     def active(self) -> bool:
         """Whether the component is part of a configuration and has not failed."""
-        return self._body is not None and self._body.active
+        return self._runtime is not None and self._runtime.active
 
-    def _attached(self) -> Body:
-        if self._body is None:
+    def _attached(self) -> ComponentRuntime:
+        if self._runtime is None:
             raise ProgrammerError(f"{type(self).__name__} is not part of an ecology yet; hand it to `main` or a Host")
-        return self._body
+        return self._runtime
 
     @classmethod
     def advertisement_path(cls) -> Path:
