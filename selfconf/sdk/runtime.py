@@ -117,18 +117,21 @@ class ComponentRuntime:
             reply()
 
     def _answer(self, call: str, payload: bytes) -> CallAnswer:
-        """Obey a call, if it is to be obeyed, and return the answer. Raises PeerError for what is no call."""
+        """Obey a call, if the table says so, and return the answer. Raises PeerError for what is no call."""
         if call == "state":
             return self._verdict(Verdict.DONE)
         if call not in _MESSAGES:
             raise PeerError(f"there is no call {call!r}")
         message: Apply | SetParameters | Release = decode(payload, _MESSAGES[call])
         if isinstance(message, Apply):
-            unknown = set(message.inputs) - {port.name for port in self.profile.inputs}
+            unknown = sorted(set(message.inputs) - {port.name for port in self.profile.inputs})
             if unknown:
-                return self._verdict(Verdict.REFUSED, f"it has no input {sorted(unknown)[0]!r}")
+                return self._verdict(Verdict.REFUSED, f"it has no input {unknown[0]!r}")
             if not self.keys.is_configurator_life(message.supervisor):
                 raise PeerError(f"{message.supervisor!r} is no life of a configurator")
+        return self._obey(message)
+
+    def _obey(self, message: Apply | SetParameters | Release) -> CallAnswer:
         # Within the grace period another configurator may take the component over, but not set its parameters.
         free = self.supervision.gone and not isinstance(message, SetParameters)
         before = replace(self.activation, supervisor=None) if free else self.activation
