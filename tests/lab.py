@@ -204,7 +204,7 @@ class Lab:
         node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and not self.network.reaches(node, other):
-                self.network.mend(node, other)
+                self.network.reconnect(node, other)
 
     def let_pass(self, seconds: float) -> None:
         """Let simulated time pass."""
