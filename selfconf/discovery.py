@@ -1,8 +1,8 @@
-"""The living ecology as seen from a bus: who is alive, and what they advertise.
+"""The living ecology as seen from a bus: which components live, and what the sites advertise.
 
-Discovery is acts 1 and 2 of the paper (section 2.4). It hears from liveliness which sites there are, asks them all,
-and ends when all the living have answered, or at the time-out, and then says who did not. An answer is checked for
-completeness, n of n, because a site that dies in the middle of it is not reported by the network.
+Discovery is acts 1 and 2 of the paper (section 2.4). It asks liveliness which sites there are, asks them all for their
+advertisements, and ends when all have answered, or at the time-out, with the names of those that did not. An answer is
+checked for completeness, n of n, because the network does not report a site that dies in the middle of its answer.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
 
 DISCOVERY = 3.0
-"""How long, in seconds, a site may take to answer; those who answer are not waited for longer than they need."""
+"""How long, in seconds, the sites may take to answer; once all have answered, nothing is waited for any more."""
 DISCOVERY_ATTEMPTS = 3
-"""How often a site whose answer is incomplete is asked."""
+"""How often a site whose answer is incomplete is asked, all in all."""
 LARGEST_ADVERTISEMENT = 1 << 20
-"""An advertisement of more bytes is left out."""
+"""An advertisement of more bytes than this is left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class FoundAdvertisement:
-    """An advertisement of the living ecology: at which site, from which source, and whether the site can start it."""
+    """An advertisement of the living ecology: at which site, from which file, and whether the site can start it."""
 
     advertisement: Advertisement
     site: str
@@ -53,7 +53,7 @@ class Discovery:
 
 
 class EcologyView:
-    """The living ecology as seen from a bus: it can be discovered, and says which components live."""
+    """One ecology as seen from a bus: it can be discovered, and its lives followed."""
 
     def __init__(self, bus: Bus, name: str) -> None:
         self.bus, self.keys = bus, Keys(name)
@@ -72,10 +72,10 @@ class EcologyView:
         return self._followed
 
     def follow(self, changed: Callable[[str, bool], None], site_changed: Callable[[str, bool], None]) -> None:
-        """From now on hear of the life of every component and site, those there first; asking twice does nothing.
+        """Follow the life of every component and site from now on, those that are there first; twice does nothing.
 
-        Not before the first discovery has ended: a roll-call that runs while a watch of the same lives begins is
-        answered in part only.
+        Not to be called before the first discovery has ended: Zenoh answers a roll-call in part only if a watch of
+        the same lives begins meanwhile.
         """
         if not self._followed:
             self._followed = True
@@ -83,7 +83,7 @@ class EcologyView:
             self.bus.watch(self.keys.any_site_life(), site_changed)
 
     def discover(self, done: Callable[[Discovery], None]) -> None:
-        """Ask everything that lives what it advertises; `done` hears once, when all have answered or time is up."""
+        """Ask all sites what they advertise; `done` is called once, when all have answered or time is up."""
         _Inquiry(self, done).start()
 
 
@@ -165,7 +165,7 @@ class _Inquiry:
         return Discovery(found, sites, missing, frozenset(self._tokens), self._complaints)
 
     def _advertisement(self, site: str, page: Page, payload: bytes) -> Advertisement | None:
-        """What a site says is untrusted: it must be one advertisement, of the component it is said to be of."""
+        """The advertisement in a reply, which is untrusted: there must be one, of the component that its page names."""
         name = f"site {site}, {page.source}"
         if len(payload) > LARGEST_ADVERTISEMENT:
             self._complaints.append(f"left out {page.component} of {name}: {len(payload)} bytes are too many")

@@ -28,7 +28,10 @@ CONNECT_VARIABLE = "SELFCONF_CONNECT"
 ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
 USUAL_PORTS = range(20000, 32768)
-"""Below those that Linux takes for outgoing connections, or who tries to connect again might get the port itself."""
+"""The ports of sites: below those that Linux takes for outgoing connections.
+
+Else a client that tries to connect to a port where nothing listens might be given that very port for its own end.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +56,10 @@ def runtime_folder() -> Path:
 
 
 def usual_endpoint(ecology: str) -> str:
-    """Where a site of an ecology listens if nobody else does: the same each time, another for another runtime folder.
+    """Where a site of an ecology listens unless the port is taken.
 
-    So a site that is started again is where those look for it who were connected to the one before.
+    It depends on the ecology and the runtime folder alone, so that a site that is started again is where the clients
+    of the one before look for it.
     """
     digest = hashlib.blake2s(f"{runtime_folder()} {ecology}".encode(), digest_size=8).digest()
     return f"tcp/127.0.0.1:{USUAL_PORTS[int.from_bytes(digest, 'big') % len(USUAL_PORTS)]}"
@@ -63,12 +67,12 @@ def usual_endpoint(ecology: str) -> str:
 
 @contextmanager
 def _writing() -> Iterator[Path]:
-    """The folder, to write in. Raises NetworkError where that cannot be."""
+    """The folder, made and checked, to write in. Raises NetworkError where that cannot be."""
     root = runtime_folder()
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
         if root.stat().st_uid != os.getuid():
-            raise NetworkError(f"{root} belongs to somebody else; set SELFCONF_RUNTIME_DIR to a folder of your own")
+            raise NetworkError(f"{root} belongs to another user; set SELFCONF_RUNTIME_DIR to a folder of your own")
         yield root
     except OSError as error:
         raise NetworkError(
@@ -78,9 +82,9 @@ def _writing() -> Iterator[Path]:
 
 @contextmanager
 def turn() -> Iterator[None]:
-    """The time in which one site, and no other, looks who is there, opens its router, and announces itself.
+    """Hold a lock in which one site, and no other, looks for other sites, opens its router, and announces itself.
 
-    Else two that start at once would miss each other, and each stay alone.
+    Without it two sites that start at once would miss each other, and neither would connect to the other.
     """
     with _writing() as root:
         descriptor = os.open(root, os.O_RDONLY)
@@ -91,20 +95,20 @@ def turn() -> Iterator[None]:
         os.close(descriptor)
 
 
-def announce(meeting: LocalSite) -> Path:
-    """Write the file of a site; whoever wrote it removes it by `leave`. Raises NetworkError where that cannot be."""
-    if any(other.site == meeting.site and other.process != os.getpid() for other in local_sites(meeting.ecology)):
-        raise NetworkError(f"a site {meeting.site!r} of ecology {meeting.ecology!r} runs on this machine already")
+def announce(site: LocalSite) -> Path:
+    """Write the file of a site, which `leave` removes; return its path. Raises NetworkError where that cannot be."""
+    if any(other.site == site.site and other.process != os.getpid() for other in local_sites(site.ecology)):
+        raise NetworkError(f"a site {site.site!r} of ecology {site.ecology!r} runs on this machine already")
     with _writing() as root:
-        path = root / f"{meeting.ecology}@{meeting.site}.json"
+        path = root / f"{site.ecology}@{site.site}.json"
         temporary = path.with_suffix(f".{os.getpid()}")
-        temporary.write_text(json.dumps(asdict(meeting)))
+        temporary.write_text(json.dumps(asdict(site)))
         temporary.replace(path)
     return path
 
 
 def leave(path: Path) -> None:
-    """Remove the file of a site, unless another program has taken its place."""
+    """Remove the file of a site of this process; a file that another process has written since stays."""
     try:
         if json.loads(path.read_text())["process"] == os.getpid():
             path.unlink()
@@ -120,14 +124,14 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
         return found
     for path in sorted(root.glob("*.json")):
         try:
-            meeting = LocalSite(**json.loads(path.read_text()))
-            living = alive(int(meeting.process))
+            site = LocalSite(**json.loads(path.read_text()))
+            living = alive(int(site.process))
         except (OSError, ValueError, TypeError):
             continue
         if not living:
             path.unlink(missing_ok=True)
-        elif ecology is None or meeting.ecology == ecology:
-            found.append(meeting)
+        elif ecology is None or site.ecology == ecology:
+            found.append(site)
     return found
 
 
@@ -150,7 +154,7 @@ def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
     if endpoints:
         return ecology or _ecology_at(endpoints), endpoints
     found = local_sites(ecology)
-    names = sorted({meeting.ecology for meeting in found})
+    names = sorted({site.ecology for site in found})
     if not names:
         which = "" if ecology is None else f"of the ecology {ecology!r} "
         raise NetworkError(
@@ -158,7 +162,7 @@ def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
         )
     if len(names) > 1:
         raise NetworkError(f"several ecologies run on this machine; say which with --ecology: {', '.join(names)}")
-    return names[0], [meeting.endpoint for meeting in found]
+    return names[0], [site.endpoint for site in found]
 
 
 def _ecology_at(endpoints: list[str]) -> str:

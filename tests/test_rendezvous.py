@@ -125,13 +125,13 @@ def test_the_folder_is_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert str(os.getuid()) in rendezvous.runtime_folder().name
 
 
-def test_a_folder_of_somebody_else_is_neither_written_nor_read(
+def test_a_folder_of_another_user_is_neither_written_nor_read(
     runtime_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rendezvous.announce(meeting())
     monkeypatch.setattr("os.getuid", lambda: runtime_folder.stat().st_uid + 1)
     assert rendezvous.local_sites() == []
-    with pytest.raises(NetworkError, match="belongs to somebody else"):
+    with pytest.raises(NetworkError, match="belongs to another user"):
         rendezvous.announce(meeting())
 
 

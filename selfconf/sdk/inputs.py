@@ -80,7 +80,7 @@ class InputSubscription:
     """One input's subscription to one output, with a watch for silence where a rate is promised.
 
     While it is muted, because the output only stands by or the connection is about to end, it passes over what it
-    hears, but for the newest signal: that counts if it is unmuted right after.
+    receives, but for the newest signal: that counts if it is unmuted right after.
     """
 
     def __init__(
@@ -94,20 +94,20 @@ class InputSubscription:
         self._newest: tuple[float, Sample] | None = None
         """The newest signal that came while muted, and when."""
         self._deadline: Undo | None = None
-        self._undo = bus.subscribe(keys.output(wire.component, wire.output), self._heard)
+        self._undo = bus.subscribe(keys.output(wire.component, wire.output), self._received)
 
     def unmute(self) -> None:
-        """Deliver what is heard, from the newest signal on if that has only just come."""
+        """Deliver what is received, from the newest signal on if that has only just come."""
         if not self.muted:
             return
         self.muted = False
         self._expect()
         if self._newest is not None and self._bus.now() - self._newest[0] < JUST_COME:
-            self._heard(self._newest[1])
+            self._received(self._newest[1])
         self._newest = None
 
     def mute(self) -> None:
-        """Pass over what is heard."""
+        """Pass over what is received."""
         self.muted = True
         if self._deadline is not None:
             self._deadline()
@@ -117,7 +117,7 @@ class InputSubscription:
         self.mute()
         self._undo()
 
-    def _heard(self, sample: Sample) -> None:
+    def _received(self, sample: Sample) -> None:
         if self.muted:
             self._newest = self._bus.now(), sample
             return
