@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from selfconf.cli.inputs import read_advertisements
+from selfconf.api.reading import read
 from selfconf.model.term import IRI
 from selfconf.site import Shelf
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
@@ -49,7 +49,7 @@ def test_a_file_means_what_it_means_to_a_command(tmp_path: Path) -> None:
     shelf = Shelf([tmp_path], complaints.append)
     assert shelf.refresh()
     assert set(shelf.advertisements) == {IRI(f"{(tmp_path / 'marked.ttl').as_uri()}#lamp")}
-    assert shelf.advertisements.keys() == read_advertisements([tmp_path]).keys()
+    assert shelf.advertisements.keys() == read(tmp_path).advertisements().keys()
     assert complaints == []
 
 

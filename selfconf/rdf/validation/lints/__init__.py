@@ -1,1 +1,1 @@
-"""Checks of a well-formed file that no shape can make, by what they look at."""
+"""Lints: what reads well and is probably not what was meant."""
