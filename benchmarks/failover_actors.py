@@ -74,7 +74,7 @@ class Phoenix:
 
     def _reborn(self) -> None:
         say("fail", self._raised)  # not before: whoever reads it would take a core from those who are measured
-        self._host.bodies.pop().close()
+        self._host.runtimes.pop().close()
         self._component = self._host.add(self._kind())
 
 

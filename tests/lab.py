@@ -19,9 +19,9 @@ from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
-from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component, Signal
-from selfconf.site.site import Shelf, Site
+from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.site import Shelf, Site
 
 PREFIXES = """@prefix sc:  <https://w3id.org/selfconf#> .
 @prefix rob: <https://w3id.org/selfconf/robotics#> .
@@ -117,7 +117,7 @@ class Lab:
         self.folder = folder
         self.keys = Keys("lab")
         self.components: dict[str, Recorder] = {}
-        self.bodies: dict[str, Body] = {}
+        self.bodies: dict[str, ComponentRuntime] = {}
         self.complaints: list[str] = []
         self.events: list[RunEvent] = []
         self.ended: list[Refusal | None] = []
@@ -133,7 +133,7 @@ class Lab:
         (advertisement,), _ = advertisements.read(document)
         recorder = recorder or Recorder()
         life = f"{name}{len(self.network.nodes)}"
-        self.bodies[name] = Body(self.network.node(), self.keys, advertisement.profile, recorder, life)
+        self.bodies[name] = ComponentRuntime(self.network.node(), self.keys, advertisement.profile, recorder, life)
         self.components[name] = recorder
         return recorder
 
@@ -205,7 +205,7 @@ class Lab:
         node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and not self.network.reaches(node, other):
-                self.network.mend(node, other)
+                self.network.reconnect(node, other)
 
     def let_pass(self, seconds: float) -> None:
         """Let simulated time pass."""

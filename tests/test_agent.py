@@ -10,19 +10,20 @@ import pytest
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.events import Failed
 from selfconf.configurator.machine import Phase, Policy
-from selfconf.deployment.calls import CALL, STARTING
-from selfconf.deployment.liveness import SETTLING
+from selfconf.deployment.calls import CALL, STARTING, WAKING
+from selfconf.deployment.liveness import ASK_AGAIN, SETTLING
 from selfconf.deployment.runner import TRY_AGAIN
+from selfconf.discovery import DISCOVERY_ATTEMPTS
 from selfconf.errors import TemplateError
-from selfconf.model.refusal import TooFewEligible
+from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Status, Verdict
+from selfconf.protocol.messages import CallAnswer, Cause, Fail, Page, Release, Status, Verdict
 from selfconf.rdf import conformance as shacl
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import PROV, SC
 from selfconf.render.run_events import event_body
-from selfconf.sdk.body import GRACE
 from selfconf.sdk.component import Refused
+from selfconf.sdk.supervision import GRACE
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
 
 TASK = {"sonar", "encoder", "control", "drive"}
@@ -460,7 +461,7 @@ def test_patience_goes_on_when_a_component_that_another_configurator_held_is_fre
     first.stop()
     assert lab.running(second)
     assert lab.active() == TASK | {"tracker"}
-    assert lab.bodies["drive"].life.supervisor == second.supervisor
+    assert lab.bodies["drive"].activation.supervisor == second.supervisor
 
 
 def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
@@ -513,7 +514,7 @@ def test_a_configurator_that_was_suspended_yields_to_the_one_that_has_taken_over
     lab.rejoin(first)
     assert lab.until(lambda: first.state.phase is Phase.REFUSED)
     assert lab.active() == TASK | {"tracker"}
-    assert all(lab.bodies[name].life.supervisor == second.supervisor for name in TASK | {"tracker"})
+    assert all(lab.bodies[name].activation.supervisor == second.supervisor for name in TASK | {"tracker"})
 
 
 def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_configuration(lab: Lab) -> None:
@@ -595,6 +596,128 @@ def test_a_configurator_that_is_cut_off_can_be_stopped(lab: Lab) -> None:
     assert lab.active() == set()
 
 
+# Sites that do not answer.
+
+
+@pytest.mark.parametrize("pages", [0, 1])
+def test_a_site_that_does_not_answer_in_full_is_named_when_asked_and_when_the_task_is_refused(
+    tmp_path: Path, pages: int
+) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control")
+    node = lab.network.node()
+    node.announce(lab.keys.site_life("living-room", "1"))
+
+    def answer(request: Request) -> None:
+        for _ in range(pages):
+            page = encode(Page(0, 2, 1, iri("pippi-drive"), "pippi.ttl"))
+            payload = (PREFIXES + ADVERTISEMENTS["pippi"]).encode()
+            request.reply(lab.keys.advertisement("living-room", iri("pippi-drive")), payload, page)
+        request.finish()
+
+    node.serve(lab.keys.advertisements("living-room"), answer)
+    lab.agent()
+    assert lab.until(lambda: bool(lab.ended))
+    (discovered,) = lab.acts("discovered")
+    assert discovered.sites == ("astrid", "living-room")
+    assert discovered.missing == ("living-room",)
+    assert discovered.components == 3 + pages
+    assert lab.ended[0] is not None
+    assert lab.ended[0].missing_sites == ("living-room",)
+
+
+def test_a_site_that_answers_later_is_not_missing_from_the_refusal_any_more(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in TASK:
+        lab.component(name)
+    node = lab.network.node()
+    node.announce(lab.keys.site_life("living-room", "1"))
+    undo = node.serve(lab.keys.advertisements("living-room"), lambda _: None)
+    agent = lab.agent(patient=True)
+    lab.let_pass(2 * ASK_AGAIN)
+    assert isinstance(agent.state.refusal, Refusal)
+    assert agent.state.refusal.missing_sites == ("living-room",)
+    undo()
+    empty = encode(Page(0, 0, 1))
+
+    def answer(request: Request) -> None:
+        request.reply(lab.keys.advertisements("living-room").replace("**", "none"), b"", empty)
+        request.finish()
+
+    node.serve(lab.keys.advertisements("living-room"), answer)
+    lab.let_pass(2 * ASK_AGAIN)
+    assert isinstance(agent.state.refusal, Refusal)
+    assert agent.state.refusal.missing_sites == ()
+
+
+def test_a_site_that_does_not_answer_is_asked_again_at_one_interval_whatever_else_changes(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar")
+    node = lab.network.node()
+    node.announce(lab.keys.site_life("living-room", "1"))
+    asked: list[float] = []
+
+    def answer(request: Request) -> None:
+        asked.append(lab.network.time)
+        request.finish()
+
+    node.serve(lab.keys.advertisements("living-room"), answer)
+    lab.agent(patient=True)
+    changed = node.publisher(lab.keys.changed("living-room"), Urgency.EVENT)
+    for _ in range(20):
+        lab.let_pass(0.2)
+        changed.put(b"")
+    lab.let_pass(ASK_AGAIN)
+    asked.clear()
+    lab.let_pass(10 * ASK_AGAIN)
+    assert len(asked) <= 10 * DISCOVERY_ATTEMPTS
+
+
+def test_a_site_that_is_started_again_is_news_though_its_earlier_life_has_not_ended_yet(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    first = lab.site("living-room", "pippi")
+    agent = lab.agent(patient=True)
+    lab.let_pass(2 * ASK_AGAIN)
+    assert agent.state.phase is Phase.REFUSED
+    (tmp_path / "living-room" / "pippi.ttl").unlink()
+    lab.site("living-room", "tracker")
+    first.bus.close()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK, "odometry")
+    for name in (*TASK, "odometry"):
+        lab.component(name)
+    tracker, node = iri("person-tracker"), lab.network.node()
+    page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
+
+    def advertise(request: Request) -> None:
+        payload = (PREFIXES + ADVERTISEMENTS["tracker"]).encode()
+        request.reply(lab.keys.advertisement("living-room", tracker), payload, page)
+        request.finish()
+
+    def wake(request: Request) -> None:
+        request.reply(lab.keys.wake("living-room"), b"started")
+        request.finish()
+        node.publisher(lab.keys.fail(tracker), Urgency.EVENT).put(encode(Fail(tracker, "", 0, Cause.CRASH, "code 1")))
+
+    node.announce(lab.keys.site_life("living-room", "1"))
+    node.serve(lab.keys.advertisements("living-room"), advertise)
+    node.serve(lab.keys.wake("living-room"), wake)
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert agent.state.lost[tracker].detail == "code 1"
+    lab.let_pass(2 * WAKING)
+    assert lab.acts("unreachable") == []
+
+
 # What others ask of it.
 
 
@@ -661,6 +784,25 @@ def test_what_is_deployed_is_rdf_with_what_it_revises_and_why(lab: Lab) -> None:
     assert task is not None
     bound = {second.value(b, SC.parameter): second.value(b, SC.value) for b in second.values(task, SC.binding)}
     assert bound[iri("robot")] == iri("Astrid")
+
+
+def test_what_is_deployed_names_the_newest_failure_of_each_component_and_keeps_no_other(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    for number in range(10):
+        for name in ("tracker", "odometry"):
+            lab.components[name].fail(f"broken {number}")
+            lab.let_pass(1.0)
+            lab.crash(name)
+            lab.component(name)
+            lab.let_pass(1.0)
+    record = turtle.parse(agent._record.turtle(), "record.ttl")
+    failures = record.instances(SC.Failure)
+    assert {record.value(failure, SC.component) for failure in failures} == {
+        iri("person-tracker"),
+        iri("absolute-odometry"),
+    }
+    assert [str(record.value(failure, SC.detail)) for failure in failures] == ["broken 9", "broken 9"]
 
 
 def test_no_broad_question_changes_anything(lab: Lab) -> None:

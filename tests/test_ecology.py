@@ -15,7 +15,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Page, Release
 from selfconf.rdf.vocabulary import RDFS
-from selfconf.site.site import Shelf, Site
+from selfconf.site import Shelf, Site
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
 
 KEYS = Keys("lab")
@@ -145,6 +145,21 @@ def test_a_site_that_is_killed_in_the_middle_of_its_answer_is_named_missing(fiel
     discovery = field.discover()
     assert discovery.missing == ("astrid",)
     assert set(discovery.found) == {TRACKER, iri("astrid-drive")}
+
+
+def test_a_site_that_answers_in_part_is_named_missing_though_it_was_not_there_at_the_roll_call(field: Field) -> None:
+    node = field.network.node()
+
+    def answer(request: Request) -> None:
+        payload = (PREFIXES + ADVERTISEMENTS["drive"]).encode()
+        page = encode(Page(0, 2, 1, iri("astrid-drive"), "drive.ttl"))
+        request.reply(KEYS.advertisement("astrid", iri("astrid-drive")), payload, page)
+        request.finish()
+
+    node.serve(KEYS.advertisements("astrid"), answer)
+    discovery = field.discover()
+    assert (discovery.sites, discovery.missing) == (("astrid",), ("astrid",))
+    assert set(discovery.found) == {iri("astrid-drive")}
 
 
 def test_a_site_whose_answer_was_cut_short_is_asked_again(field: Field) -> None:

@@ -41,7 +41,7 @@ def serve(
         others = [site.endpoint for site in rendezvous.local_sites(ecology)]
         bus = _router(listen, ecology, list(dict.fromkeys([*connect, *others])))
         ended = Termination(bus)
-        site = Site(bus, ecology, name, shelf, {"SELFCONF_ECOLOGY": ecology, "SELFCONF_CONNECT": bus.endpoint})
+        site = Site(bus, ecology, name, shelf, rendezvous.environment(ecology, bus.endpoint))
         announced = rendezvous.announce(LocalSite(ecology, name, bus.endpoint, os.getpid()))
     served = count(len(site.shelf.advertisements), "advertisement")
     complain(f"site {name} of ecology {ecology} serves {served} on {bus.endpoint}")

@@ -199,30 +199,32 @@ def _deploy(state: State) -> Reaction:
     epoch = state.epoch + 1
     wires = wiring(target)
     surplus = [component for component in state.held if component not in wires]
-    unheard = sorted(component for component in state.watched if component not in wires)
     changed = [component for component, inputs in wires.items() if not _as_wanted(state.held.get(component), inputs)]
-    changed.sort(key=state.held.__contains__)  # who has to begin first: others wait for its signals
-    held = {component: state.held[component] for component in state.held if component in wires}
-    for component in changed:
-        before = held.get(component)
-        held[component] = (
-            replace(before, inputs=wires[component], confirmed=False) if before else Held(wires[component])
-        )
+    changed.sort(key=state.held.__contains__)  # new components first: others wait for their signals
     effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
     effects += [ApplyTo(component, epoch, wires[component]) for component in changed]
     effects += [ReleaseFrom(component, epoch) for component in surplus]
-    effects += [Unwatch(component) for component in unheard]
+    effects += [Unwatch(component) for component in sorted(state.watched - wires.keys())]
     owed = {component: since for component, since in state.owed.items() if component not in wires}
     deployed = replace(
         state,
         phase=Phase.DEPLOYING,
         epoch=epoch,
-        held=held,
+        held=_rewired(state.held, wires, changed),
         pending=frozenset((component, Call.APPLY) for component in changed),
         owed={**owed, **dict.fromkeys(surplus, epoch)},
         watched=frozenset(wires),
     )
     return _then(effects, _proceed(deployed))
+
+
+def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, Inputs], changed: Sequence[IRI]) -> dict[IRI, Held]:
+    """What is held of a configuration once the changed components are applied to: those have yet to confirm."""
+    rewired = {component: before for component, before in held.items() if component in wires}
+    for component in changed:
+        before = rewired.get(component, Held({}))
+        rewired[component] = replace(before, inputs=wires[component], confirmed=False)
+    return rewired
 
 
 def _as_wanted(held: Held | None, inputs: Inputs) -> bool:

@@ -148,7 +148,8 @@ class Calls:
             if waiting is not None and waiting[0] is effect:
                 del self._waking[effect.component]
                 waiting[1]()
-                self._later_answer(effect, detail)
+                if effect.epoch == self._state().epoch:
+                    self._later_answer(effect, detail)
 
         def answered(replies: Replies) -> None:
             if not replies.samples:

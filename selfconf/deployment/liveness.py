@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
 from selfconf.configurator.machine import State
 from selfconf.deployment.calls import Calls
@@ -43,18 +44,21 @@ class Liveness:
         self.bus, self.ecology = ecology.bus, ecology
         self._state, self._step, self._report, self._calls = state, step, report, calls
         self._sites: set[str] = set()
+        """The liveliness keys of the sites that have answered: a site that was started again has another one."""
         self._unheard: dict[str, str] = {}
         self._link, self._cut_off = self.bus.link, False
+        self._ask_again: Undo = lambda: None
 
     def discovered(self, discovery: Discovery) -> None:
         """From the first discovery on, lives are followed; a site that did not answer counts as news later."""
-        self._sites.update(set(discovery.sites) - set(discovery.missing))
+        self._sites.update(key for key in discovery.site_tokens if owner_of(key) not in discovery.missing)
         if not self.ecology.followed:
             self._unheard = dict(self.ecology.lives)
             self.bus.later(SETTLING, self._end_unheard)
         self.ecology.follow(self._life_changed, self._site_changed)
+        self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
         if discovery.missing:
-            self.bus.later(ASK_AGAIN, lambda: self._step(Appeared({})))
+            self._ask_again = self.bus.later(ASK_AGAIN, lambda: self._step(Appeared({})))
 
     def _life_changed(self, key: str, alive: bool) -> None:
         chunk, life = owner_of(key), life_of(key)
@@ -118,12 +122,11 @@ class Liveness:
         return held.life if held is not None else None
 
     def _site_changed(self, key: str, alive: bool) -> None:
-        site = owner_of(key)
-        if alive and site not in self._sites:
-            self._sites.add(site)
+        if alive and key not in self._sites:
+            self._sites.add(key)
             self._step(Appeared({}))
         elif not alive:
-            self._sites.discard(site)
+            self._sites.discard(key)
 
     def _await_link(self) -> None:
         """Who is cut off sees everybody die, and cannot tell; what has become of them is asked afterwards."""

@@ -1,9 +1,9 @@
 """Messages as JSON, self-describing, so that a component in another language can join from the documentation alone.
 
 A message is an object with a member `kind` and one member for each field. A term is an object: `{"iri": ...}`,
-`{"blank": ...}`, or `{"literal": ..., "datatype": ..., "language": ...}`. What arrives is untrusted: whatever is not
-exactly a message of the expected kind raises PeerError, and nothing else. Members that are not known are passed over,
-so that a newer peer can say more.
+`{"blank": ...}`, or `{"literal": ..., "datatype": ..., "language": ...}`. What arrives is untrusted: anything that
+is not a message of the expected kind raises PeerError, and nothing else. Members that are not known are passed over, so
+that a newer peer can add some.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def _kind(message: type) -> str:
 
 
 def _plain(value: object) -> object:
-    """What JSON has no word for."""
+    """A value that JSON has no notation for, as one that it has."""
     if isinstance(value, Wire):
         return value.component, value.output, value.period
     raise TypeError(f"no message holds a {type(value).__name__}")

@@ -13,9 +13,9 @@
     selfconf/{ecology}/conf/{name}/@ctl/{call}              status, stop (call)
 
 `{component}` is the base-32 of the ten-byte BLAKE2s of the component's IRI, `{shard}` the first byte of the same hash
-in hexadecimal: siblings under one chunk cost quadratically, so that no chunk has thousands. `{life}` is the
-incarnation: which life of which component. A chunk that starts with `@` is matched by no wildcard, so that a broad
-query can never activate anything.
+in hexadecimal: the cost of siblings under one chunk grows with the square of their number, so no chunk has thousands.
+`{life}` is a random text, new for each incarnation. A chunk that starts with `@` is matched by no wildcard, so that a
+broad query can never activate anything.
 """
 
 from __future__ import annotations

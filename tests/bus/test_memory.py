@@ -115,7 +115,7 @@ def test_nodes_that_are_cut_off_hear_nothing_of_each_other_and_see_each_other_di
     assert matches == [True, False]
     assert one.link
     assert two.link
-    network.mend(one, two)
+    network.reconnect(one, two)
     publisher.put(b"again")
     network.run(lambda: False, 1.0)
     assert [sample.payload for sample in heard] == [b"again"]
@@ -129,7 +129,7 @@ def test_a_node_that_reaches_nobody_knows_that_it_is_cut_off() -> None:
     assert one.link
     network.cut(one, two)
     assert not one.link
-    network.mend(one, two)
+    network.reconnect(one, two)
     assert one.link
     two.close()
     assert one.link  # it is alone, not cut off

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from pathlib import Path
 
-from selfconf.sdk.body import GRACE
+from selfconf.sdk.supervision import GRACE
 from tests.cli.processes import Home, component_of, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
 

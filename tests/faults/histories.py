@@ -17,7 +17,7 @@ from selfconf.deployment import TaskRunner
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.component import Refused
-from selfconf.site.site import Site
+from selfconf.site import Site
 from tests.lab import ADVERTISEMENTS, Lab
 
 SETTLED = 60.0
@@ -106,12 +106,11 @@ class History:
         """What is wrong with a component that acts for a configurator."""
         body, configuration = self.lab.bodies[name], agent.configuration
         assert configuration is not None
-        if body.life.supervisor != agent.supervisor:
-            yield f"{name} obeys {body.life.supervisor}"
+        if body.activation.supervisor != agent.supervisor:
+            yield f"{name} obeys {body.activation.supervisor}"
         wires = wiring(configuration)[body.profile.component]
         wanted = {(port, wire.component, wire.output) for port, followed in wires.items() for wire in followed}
-        heeded = [key for key, following in body._following.items() if not following._muted]
-        followed = {(port, wire.component, wire.output) for port, wire in heeded}
+        followed = {(port, wire.component, wire.output) for port, wire in body.inputs.followed}
         if wanted != followed:
             yield f"{name} follows {sorted(followed)}, not {sorted(wanted)}"
         said = self.lab.components[name].said
@@ -127,7 +126,7 @@ class History:
         found = {c: a for site in self.sites for c, a in site.shelf.advertisements.items() if c in alive}
         if not isinstance(agent.order.compose(found, frozenset(agent.state.lost), None), Refusal):
             yield f"{agent.name} has given up, although there is a configuration"
-        free = {body.profile.component for body in self.lab.bodies.values() if body.life.supervisor is None}
+        free = {body.profile.component for body in self.lab.bodies.values() if body.activation.supervisor is None}
         for component, loss in agent.state.lost.items():
             if component in alive and loss.cause is Cause.CRASH:
                 yield f"{agent.name} thinks that {component.short} is dead"

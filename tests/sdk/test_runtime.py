@@ -13,9 +13,9 @@ from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.life import LifePhase
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
@@ -28,9 +28,10 @@ from selfconf.protocol.messages import (
     Verdict,
     Wire,
 )
-from selfconf.sdk.body import GRACE, Body
 from selfconf.sdk.component import Component, Refused, Signal
-from selfconf.sdk.following import BEGINNING, PATIENCE
+from selfconf.sdk.inputs import BEGINNING, PATIENCE
+from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 
 KEYS = Keys("lab")
@@ -56,7 +57,7 @@ class Stage:
         self.recorder = component if isinstance(component, Recorder) else Recorder()
         self.component = component or self.recorder
         self.profile = profile
-        self.body = Body(self.network.node(), KEYS, profile, self.component, "life-1")
+        self.runtime = ComponentRuntime(self.network.node(), KEYS, profile, self.component, "life-1")
         self.fails: list[Fail] = []
         self.caller.subscribe(KEYS.any_fail(), lambda sample: self.fails.append(decode(sample.payload, Fail)))
         self.let_pass(0.1)
@@ -83,14 +84,14 @@ class Stage:
         (sample,) = self.ask("state", b"").samples
         return decode(sample.payload, CallAnswer)
 
-    def neighbour(self, rate: float | None = None) -> Body:
+    def neighbour(self, rate: float | None = None) -> ComponentRuntime:
         """A tracker that is active."""
         profile = Profile(TRACKER, ports=Ports(outputs=(Output("pose", IRI("urn:s:Pose"), rate),)))
-        body = Body(self.network.node(), KEYS, profile, Component(), "life-t")
+        runtime = ComponentRuntime(self.network.node(), KEYS, profile, Component(), "life-t")
         replies: list[Replies] = []
         self.caller.ask(KEYS.call(TRACKER, "apply"), encode(Apply(1, US)), 1.0, replies.append)
         assert self.network.run(lambda: bool(replies), 5.0)
-        return body
+        return runtime
 
 
 def follow(epoch: int = 1, period: float | None = None, supervisor: str = US) -> Apply:
@@ -150,7 +151,10 @@ def test_parameters_are_set_by_name_and_as_values_that_code_likes() -> None:
         (Literal("(AT BEDROOM)"), "(AT BEDROOM)"),
         (IRI("urn:x"), "urn:x"),
         (Literal("3", IRI(XSD + "integer")), 3),
+        (Literal("1", IRI(XSD + "unsignedInt")), 1),
         (Literal("0.5", IRI(XSD + "decimal")), 0.5),
+        (Literal("0.5", IRI(XSD + "double")), 0.5),
+        (Literal("0.5", IRI(XSD + "float")), 0.5),
         (Literal("true", IRI(XSD + "boolean")), True),
         (Literal("0", IRI(XSD + "boolean")), False),
     ]
@@ -235,7 +239,7 @@ def test_a_component_that_failed_and_refuses_to_start_again_is_free() -> None:
     stage.let_pass(0.1)
     stage.recorder.refusal = Refused("still dark")
     assert stage.call(Apply(2, US)).verdict is Verdict.REFUSED
-    assert stage.body.life.phase is LifePhase.IDLE
+    assert stage.runtime.activation.phase is ActivationPhase.IDLE
     stage.recorder.refusal = None
     stage.others.announce(THEM)
     assert stage.call(Apply(3, THEM)).verdict is Verdict.DONE
@@ -275,7 +279,7 @@ def test_a_component_that_breaks_when_it_is_stopped_is_off_all_the_same(caplog: 
     with caplog.at_level(logging.CRITICAL):
         answer = stage.call(Apply(4, US))
     assert (answer.verdict, answer.active) == (Verdict.DONE, True)
-    assert stage.body.life.phase is LifePhase.ACTIVE
+    assert stage.runtime.activation.phase is ActivationPhase.ACTIVE
 
 
 # Failing.
@@ -385,7 +389,7 @@ def test_a_new_connection_carries_the_last_signal_at_once_and_an_old_one_does_no
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("position", "here")]
     profile = Profile(IRI("urn:c:other"), ports=Ports(CAP_PROFILE.inputs))
-    again = Body(stage.network.node(), KEYS, profile, Recorder(), "l")
+    again = ComponentRuntime(stage.network.node(), KEYS, profile, Recorder(), "l")
     replies: list[Replies] = []
     stage.caller.ask(KEYS.call(IRI("urn:c:other"), "apply"), encode(follow()), 1.0, replies.append)
     stage.let_pass(0.1)
@@ -475,6 +479,30 @@ def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
     assert len(ticks) == 8
 
 
+def test_a_timer_that_has_ticked_for_a_long_time_is_kept_once() -> None:
+    ticks: list[float] = []
+
+    class Ticking(Recorder):
+        def started(self) -> None:
+            self.every(0.1, lambda: ticks.append(stage.network.time))
+
+    stage = Stage(Ticking())
+    stage.call(Apply(1, US))
+    stage.let_pass(100.05)
+    assert len(ticks) == 1000
+    assert len(stage.runtime._timers) == 1
+    stage.call(Release(2, US))
+    assert not stage.runtime._timers
+
+
+def test_a_timer_of_a_component_that_is_not_active_is_not_kept() -> None:
+    stage = Stage()
+    for _ in range(100):
+        stage.component.every(0.1, print)
+    stage.let_pass(0.2)
+    assert not stage.runtime._timers
+
+
 def test_a_component_that_is_part_of_no_ecology_says_so() -> None:
     component = Component()
     for use in (lambda: component.emit("a", 1), lambda: component.fail("x"), lambda: component.every(1.0, print)):
@@ -559,7 +587,7 @@ def test_a_component_whose_configurator_is_gone_turns_itself_off_after_the_grace
     assert stage.component.active
     stage.let_pass(0.2)
     assert stage.recorder.said == [("started",), ("stopped",)]
-    assert stage.body.life.phase is LifePhase.IDLE
+    assert stage.runtime.activation.phase is ActivationPhase.IDLE
 
 
 def test_a_configurator_that_is_back_within_the_grace_period_is_obeyed_on() -> None:
@@ -576,7 +604,7 @@ def test_a_component_that_is_cut_off_turns_itself_off() -> None:
     stage = Stage()
     stage.call(Apply(1, US))
     node = stage.network.nodes[2]
-    assert stage.body.bus is node
+    assert stage.runtime.bus is node
     stage.network.cut(node, stage.caller)
     stage.let_pass(GRACE + 0.1)
     assert not stage.component.active
@@ -595,7 +623,7 @@ def test_a_component_that_has_failed_is_free_again_when_its_configurator_is_gone
     stage.component.fail("lost her")
     stage.leave()
     stage.let_pass(GRACE + 0.1)
-    assert stage.body.life.phase is LifePhase.IDLE
+    assert stage.runtime.activation.phase is ActivationPhase.IDLE
     assert stage.recorder.said[-1] == ("stopped",)
 
 
@@ -655,7 +683,7 @@ def test_closing_turns_the_component_off_and_ends_its_life() -> None:
     stage = Stage()
     stage.call(Apply(1, US))
     called: list[tuple[str, ...]] = []
-    stage.body.close()
+    stage.runtime.close()
     stage.caller.roll_call(KEYS.any_life(), 1.0, called.append)
     stage.let_pass(0.1)
     assert called == [()]
@@ -665,7 +693,7 @@ def test_closing_turns_the_component_off_and_ends_its_life() -> None:
 
 def test_closing_an_idle_component_does_not_stop_it() -> None:
     stage = Stage()
-    stage.body.close()
+    stage.runtime.close()
     assert stage.recorder.said == []
 
 
