@@ -45,6 +45,7 @@ def results(text: str) -> list[Any]:
     return found
 
 
+@pytest.mark.slow
 @judges_bad_files
 def test_the_log_of_every_bad_file_keeps_to_the_schema(faults: Faults) -> None:
     text = sarif.render(report(map(str, BAD), (found for path in BAD for found in checked(path).diagnostics)))

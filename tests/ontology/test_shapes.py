@@ -85,6 +85,7 @@ QUERIED = frozenset(map(code_of, ALL.subjects(SH.sparql)))
 """The codes that a SPARQL constraint may report."""
 
 
+@pytest.mark.slow
 def test_every_constraint_is_broken_by_a_bad_file() -> None:
     missing = constraints() - set().union(*map(broken, BAD))
     assert not {(shape.removeprefix(SHAPES), component.removeprefix(SH)) for shape, component in missing}
@@ -104,6 +105,7 @@ def test_the_catalogue_and_the_shapes_name_each_other() -> None:
     assert named == set(BY_SHAPE)
 
 
+@pytest.mark.slow
 def test_the_shapes_are_well_formed() -> None:
     assert not list(reported_violations(ALL, shape_of_shapes()))
 

@@ -212,6 +212,7 @@ def test_a_file_with_a_nul_is_no_turtle_at_the_place_of_the_nul() -> None:
     assert report.unreadable == {"nul.ttl"}
 
 
+@pytest.mark.slow
 def test_a_chain_of_two_thousand_roles_conforms() -> None:
     names = [f":r{number}" for number in range(2_000)]
     chain = "".join(f"{one} sc:feeds {after} .\n" for one, after in pairwise(names))
