@@ -15,6 +15,7 @@ settings.register_profile(
     max_examples=examples(100),
     deadline=None,
     derandomize=True,
+    print_blob=True,
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("selfconf")
