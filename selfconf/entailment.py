@@ -16,7 +16,6 @@ import sys
 import tempfile
 import threading
 from collections.abc import Iterable, Iterator
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TypeVar
 
@@ -54,6 +53,8 @@ def entailed_hierarchy(triples: Iterable[Triple]) -> Iterator[Triple]:
 
 def _reasoners() -> str:
     """The reasoners that there are, with their versions."""
+    from importlib.metadata import PackageNotFoundError, version  # takes longer to load than most tasks to answer
+
     found = []
     for name in ("owlrl", "reasonable"):
         with contextlib.suppress(PackageNotFoundError):

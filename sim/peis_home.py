@@ -17,7 +17,7 @@ import argparse
 import time
 from pathlib import Path
 
-from selfconf.sdk import Termination, Host
+from selfconf.sdk import Host, Termination
 from selfconf.sdk.program import add_connection_arguments, join
 from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder

@@ -10,9 +10,10 @@ from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
 from selfconf.composition.composer import Composer
 from selfconf.configurator.machine import Phase, Policy
-from selfconf.deployment import Account, RunRequest, TaskRunner
+from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.refusal import Refusal
+from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import reader as advertisements
@@ -118,7 +119,7 @@ class Lab:
         self.components: dict[str, Recorder] = {}
         self.bodies: dict[str, Body] = {}
         self.complaints: list[str] = []
-        self.accounts: list[Account] = []
+        self.events: list[RunEvent] = []
         self.ended: list[Refusal | None] = []
 
     def site(self, name: str, *names: str) -> Site:
@@ -161,7 +162,7 @@ class Lab:
             passed_over=composer.passed_over,
             policy=policy,
             patient=patient,
-            tell=self.accounts.append,
+            report=self.events.append,
             settle=self.ended.append,
         )
         agent = TaskRunner(
@@ -177,7 +178,7 @@ class Lab:
     def running(self, agent: TaskRunner) -> bool:
         """Whether an agent's configuration is complete, after letting time pass."""
         running = self.until(lambda: agent.state.phase is Phase.RUNNING)
-        self.until(lambda: False, 2 * AT_LEISURE)  # accounts are told when there is time for it
+        self.until(lambda: False, 2 * AT_LEISURE)  # events are reported when there is time for it
         return running and agent.state.phase is Phase.RUNNING
 
     def node_of(self, name: str) -> MemoryBus:
@@ -214,9 +215,9 @@ class Lab:
         """The names of the components that act, crashed ones left out."""
         return {name for name, body in self.bodies.items() if body.active and self.node_of(name).open}
 
-    def acts(self, act: str) -> list[Account]:
-        """The accounts of one kind."""
-        return [account for account in self.accounts if account.act == act]
+    def acts(self, act: str) -> list[Any]:
+        """The events of one kind."""
+        return [event for event in self.events if event.act == act]
 
 
 def _node(bus: Bus) -> MemoryBus:

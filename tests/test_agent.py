@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Status,
 from selfconf.rdf import conformance as shacl
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import PROV, SC
+from selfconf.render.run_events import event_body
 from selfconf.sdk.body import GRACE
 from selfconf.sdk.component import Refused
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
@@ -77,8 +77,8 @@ def test_a_lost_tracker_is_replaced_by_odometry(lab: Lab) -> None:
     lab.let_pass(0.1)
     assert lab.components["control"].said[-1] == ("position", {"x": 2})
     (lost,) = lab.acts("lost")
-    assert lost.facts["component"] == iri("person-tracker")
-    assert lost.facts["detail"] == "Astrid has left the picture"
+    assert lost.component == iri("person-tracker")
+    assert lost.detail == "Astrid has left the picture"
 
 
 def test_repair_neither_stops_nor_starts_nor_sets_anew_what_runs(lab: Lab) -> None:
@@ -152,7 +152,7 @@ def test_a_component_that_crashes_is_replaced(lab: Lab) -> None:
     lab.let_pass(1.0)
     assert agent.state.phase is Phase.RUNNING
     assert lab.active() == TASK | {"odometry"}
-    assert lab.acts("lost")[0].facts["cause"] == "crash"
+    assert lab.acts("lost")[0].cause == "crash"
 
 
 def test_a_component_that_dies_during_deployment_is_replaced(lab: Lab) -> None:
@@ -168,9 +168,9 @@ def test_a_component_that_refuses_to_start_is_replaced(lab: Lab) -> None:
     agent = lab.agent()
     assert lab.running(agent)
     assert lab.active() == TASK | {"odometry"}
-    assert lab.acts("declined")[0].facts["detail"] == "the camera is covered"
+    assert lab.acts("declined")[0].detail == "the camera is covered"
     (lost,) = lab.acts("lost")
-    assert (lost.facts["cause"], lost.facts["detail"]) == ("refused", "the camera is covered")
+    assert (lost.cause, lost.detail) == ("refused", "the camera is covered")
     record = turtle.parse(agent._record.turtle(), "record.ttl")
     (failure,) = record.instances(SC.Failure)
     assert [str(cause) for cause in record.values(failure, SC.cause)] == ["refused"]
@@ -199,7 +199,7 @@ def test_a_component_that_dies_while_it_is_activated_has_crashed(lab: Lab) -> No
     assert lab.running(agent)
     assert lab.active() == TASK | {"odometry"}
     assert agent.state.lost[iri("person-tracker")].cause is Cause.CRASH
-    assert [account.facts["cause"] for account in lab.acts("lost")] == ["crash"]
+    assert [account.cause for account in lab.acts("lost")] == ["crash"]
 
 
 def busy_in_started(lab: Lab, name: str, seconds: float) -> None:
@@ -259,7 +259,7 @@ def test_an_output_that_promised_a_rate_and_stops_is_replaced(tmp_path: Path, mo
     tracker.seeing = False
     lab.let_pass(1.0)
     assert lab.active() == TASK | {"odometry"}
-    assert lab.acts("lost")[0].facts["cause"] == "silence"
+    assert lab.acts("lost")[0].cause == "silence"
 
 
 def test_a_component_that_hangs_is_replaced(lab: Lab) -> None:
@@ -389,8 +389,8 @@ def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) 
     assert lab.components["drive"].said == [("started",)]
     lab.let_pass(1.0)
     declined = lab.acts("declined")
-    assert {account.facts["detail"] for account in declined} == {f"the configurator {first.name} holds it"}
-    assert len(declined) == len({account.facts["component"] for account in declined})
+    assert {account.detail for account in declined} == {f"the configurator {first.name} holds it"}
+    assert len(declined) == len({account.component for account in declined})
 
 
 def test_two_tasks_share_the_ecology_as_long_as_they_need_different_components(lab: Lab) -> None:
@@ -456,7 +456,7 @@ def test_patience_goes_on_when_a_component_that_another_configurator_held_is_fre
     lab.let_pass(3 * TRY_AGAIN)
     assert second.state.phase is Phase.REFUSED
     (waiting,) = lab.acts("waiting")
-    assert set(waiting.facts["lost"].values()) == {f"refused, the configurator {first.name} holds it"}
+    assert set(waiting.lost.values()) == {f"refused, the configurator {first.name} holds it"}
     first.stop()
     assert lab.running(second)
     assert lab.active() == TASK | {"tracker"}
@@ -715,15 +715,15 @@ def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, mo
 def test_what_it_does_is_told_in_the_order_of_the_four_acts(lab: Lab) -> None:
     lab.running(lab.agent())
     lab.let_pass(0.1)
-    acts = [account.act for account in lab.accounts]
+    acts = [account.act for account in lab.events]
     firsts = [
         acts.index(act) for act in ("query", "discovered", "composed", "watching", "activating", "set", "running")
     ]
     assert firsts == sorted(firsts)
     assert max(i for i, act in enumerate(acts) if act == "watching") < acts.index("activating")
-    connected = {(str(a.facts["source"]), str(a.facts["output"])) for a in lab.acts("connecting")}
+    connected = {(str(a.source), str(a.output)) for a in lab.acts("connecting")}
     assert (str(iri("person-tracker")), "pose") in connected
-    json.dumps([{**account.facts, "outcome": None, "configuration": None} for account in lab.accounts], default=list)
+    assert all(event_body(event) for event in lab.events)
 
 
 def test_connections_that_are_made_again_are_told_again(lab: Lab) -> None:
@@ -750,7 +750,7 @@ def test_a_connection_that_is_kept_is_told_once(lab: Lab) -> None:
     lab.components["tracker"].fail("lost")
     lab.let_pass(1.0)
     (new,) = lab.acts("connecting")[made:]
-    assert (new.facts["source"], new.facts["sink"]) == (iri("absolute-odometry"), iri("thinking-cap"))
+    assert (new.source, new.sink) == (iri("absolute-odometry"), iri("thinking-cap"))
 
 
 def test_an_input_follows_every_output_that_feeds_it(tmp_path: Path) -> None:

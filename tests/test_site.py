@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.api.reading import read
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Sample
-from selfconf.cli.inputs import read_advertisements
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
@@ -74,7 +74,7 @@ def test_a_file_means_what_it_means_to_a_command(tmp_path: Path) -> None:
     shelf = Shelf([tmp_path], complaints.append)
     assert shelf.refresh()
     assert set(shelf.advertisements) == {IRI(f"{(tmp_path / 'marked.ttl').as_uri()}#lamp")}
-    assert shelf.advertisements.keys() == read_advertisements([tmp_path]).keys()
+    assert shelf.advertisements.keys() == read(tmp_path).advertisements().keys()
     assert complaints == []
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import resource
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -14,9 +13,9 @@ import pyoxigraph as ox
 import rdflib
 
 from benchmarks.scale.worlds import ROLES, task
-from selfconf.cli.budget import Clock
-from selfconf.cli.inputs import read_advertisements, turtle_files
-from selfconf.cli.why import explained
+from selfconf.api.ontologies import hierarchy_of
+from selfconf.api.reading import read, turtle_files
+from selfconf.composition import TimeLimit, explained
 from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Reasoning
@@ -61,11 +60,11 @@ def bare(path: Path) -> None:
 def loading(path: Path, trials: int) -> Found:
     """From the files to advertisements, with the time of bare parsing beside it; the two in turns."""
     before = peak()
-    number = len(read_advertisements([path]))
+    number = len(read(path))
     found = {"bytes": (peak() - before) / number}
     for _ in range(trials):
         keep(found, "parse", timed(bare, path)[0])
-        keep(found, "load", timed(read_advertisements, [path])[0])
+        keep(found, "load", timed(read, path)[0])
     return found
 
 
@@ -74,8 +73,11 @@ def configure(path: Path, trials: int) -> Found:
     found, before = Found(), peak()
     given = task("robot0")
     for trial in range(trials):
-        ads = AdvertisementIndex({})  # the last trial's are given back before the next are read
-        seconds, ads = timed(read_advertisements, [path])
+        ads: Mapping[IRI, Advertisement] = AdvertisementIndex(
+            {}
+        )  # the last trial's are given back before the next are read
+        seconds, ecology = timed(read, path)
+        ads = ecology.advertisements()
         keep(found, "load", seconds)
         if trial == 0:
             found["bytes"] = (peak() - before) / len(ads)
@@ -98,15 +100,15 @@ def refuse(composer: Composer, ads: Mapping[IRI, Advertisement]) -> None:
     """All that a refusal costs `configure`: reasons, near misses, repairs, and whether subclass mode knows better."""
     refusal = composer.compose(ads, frozenset(), None)
     assert isinstance(refusal, Refusal)
-    options = argparse.Namespace(reasoning=Reasoning.SYNTACTIC.value, ontology=[])
-    assert explained(composer, ads, refusal, options, Clock(None)).repairs
+    wider = hierarchy_of(Reasoning.SUBCLASS)
+    assert explained(composer, ads, refusal, wider, TimeLimit(None)).repairs
 
 
 def crowd(path: Path, trials: int) -> Found:
     """The search alone, in an ecology and in the same ecology among components that no role wants."""
     given, found = task("robot0"), Found()
-    few = read_advertisements([path])
-    many = AdvertisementIndex({**few, **read_advertisements([path.with_name("unwanted.ttl")])})
+    few = read(path).advertisements()
+    many = AdvertisementIndex({**few, **read(path.with_name("unwanted.ttl")).advertisements()})
     problems = {
         name: Problem(given.task, Composer(given).partition(ads))
         for name, ads in {"alone": few, "in the crowd": many}.items()

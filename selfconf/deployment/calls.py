@@ -14,15 +14,28 @@ from selfconf.configurator import machine
 from selfconf.configurator.effects import ApplyTo, ReleaseFrom, SetOn
 from selfconf.configurator.events import Answered, Call, Event
 from selfconf.configurator.machine import State
-from selfconf.deployment.request import Standby, Tell
+from selfconf.deployment.request import Report, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.run_event import (
+    ActivationSent,
+    CallDeclined,
+    ComponentActivated,
+    ComponentReleased,
+    ComponentUnreachable,
+    ComponentWoken,
+    InputConnected,
+    ParametersSet,
+)
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Apply, CallAnswer, Release, SetParameters, Verdict, Wake, Wire
 
 log = logging.getLogger(__name__)
+
+_DONE = {Call.APPLY: ComponentActivated, Call.SET: ParametersSet, Call.RELEASE: ComponentReleased}
+"""The event of a call that was obeyed."""
 
 CALL = 2.0
 """How long a component may take to answer a call, before it is asked for its state."""
@@ -45,10 +58,10 @@ class Calls:
         supervisor: str,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        tell: Tell,
+        report: Report,
     ) -> None:
         self.bus, self.ecology, self.keys = ecology.bus, ecology, ecology.keys
-        self.supervisor, self._state, self._step, self._tell = supervisor, state, step, tell
+        self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
         self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was told to have, in which life, so that only new ones are told of."""
@@ -81,9 +94,9 @@ class Calls:
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         known, before = self._connections.get(effect.component, (life, frozenset()))
         for c in sorted(connections - before if known == life else connections):
-            self._tell("connecting", source=c.source, output=c.output, sink=c.sink, input=c.input)
+            self._report(InputConnected(c.source, c.output, c.sink, c.input))
         self._connections[effect.component] = life, frozenset(connections)
-        self._tell("activating", component=effect.component)
+        self._report(ActivationSent(effect.component))
 
     def forget_connections(self) -> None:
         """Components may have turned themselves off: whoever is applied to is connected anew."""
@@ -123,12 +136,12 @@ class Calls:
 
     def _later_answer(self, effect: ApplyTo, detail: str) -> None:
         answer = Answered(effect.component, Call.APPLY, effect.epoch, None, detail=detail)
-        self._tell("unreachable", component=effect.component, call=Call.APPLY.value, detail=detail)
+        self._report(ComponentUnreachable(effect.component, Call.APPLY.value, detail))
         self.bus.wake_up(lambda: self._step(answer))
 
     def _wake(self, effect: ApplyTo, found: FoundAdvertisement) -> None:
         """Have the site start the process; the apply goes out when the component lives."""
-        self._tell("waking", component=effect.component, site=found.site)
+        self._report(ComponentWoken(effect.component, found.site))
 
         def give_up(detail: str) -> None:
             waiting = self._waking.get(effect.component)
@@ -176,7 +189,7 @@ class Calls:
             elif silent and current and call is not Call.RELEASE and self.bus.now() - began < STARTING:
                 self.bus.later(PAUSE, inspect)  # it may be in `started`; if its life ends, it is lost at once
             elif current or call is Call.RELEASE:
-                self._tell("unreachable", component=component, call=call.value, detail="it does not answer")
+                self._report(ComponentUnreachable(component, call.value, "it does not answer"))
                 self._step(Answered(component, call, message.epoch, None))
 
         self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
@@ -194,10 +207,10 @@ class Calls:
         self.bus.ask(self.keys.call(component, "state"), b"", CALL, answered)
 
     def _heard_answer(self, component: IRI, call: Call, epoch: int, answer: CallAnswer) -> None:
-        word = {Call.APPLY: "activated", Call.SET: "set", Call.RELEASE: "released"}[call]
         done = answer.verdict is Verdict.DONE
         if done or call is not Call.RELEASE:  # who is not ours and stays so is told to turn off again and again
-            self._tell(word if done else "declined", component=component, detail=answer.detail or answer.verdict.value)
+            event = _DONE[call] if done else CallDeclined
+            self._report(event(component, answer.detail or answer.verdict.value))
         self._step(Answered(component, call, epoch, answer.verdict, answer.life, answer.epoch, answer.detail))
 
 

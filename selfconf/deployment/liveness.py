@@ -12,8 +12,9 @@ from functools import partial
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
 from selfconf.configurator.machine import State
 from selfconf.deployment.calls import Calls
-from selfconf.deployment.request import Tell
+from selfconf.deployment.request import Report
 from selfconf.discovery import Discovery, EcologyView
+from selfconf.model.run_event import EcologyReachable, EcologyUnreachable
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.protocol.messages import CallAnswer, Cause
@@ -36,11 +37,11 @@ class Liveness:
         ecology: EcologyView,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        tell: Tell,
+        report: Report,
         calls: Calls,
     ) -> None:
         self.bus, self.ecology = ecology.bus, ecology
-        self._state, self._step, self._tell, self._calls = state, step, tell, calls
+        self._state, self._step, self._report, self._calls = state, step, report, calls
         self._sites: set[str] = set()
         self._unheard: dict[str, str] = {}
         self._link, self._cut_off = self.bus.link, False
@@ -103,7 +104,7 @@ class Liveness:
     def _reconnected(self) -> None:
         """We were cut off, for so long that whatever we believe may be outdated; every connection counts as gone."""
         self._calls.forget_connections()
-        self._tell("connected")
+        self._report(EcologyReachable())
         self._step(Reconnected())
 
     def _end_unheard(self) -> None:
@@ -142,7 +143,7 @@ class Liveness:
 
         if not self._cut_off:
             self._cut_off = True
-            self._tell("cut off")
+            self._report(EcologyUnreachable())
             look()
 
     def _component(self, chunk: str) -> IRI | None:

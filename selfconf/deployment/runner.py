@@ -11,7 +11,6 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 from selfconf.bus.port import Bus, Sample, Undo, Urgency
 from selfconf.configurator import machine
@@ -40,11 +39,24 @@ from selfconf.configurator.machine import Loss, Phase, State
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.record import DeploymentRecord
-from selfconf.deployment.request import Account, RunRequest
+from selfconf.deployment.request import RunRequest
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal
+from selfconf.model.run_event import (
+    AnswerRejected,
+    ComponentLost,
+    EcologyAsked,
+    EcologyDiscovered,
+    FailWatched,
+    RunEvent,
+    SearchEnded,
+    TaskRefused,
+    TaskRunning,
+    TaskStopped,
+    TaskWaiting,
+)
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import component_chunk, owner_of_fail
@@ -77,13 +89,13 @@ class TaskRunner:
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
-        self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._tell)
-        self._lives = Liveness(self.ecology, self._now, self._step, self._tell, self._calls)
+        self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._report)
+        self._lives = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
         self._record = DeploymentRecord(bus, self.keys, self.name, order, self.status, self.stop)
         self._watched: set[IRI] = set()
         self._events: deque[Event] = deque()
         self._stepping = False
-        self._untold: list[Account] = []
+        self._unreported: list[RunEvent] = []
         self._look_again: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
         # One subscription for the FAIL of all: connecting to each as it joins would delay its activation.
@@ -136,7 +148,7 @@ class TaskRunner:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
         if self.state.phase is Phase.REFUSED and self.state.patient:
-            self._tell("waiting", refusal=self.state.refusal, lost=self.losses)
+            self._report(TaskWaiting(self.state.refusal, self.losses))
             self._await_another_chance()
 
     def _await_another_chance(self) -> None:
@@ -170,25 +182,25 @@ class TaskRunner:
         for component, loss in self.state.lost.items():
             if known.get(component) is not loss:
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
-                self._tell("lost", component=component, cause=loss.cause.value, detail=loss.detail)
+                self._report(ComponentLost(component, loss.cause.value, loss.detail))
 
-    def _tell(self, act: str, **facts: Any) -> None:
-        """Note an account now, and tell it when there is nothing more urgent to do."""
-        if not self._untold:
-            self.bus.later(AT_LEISURE, self._tell_all)
-        self._untold.append(Account(act, self.clock(), facts))
+    def _report(self, event: RunEvent) -> None:
+        """Note an event with its time, and report it when there is nothing more urgent to do."""
+        if not self._unreported:
+            self.bus.later(AT_LEISURE, self._report_all)
+        self._unreported.append(replace(event, time=self.clock()))
 
-    def _tell_all(self) -> None:
-        untold, self._untold = self._untold, []
-        for account in untold:
-            self.order.tell(account)
+    def _report_all(self) -> None:
+        unreported, self._unreported = self._unreported, []
+        for event in unreported:
+            self.order.report(event)
 
     # Effects.
 
     def _do(self, effect: Effect) -> None:
         match effect:
             case Discover():
-                self._tell("query")
+                self._report(EcologyAsked())
                 self.ecology.discover(self._discovered)
             case Compose():
                 self._compose(effect)
@@ -205,13 +217,13 @@ class TaskRunner:
                 self.bus.later(leisure, partial(self._calls.release, effect))
             case Running():
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())
-                self._tell("running", configuration=effect.configuration, epoch=self.state.epoch)
+                self._report(TaskRunning(effect.configuration, self.state.epoch))
                 self._stand_by(effect.configuration)
             case Finish():
-                act = "refused" if effect.refusal else "stopped"
-                self._tell(act, refusal=effect.refusal, lost=self.losses)
+                refusal, lost = effect.refusal, self.losses
+                self._report(TaskStopped(lost=lost) if refusal is None else TaskRefused(refusal, lost))
                 try:
-                    self._tell_all()
+                    self._report_all()
                 finally:  # the end of a task depends on nobody who listens
                     self._leave()  # whoever could not be told to turn off will notice
                     self.order.settle(effect.refusal)
@@ -220,8 +232,8 @@ class TaskRunner:
         self.ecology.discovery = discovery
         self._lives.discovered(discovery)
         for complaint in discovery.complaints:
-            self._tell("complaint", detail=complaint)
-        self._tell("discovered", components=len(discovery.found), sites=discovery.sites, missing=discovery.missing)
+            self._report(AnswerRejected(complaint))
+        self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
         self._step(Discovered())
 
     def _compose(self, effect: Compose) -> None:
@@ -236,11 +248,11 @@ class TaskRunner:
         if isinstance(outcome, Refusal):
             outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
         seconds = self.bus.now() - began
-        self._tell("composed", outcome=outcome, seconds=seconds)
+        self._report(SearchEnded(outcome, seconds))
         self._step(Composed(effect.attempt, outcome))
 
     def _watch(self, component: IRI) -> None:
-        self._tell("watching", component=component)
+        self._report(FailWatched(component))
         self._watched.add(component)
 
     def _heard_fail(self, sample: Sample) -> None:

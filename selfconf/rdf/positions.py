@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 from rdflib import RDF, Graph
 from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
-from rdflib.term import Node
+from rdflib.term import Node, URIRef
 
 RdflibTriple = tuple[Node, Node, Node]
 
@@ -102,6 +102,11 @@ class Positions:
         """Where a node is first the subject of a statement, or else where it is first spoken of."""
         offset = self.offset(node)
         return None if offset is None else self.place(offset)
+
+    def line_of(self, iri: str) -> int | None:
+        """The line in which a named node is first described."""
+        place = self.of_node(URIRef(iri))
+        return None if place is None else place.line
 
     def offset(self, node: Node) -> int | None:
         """The offset that belongs to `of_node`."""

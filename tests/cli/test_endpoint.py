@@ -10,8 +10,8 @@ from pathlib import Path
 import pyoxigraph as ox
 import pytest
 
-from selfconf.cli.endpoint import asked
 from selfconf.errors import NetworkError
+from selfconf.query.endpoint import asked
 from selfconf.rdf.eligibility.remote import ANYBODY
 from tests.cli.command import Outcome, run
 from tests.cli.endpoints import Scripted, http, oxigraph

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.api.validation import check
 from selfconf.cli.main import main
 from selfconf.cli.scaffolds import SCAFFOLDS
-from selfconf.cli.validate import check
 
 PATIENCE = 40.0
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.asking import Question, answer
 from selfconf.cli.main import main
 from selfconf.errors import AuthorError, ProgrammerError, QueryError
 from selfconf.model.term import IRI
+from selfconf.query import Question, answer
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.turtle import document as turtle
 

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli import close_looks
-from selfconf.cli.close_looks import Remembered, shared
+from selfconf.api.file_checks import Remembered, shared
+from selfconf.api.validation import check
 from selfconf.cli.main import main
-from selfconf.cli.validate import check
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
 
@@ -43,7 +42,7 @@ def files(tmp_path: Path) -> Path:
 
 
 def test_processes_give_the_verdicts_of_one(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(close_looks, "WORTH", 2)
+    monkeypatch.setattr("selfconf.api.file_checks.WORTH", 2)
     assert check([str(files)], each=shared) == check([str(files)])
 
 
@@ -110,7 +109,7 @@ def test_the_option_remembers(files: Path, tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("selfconf.cli.validate.LARGEST", 10)
+    monkeypatch.setattr("selfconf.api.validation.LARGEST_FILE", 10)
     (tmp_path / "a.ttl").write_text("# more than ten bytes")
     report = check([str(tmp_path)])
     assert [each.code for each in report.diagnostics] == ["SC-S05"]

@@ -11,17 +11,17 @@ from typing import Any
 
 import pyoxigraph as ox
 
-from selfconf.cli import words
 from selfconf.errors import AuthorError
 from selfconf.rdf import turtle
 from selfconf.rdf.sparql import QUERY_PREFIXES, QueryAnswer
 from selfconf.rdf.vocabulary import XSD
+from selfconf.render import Names, table
 
-FORMATS = ("table", "json", "csv", "tsv", "turtle")
+RESULT_FORMATS = ("table", "json", "csv", "tsv", "turtle")
 Cell = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple | None
 
 
-def shown(answer: QueryAnswer | Iterator[ox.Triple], form: str, names: words.Names, rows: int) -> tuple[str, bool]:
+def shown(answer: QueryAnswer | Iterator[ox.Triple], form: str, names: Names, rows: int) -> tuple[str, bool]:
     """The answer in a format, and whether it had more than `rows` rows or triples, which are left out.
 
     Raises AuthorError where the format does not fit the kind of query.
@@ -38,7 +38,7 @@ def shown(answer: QueryAnswer | Iterator[ox.Triple], form: str, names: words.Nam
     return _triples(triples[:rows], form), len(triples) > rows
 
 
-def _solutions(variables: Sequence[str], rows: Sequence[Sequence[Cell]], form: str, names: words.Names) -> str:
+def _solutions(variables: Sequence[str], rows: Sequence[Sequence[Cell]], form: str, names: Names) -> str:
     """SPARQL 1.1 Query Results JSON, CSV or TSV, or a table for people."""
     if form == "json":
         bindings = [
@@ -57,7 +57,7 @@ def _solutions(variables: Sequence[str], rows: Sequence[Sequence[Cell]], form: s
         return "\n".join((*lines, *("\t".join("" if cell is None else str(cell) for cell in row) for row in rows)))
     if not variables:
         return f"{len(rows)} solutions"
-    return words.table(variables, [["" if cell is None else names(turtle.term(cell)) for cell in row] for row in rows])
+    return table(variables, [["" if cell is None else names(turtle.term(cell)) for cell in row] for row in rows])
 
 
 def _json(cell: Cell) -> dict[str, Any]:

@@ -1,18 +1,17 @@
-"""How long a search may take: in steps, which mean the same on every machine, or in seconds.
+"""How long a search may take in seconds, and the best answer that a search has given when they are over.
 
-The core has no clock. A step budget is its own; seconds are kept here, by an alarm in the one thread in which a command
-works (`rdf.deadline`). It ends whatever is going on, and the last answer that the search has told of remains.
+The core has no clock. A budget of steps is its own; seconds are kept here, by an alarm in the main thread
+(`selfconf.rdf.deadline`). It ends whatever is going on, and the last answer that the search has given remains.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
 import time
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
-from selfconf.composition import Composer
+from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Undecided
@@ -20,43 +19,17 @@ from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.deadline import TimeUp, deadline
 
-LONGEST = 1e6
-"""Seconds that an alarm can be set to everywhere."""
-T = TypeVar("T")
+Result = TypeVar("Result")
 
 
-def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options that limit a search."""
-    parser.add_argument(
-        "--steps", metavar="N", type=_steps, help="give up a search after so many steps, which all machines count alike"
-    )
-    parser.add_argument("--seconds", metavar="S", type=_seconds, help="give up a search after so many seconds")
-
-
-def _steps(text: str) -> int:
-    if not text.isdecimal() or not int(text):
-        raise argparse.ArgumentTypeError(f"{text!r} is no number of steps; it takes a whole number above zero")
-    return int(text)
-
-
-def _seconds(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = math.nan
-    if not 0 < seconds <= LONGEST:
-        raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes a number of seconds above zero")
-    return seconds
-
-
-class Clock:
+class TimeLimit:
     """The time for one question, if it is limited: what is asked later has less of it."""
 
     def __init__(self, seconds: float | None) -> None:
         self.seconds = seconds
         self._ends = math.inf if seconds is None else time.monotonic() + seconds
 
-    def within(self, ask: Callable[[], T], otherwise: T) -> T:
+    def within(self, ask: Callable[[], Result], otherwise: Result) -> Result:
         """The answer to a question, or what holds without one when the time is up."""
         if self.seconds is None:
             return ask()
@@ -75,7 +48,7 @@ def composed(
     ecology: Mapping[IRI, Advertisement],
     lost: frozenset[IRI],
     running: Configuration | None,
-    clock: Clock,
+    limit: TimeLimit,
 ) -> Optimum | Outcome:
     """The best answer that the time allows. The partition is made first, and is not part of the search."""
     composer.partition(ecology)
@@ -86,7 +59,7 @@ def composed(
             answers.append(answer)
         return True
 
-    whole = clock.within(gather, False)
+    whole = limit.within(gather, False)
     if not whole and (not answers or isinstance(answers[-1], Undecided)):
-        return Undecided(seconds=clock.seconds)
+        return Undecided(seconds=limit.seconds)
     return answers[-1]

@@ -6,7 +6,6 @@ Whatever else goes wrong between here and there is a NetworkError, also an answe
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from http.client import HTTPException, HTTPResponse, InvalidURL
@@ -24,32 +23,25 @@ from urllib.request import (
 
 import pyoxigraph as ox
 
-from selfconf.cli.inputs import collector_at_rest, complain
 from selfconf.errors import AuthorError, NetworkError, TurtleError
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.left_out import LeftOut
 from selfconf.model.term import IRI
 from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import TYPES, CompiledRole, statements, wanted
 from selfconf.rdf.sparql import QueryAnswer
 
-PATIENCE = 120.0
+ENDPOINT_PATIENCE = 120.0
 """Seconds without a word from the endpoint after which it is given up."""
 RESULTS, TRIPLES = "application/sparql-results+json", "application/n-triples"
 """What is asked for: the solutions of SELECT and ASK, the triples of CONSTRUCT and DESCRIBE."""
 
 
-def add_endpoint_argument(parser: argparse.ArgumentParser) -> None:
-    """The option for an ecology behind a SPARQL endpoint."""
-    parser.add_argument(
-        "--endpoint",
-        metavar="URL",
-        help="a SPARQL 1.1 endpoint that holds the advertisements, in its default graph or in named ones",
-    )
-
-
-def read_endpoint(url: str, roles: Sequence[CompiledRole], hierarchy: Hierarchy) -> dict[IRI, Advertisement]:
-    """The advertisements there of components that some role may want. One that does not conform is named on stderr.
+def read_endpoint(
+    url: str, roles: Sequence[CompiledRole], hierarchy: Hierarchy
+) -> tuple[dict[IRI, Advertisement], list[LeftOut]]:
+    """The advertisements there of components that some role may want, and those that do not conform.
 
     Raises NetworkError, and AuthorError for what is no URL.
     """
@@ -59,22 +51,20 @@ def read_endpoint(url: str, roles: Sequence[CompiledRole], hierarchy: Hierarchy)
         types = [IRI(kind.value) for kind in (row["type"] for row in answer) if isinstance(kind, ox.NamedNode)]
     relevant = wanted(types, roles, hierarchy)
     if not relevant:
-        return {}
-    with _reply(url, statements(relevant), TRIPLES, PATIENCE) as reply:
+        return {}, []
+    with _reply(url, statements(relevant), TRIPLES, ENDPOINT_PATIENCE) as reply:
         found = reply.read()
-    with collector_at_rest():
-        try:
-            good, bad = advertisements.read(found, url)
-        except TurtleError as error:
-            raise NetworkError(f"{url} does not answer in N-Triples: {_line(error.message)}") from None
-    for malformed in bad:
-        complain(f"{url}: left out {malformed.component}: {malformed.problems[0]}")
-    return {advertisement.component: advertisement for advertisement in good}
+    try:
+        good, bad = advertisements.read(found, url)
+    except TurtleError as error:
+        raise NetworkError(f"{url} does not answer in N-Triples: {_line(error.message)}") from None
+    left_out = [LeftOut(url, malformed.component, malformed.problems[0]) for malformed in bad]
+    return {advertisement.component: advertisement for advertisement in good}, left_out
 
 
 @contextmanager
 def asked(
-    url: str, query: str, form: str = f"{RESULTS}, {TRIPLES}", patience: float = PATIENCE
+    url: str, query: str, form: str = f"{RESULTS}, {TRIPLES}", patience: float = ENDPOINT_PATIENCE
 ) -> Iterator[QueryAnswer | Iterator[ox.Triple]]:
     """What an endpoint answers, read from the network while it is looked at. Raises as `read_endpoint` does."""
     with _reply(url, query, form, patience) as reply:

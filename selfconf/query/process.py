@@ -1,6 +1,6 @@
 """A SPARQL query in a process of its own, which can be ended: whoever asks may ask for more than there is time for.
 
-`python -m selfconf.cli.asking` is the process: a line of JSON with the question and the dataset as N-Quads come in on
+`python -m selfconf.query` is the process: a line of JSON with the question and the dataset as N-Quads come in on
 stdin, the answer goes out on stdout. Time, rows and memory are limited; a query that brings the engine down (Oxigraph
 0.5 overflows its stack on braces nested some ten thousand deep) brings down nothing else. A question for an endpoint
 goes out from there as well, so that a server which never ends, or sends without end, meets the same limits.
@@ -20,15 +20,16 @@ from typing import NamedTuple
 
 import pyoxigraph as ox
 
-from selfconf.cli import endpoint, words
-from selfconf.cli.answers import shown
 from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
+from selfconf.query.endpoint import asked
+from selfconf.query.results import shown
 from selfconf.rdf.eligibility import ANYBODY, prefaced
 from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, only_reads, says
+from selfconf.render import Names
 
-SECONDS = 60.0
+ANSWER_SECONDS = 60.0
 """How long an answer may take by default, loading the dataset included."""
-ROWS = 100_000
+MOST_ROWS = 100_000
 """How many rows are shown by default."""
 MEMORY = 4 << 30
 """How many bytes of address space the process may take."""
@@ -41,10 +42,10 @@ class Question:
 
     text: str
     form: str = "table"
-    rows: int = ROWS
+    rows: int = MOST_ROWS
     prefixes: Mapping[str, str] | None = None
     memory: int = MEMORY
-    seconds: float = SECONDS
+    seconds: float = ANSWER_SECONDS
     endpoint: str | None = None
     """Who is asked; without it the dataset."""
 
@@ -59,7 +60,7 @@ class Shown(NamedTuple):
 
 def answer(dataset: Dataset, question: Question) -> Shown:
     """The answer as text. Raises QueryError, also when a limit is reached, and NetworkError."""
-    command = [sys.executable, "-m", "selfconf.cli.asking"]
+    command = [sys.executable, "-m", "selfconf.query"]
     given = json.dumps(asdict(question)).encode() + b"\n" + dataset.dump()
     try:
         done = subprocess.run(command, input=given, capture_output=True, timeout=question.seconds, check=False)
@@ -89,7 +90,7 @@ def main() -> int:
     with contextlib.suppress(ValueError, OSError):  # some systems have no such limit
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (question.memory, question.memory))
-    names = words.Names({**(question.prefixes or {}), **QUERY_PREFIXES})
+    names = Names({**(question.prefixes or {}), **QUERY_PREFIXES})
     try:
         with _answering(question) as found:
             text, cut = shown(found, question.form, names, question.rows)
@@ -115,7 +116,7 @@ def _answering(question: Question) -> Iterator[QueryAnswer | Iterator[ox.Triple]
         yield dataset.query(question.text, question.prefixes)
     else:
         only_reads(question.text)
-        with endpoint.asked(question.endpoint, prefaced(question.text), patience=question.seconds) as found:
+        with asked(question.endpoint, prefaced(question.text), patience=question.seconds) as found:
             yield found
 
 
@@ -123,14 +124,10 @@ def _remark(question: Question) -> str:
     """What explains an answer that is emptier than expected: an endpoint has its own idea of the default graph."""
     if question.endpoint is None or any(says(question.text, word) for word in ("GRAPH", "FROM")):
         return ""
-    with contextlib.suppress(NetworkError), endpoint.asked(question.endpoint, ANYBODY, patience=1.0) as found:
+    with contextlib.suppress(NetworkError), asked(question.endpoint, ANYBODY, patience=1.0) as found:
         if isinstance(found, ox.QueryBoolean) and not found:
             return (
                 f"the default graph of {question.endpoint} holds no component; if each advertisement is a graph of its "
                 "own there, ask for GRAPH ?g { ... }, or give a URL that makes the default graph their union"
             )
     return ""
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Trying a component or a task without a network."""
