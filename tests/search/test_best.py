@@ -128,6 +128,7 @@ def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
     assert not isinstance(expected, Optimum) or answer == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
 def test_what_is_found_in_few_steps_has_an_honest_bound(aided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if aided:

@@ -100,6 +100,7 @@ def test_clause_learning_gives_the_same_repair(problem: Problem, data: st.DataOb
     assert isinstance(answer, Refusal) or answer.proved
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
 def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
     aided: bool, monkeypatch: pytest.MonkeyPatch
