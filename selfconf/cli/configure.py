@@ -20,7 +20,7 @@ from selfconf.cli.why import explained
 from selfconf.composition import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
-from selfconf.model.cost import number
+from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.term import IRI

@@ -3,4 +3,4 @@
 from selfconf.deployment.request import Account, RunRequest
 from selfconf.deployment.runner import TaskRunner
 
-__all__ = ["Account", "TaskRunner", "RunRequest"]
+__all__ = ["Account", "RunRequest", "TaskRunner"]

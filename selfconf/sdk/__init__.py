@@ -22,4 +22,4 @@ from selfconf.sdk.program import main
 from selfconf.termination import Termination
 from selfconf.termination import parent_environment as lineage
 
-__all__ = ["Component", "Termination", "Host", "Refused", "Signal", "lineage", "main"]
+__all__ = ["Component", "Host", "Refused", "Signal", "Termination", "lineage", "main"]

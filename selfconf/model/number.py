@@ -1,0 +1,87 @@
+"""Numbers: which literals stand for one, and for which.
+
+A literal is a number here if its datatype is one of XML Schema's numeric datatypes, its text is in the lexical space of
+that datatype (XSD 1.1 part 2, sections 3.3.3 to 3.3.5 and 3.4.13 to 3.4.25), and its value is finite. Infinity and
+not-a-number measure nothing. `shapes:Number` in `shapes/advertisement.ttl` says the same; a test holds the two
+together.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from fractions import Fraction
+
+from selfconf.model.term import XSD, Literal, Term
+
+MOST_CHARACTERS = 300
+"""A longer text is no measurement. The bound also keeps every decimal within the range of a double, and its fraction
+small."""
+
+_Bounds = tuple[int | None, int | None]
+_WHOLE: dict[str, _Bounds] = {
+    "integer": (None, None),
+    "nonNegativeInteger": (0, None),
+    "positiveInteger": (1, None),
+    "nonPositiveInteger": (None, 0),
+    "negativeInteger": (None, -1),
+    "byte": (-(1 << 7), (1 << 7) - 1),
+    "short": (-(1 << 15), (1 << 15) - 1),
+    "int": (-(1 << 31), (1 << 31) - 1),
+    "long": (None, None),  # that 64 bits hold a number is not checked by rdflib either, which judges by the shape
+    "unsignedByte": (0, (1 << 8) - 1),
+    "unsignedShort": (0, (1 << 16) - 1),
+    "unsignedInt": (0, (1 << 32) - 1),
+    "unsignedLong": (0, None),
+}
+WHOLE: dict[str, _Bounds] = {XSD + name: bounds for name, bounds in _WHOLE.items()}
+"""The datatypes of whole numbers, each with its least and its greatest value."""
+FLOATING = frozenset((XSD + "double", XSD + "float"))
+"""The datatypes with an exponent; both are read with the range of a double."""
+DATATYPES = frozenset((*WHOLE, XSD + "decimal", *FLOATING))
+"""The datatypes of numbers."""
+_DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
+_LEXICAL = {
+    **dict.fromkeys(WHOLE, re.compile("[+-]?[0-9]+")),
+    XSD + "decimal": re.compile(_DECIMAL),
+    **dict.fromkeys(FLOATING, re.compile(_DECIMAL + "(?:[eE][+-]?[0-9]+)?")),
+}
+
+
+def number_of(lexical: str, datatype: str) -> Decimal | None:
+    """The number that a text of a datatype stands for, exactly as it is written; None if it stands for none.
+
+    An xsd:double or xsd:float that is too small for a double is zero.
+    """
+    pattern = _LEXICAL.get(datatype)
+    if pattern is None or len(lexical) > MOST_CHARACTERS or not pattern.fullmatch(lexical):
+        return None
+    if datatype in FLOATING:
+        rounded = float(lexical)
+        if rounded == 0 or not math.isfinite(rounded):
+            return Decimal(0) if rounded == 0 else None
+    number = Decimal(lexical)
+    least, greatest = WHOLE.get(datatype, (None, None))
+    if (least is not None and number < least) or (greatest is not None and number > greatest):
+        return None
+    return number
+
+
+def number(term: Term) -> Decimal | None:
+    """The number that a term stands for, exactly as it is written; None for anything else."""
+    return number_of(term.lexical, term.datatype) if isinstance(term, Literal) else None
+
+
+def fraction(term: Term) -> Fraction | None:
+    """The number that a term stands for as an exact fraction; None for anything else."""
+    found = number(term)
+    return None if found is None else Fraction(found)
+
+
+def plain_number(term: Term) -> int | float | None:
+    """The number that a term stands for as Python's `int` where its datatype is one of whole numbers, else `float`."""
+    found = number(term)
+    if found is None or not isinstance(term, Literal):
+        return None
+    return int(found) if term.datatype in WHOLE else float(found)
