@@ -15,7 +15,7 @@ from selfconf.model.partition import ANY_VALUE, Partition
 from selfconf.model.term import IRI
 from selfconf.rdf import rdflib_terms
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import CostTerm, cost, number
+from selfconf.model.cost import CostTerm, cost
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
@@ -190,9 +190,3 @@ def test_what_is_known_is_better_than_what_is_not() -> None:
     answer = best.best_configuration(stating(problem({"eye": [component("unknown"), known]}), (CostTerm(LATENCY),)))
     assert isinstance(answer, Optimum)
     assert answer.configuration.components[0].short == "known"
-
-
-def test_a_literal_that_is_no_measurement_is_no_number() -> None:
-    for lexical in ("INF", "NaN", "1e999999999", "fast", "9" * 1000):
-        assert number(Literal(lexical)) is None
-    assert number(Literal("2.50")) == Fraction(5, 2)
