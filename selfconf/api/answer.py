@@ -14,8 +14,8 @@ from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
-from selfconf.model.number import number
 from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI

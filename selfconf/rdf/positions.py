@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 from rdflib import RDF, Graph, Literal, URIRef
 from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
-from rdflib.term import Node, URIRef
+from rdflib.term import Node
 
 RdflibTriple = tuple[Node, Node, Node]
 

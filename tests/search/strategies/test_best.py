@@ -190,3 +190,34 @@ def test_what_is_known_is_better_than_what_is_not() -> None:
     answer = best.best_configuration(stating(problem({"eye": [component("unknown"), known]}), (CostTerm(LATENCY),)))
     assert isinstance(answer, Optimum)
     assert answer.configuration.components[0].short == "known"
+
+
+def test_when_the_steps_end_the_cheapest_solution_that_clause_learning_met_is_the_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pytest.importorskip("pysat")
+    monkeypatch.setattr(best, "BRANCHING_STEPS", 1)
+    given_ = stating(
+        problem(
+            {
+                "eye": [
+                    priced(component("red", outputs="p:Red"), latency=7),
+                    priced(component("blue", outputs="p:Blue"), latency=3),
+                ],
+                "mind": [
+                    priced(component("r", "p:Red", "q:Red"), latency=4),
+                    priced(component("b", "p:Blue", "q:Blue"), latency=8),
+                ],
+                "leg": [priced(component("left", "q:Red"), latency=5), priced(component("right", "q:Blue"), latency=3)],
+            },
+            "eye>mind mind>leg",
+        ),
+        (CostTerm(LATENCY),),
+    )
+    first = best.best_configuration(given_, 1_000)
+    assert isinstance(first, Optimum)
+    assert first.cost == (14,)
+    # Three conflicts prove that nothing costs less than 14, and none is left to prove which solution is the first.
+    answer = best.best_configuration(given_, 3)
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.proved) == ((14,), True)
