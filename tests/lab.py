@@ -9,7 +9,7 @@ from typing import Any
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
 from selfconf.composition.composer import Composer
-from selfconf.configurator.machine import Phase, Policy
+from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.refusal import Refusal
@@ -163,7 +163,7 @@ class Lab:
             policy=policy,
             patient=patient,
             report=self.events.append,
-            settle=self.ended.append,
+            ended=self.ended.append,
         )
         agent = TaskRunner(
             self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time

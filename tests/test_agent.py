@@ -9,7 +9,7 @@ import pytest
 
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.events import Failed
-from selfconf.configurator.machine import Phase, Policy
+from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.calls import CALL, STARTING, WAKING
 from selfconf.deployment.liveness import ASK_AGAIN, SETTLING
 from selfconf.deployment.runner import TRY_AGAIN

@@ -1,8 +1,17 @@
 """Histories in which everything goes wrong, each replayed by its seed.
 
 A history runs the paper's ecology on a network that loses, delays and doubles messages, while components fail, crash
-and come back, nodes are cut off, and configurators die. Then the faults cease, everybody reaches everybody, and after
-a while the ecology must be in order: `disorder` names everything that is not.
+and come back, nodes are cut off, and configurators die. Then the faults cease, every node reaches every other, and
+after a while the ecology must be in order: `disorder` names everything that is not.
+
+*Replaying a failure.* A history that ends in disorder fails its test; the first line of the message has its seed, then
+comes what happened, in order, and what is not in order. Its seed decides everything in it, the network included, so
+`python -m pytest tests/faults --seed N` lets the failure happen again, as long as the code and the list of mishaps in
+`run` are unchanged. The test whose name ends in `[0]` then is seed N, the others are the seeds that follow; give its
+name to run seed N alone, and `--log-level DEBUG` to see every change of a configurator's phase:
+
+    python -m pytest --seed N --log-level DEBUG \
+        'tests/faults/test_histories.py::test_after_every_history_the_ecology_is_in_order[0]'
 """
 
 from __future__ import annotations
@@ -12,7 +21,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from selfconf.bus.memory import Faults
-from selfconf.configurator.machine import Phase, Policy, wiring
+from selfconf.configurator.machine import wiring
+from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import TaskRunner
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.messages import Cause
@@ -124,7 +134,7 @@ class History:
         """A refusal that is waited out must still be right."""
         alive = {body.profile.component for name, body in self.lab.bodies.items() if self.lab.node_of(name).open}
         found = {c: a for site in self.sites for c, a in site.shelf.advertisements.items() if c in alive}
-        if not isinstance(agent.order.compose(found, frozenset(agent.state.lost), None), Refusal):
+        if not isinstance(agent.request.compose(found, frozenset(agent.state.lost), None), Refusal):
             yield f"{agent.name} has given up, although there is a configuration"
         free = {body.profile.component for body in self.lab.bodies.values() if body.activation.supervisor is None}
         for component, loss in agent.state.lost.items():
