@@ -8,10 +8,9 @@ after a while the ecology must be in order: `disorder` names everything that is 
 comes what happened, in order, and what is not in order. Its seed decides everything in it, the network included, so
 `python -m pytest tests/faults --seed N` lets the failure happen again, as long as the code and the list of mishaps in
 `run` are unchanged. The test whose name ends in `[0]` then is seed N, the others are the seeds that follow; give its
-name to run seed N alone, and `--log-level DEBUG` to see every change of a configurator's phase:
+name to run seed N alone, and add `--log-level DEBUG` to see every change of a configurator's phase:
 
-    python -m pytest --seed N --log-level DEBUG \
-        'tests/faults/test_histories.py::test_after_every_history_the_ecology_is_in_order[0]'
+    python -m pytest --seed N 'tests/faults/test_histories.py::test_after_every_history_the_ecology_is_in_order[0]'
 """
 
 from __future__ import annotations
