@@ -1,4 +1,4 @@
-"""What every test shares: a runtime folder of its own, and names of ecologies that nobody else uses."""
+"""What every test shares: a runtime folder of its own, names of ecologies that no other test uses, and the order."""
 
 from __future__ import annotations
 
@@ -8,13 +8,43 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-settings.register_profile("selfconf", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+from tests.effort import examples
+
+settings.register_profile(
+    "selfconf",
+    max_examples=examples(100),
+    deadline=None,
+    derandomize=True,
+    print_blob=True,
+    suppress_health_check=[HealthCheck.too_slow],
+)
 settings.load_profile("selfconf")
+COSTLY_FIXTURES = {"inhabited"}
+"""Fixtures of the session that start processes: all their tests run in one process, so that they start once."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The option by which a history is replayed."""
     parser.addoption("--seed", type=int, help="the seed of the first history of faults to run")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declare the mark of pytest-xdist, so that strict markers allow it where pytest-xdist is not installed."""
+    config.addinivalue_line("markers", "xdist_group(name): tests that run in one process, one after the other")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Where tests run in several processes, begin with those that take longest, so that all processes end together."""
+    for item in items:
+        for name in COSTLY_FIXTURES.intersection(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.xdist_group(name))
+    if hasattr(config, "workerinput"):
+        items.sort(key=_takes_seconds, reverse=True)
+
+
+def _takes_seconds(item: pytest.Item) -> bool:
+    return any(item.get_closest_marker(mark) for mark in ("process", "slow"))
 
 
 @pytest.fixture(autouse=True)

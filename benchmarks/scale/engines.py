@@ -22,7 +22,8 @@ from selfconf.model.hierarchy import Reasoning
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements.reader import STRUCTURE, Advertisement, property_order
+from selfconf.rdf.advertisements import STRUCTURE, Advertisement
+from selfconf.rdf.advertisements.advertisement import property_order
 from selfconf.rdf.eligibility.index import AdvertisementIndex
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.vocabulary import SC

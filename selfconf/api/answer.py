@@ -14,8 +14,8 @@ from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
-from selfconf.model.cost import number
 from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
@@ -94,10 +94,16 @@ class Answer(Configuration):
         known = ", ".join(assignment.role.short for assignment in self.assignments)
         raise KeyError(f"there is no role {role!r}; the roles are {known}")
 
+    @property
+    def plain(self) -> Configuration:
+        """The configuration by itself."""
+        return Configuration(self.template, self.assignments, self.connections, self.settings, self.bindings)
+
     def to_turtle(self) -> str:
         """The configuration in RDF, as Turtle."""
-        name = configuration_iri(self, 0)
-        return to_turtle(configuration_triples(self, name, self.task.task), self.task.document.prefixes).rstrip()
+        plain = self.plain
+        triples = configuration_triples(plain, configuration_iri(plain, 0), self.task.task)
+        return to_turtle(triples, self.task.document.prefixes).rstrip()
 
     def to_mermaid(self) -> str:
         """The configuration as a Mermaid flow chart."""
@@ -112,7 +118,7 @@ class Answer(Configuration):
         return "\n".join(parts)
 
     def __repr__(self) -> str:
-        return f"<{str(self).replace(chr(10), '; ', 1)}>" if len(self.assignments) < 2 else f"<{self}>"
+        return f"<{self}>"
 
     def _repr_html_(self) -> str:
         sections = {f"configured {self.names(self.template)}": diagram(self, self.names)}

@@ -14,7 +14,6 @@ from selfconf.cli.options import (
     add_task_arguments,
     complain_of,
     ecology_of,
-    method_of,
     task_of,
 )
 from selfconf.cli.terminal import show
@@ -43,12 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 if every role has as many candidates as it asks for, else 1."""
-    from selfconf.api.answer import Inquiry
+    from selfconf.api.answer import Inquiry, Method
     from selfconf.api.partition_table import PartitionTable
 
     task = task_of(given)
     with closing(ecology_of(given)) as ecology:
-        inquiry = Inquiry(task, ecology, method_of(given, task))
+        inquiry = Inquiry(task, ecology, Method.of(reasoning=given.reasoning, ontologies=given.ontology))
         if given.ads is None:
             complain_of(ecology)
     if given.show:

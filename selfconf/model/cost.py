@@ -9,15 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.number import fraction
 from selfconf.model.profile import Profile
-from selfconf.model.term import IRI, Literal, Term
-
-LARGEST_EXPONENT = 400
-"""Beyond a double's range a number is no measurement; an exponent of a milliard would also fill the memory."""
+from selfconf.model.term import IRI
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,19 +29,6 @@ class CostTerm:
 
 
 CostLevel = tuple[CostTerm, ...]
-
-
-def number(term: Term) -> Fraction | None:
-    """The number that a literal stands for; None for anything else, infinity and not-a-number included."""
-    if not isinstance(term, Literal) or len(term.lexical) > LARGEST_EXPONENT:
-        return None
-    try:
-        value = Decimal(term.lexical.strip())
-    except InvalidOperation:
-        return None
-    if not value.is_finite() or abs(value.adjusted()) > LARGEST_EXPONENT:
-        return None
-    return Fraction(value)
 
 
 def cost(
@@ -78,7 +62,7 @@ def _terms(
             value * term.weight
             for predicate, said in profile.properties
             if term.property == predicate or term.property in hierarchy.superproperties(predicate)
-            if (value := number(said)) is not None
+            if (value := fraction(said)) is not None
         ]
         if values:
             yield term, max(values)

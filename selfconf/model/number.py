@@ -2,7 +2,8 @@
 
 A literal is a number here if its datatype is one of XML Schema's numeric datatypes, its text is in the lexical space of
 that datatype (XSD 1.1 part 2, sections 3.3.3 to 3.3.5 and 3.4.13 to 3.4.25), and its value is finite. Infinity and
-not-a-number measure nothing. `shapes/advertisement.ttl` says the same as `shapes:Number`; a test holds the two together.
+not-a-number measure nothing. `shapes:Number` in `shapes/advertisement.ttl` says the same; a test holds the two
+together.
 """
 
 from __future__ import annotations
@@ -25,10 +26,14 @@ _WHOLE: dict[str, _Bounds] = {
     "positiveInteger": (1, None),
     "nonPositiveInteger": (None, 0),
     "negativeInteger": (None, -1),
-    **{name: (-(1 << bits - 1), (1 << bits - 1) - 1) for name, bits in (("byte", 8), ("short", 16))},
-    **{name: (-(1 << bits - 1), (1 << bits - 1) - 1) for name, bits in (("int", 32), ("long", 64))},
-    **{name: (0, (1 << bits) - 1) for name, bits in (("unsignedByte", 8), ("unsignedShort", 16))},
-    **{name: (0, (1 << bits) - 1) for name, bits in (("unsignedInt", 32), ("unsignedLong", 64))},
+    "byte": (-(1 << 7), (1 << 7) - 1),
+    "short": (-(1 << 15), (1 << 15) - 1),
+    "int": (-(1 << 31), (1 << 31) - 1),
+    "long": (None, None),  # that 64 bits hold a number is not checked by rdflib either, which judges by the shape
+    "unsignedByte": (0, (1 << 8) - 1),
+    "unsignedShort": (0, (1 << 16) - 1),
+    "unsignedInt": (0, (1 << 32) - 1),
+    "unsignedLong": (0, None),
 }
 WHOLE: dict[str, _Bounds] = {XSD + name: bounds for name, bounds in _WHOLE.items()}
 """The datatypes of whole numbers, each with its least and its greatest value."""

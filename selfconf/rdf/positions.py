@@ -17,11 +17,12 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterator, MutableSequence
 from dataclasses import dataclass, field
+from decimal import Decimal
 from typing import Any, NamedTuple
 
-from rdflib import RDF, Graph
+from rdflib import RDF, Graph, Literal, URIRef
 from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
-from rdflib.term import Node, URIRef
+from rdflib.term import Node
 
 RdflibTriple = tuple[Node, Node, Node]
 
@@ -152,6 +153,13 @@ class _Sink(RDFSink):
         _, predicate, subject, value = (self.normalise(None, term) for term in quadruple)
         self.graph.add((subject, predicate, value))
         self.positions.triples.setdefault((subject, predicate, value), self.at)
+
+    def newLiteral(self, s: str, dt: URIRef | None, lang: str | None) -> Literal:
+        literal = Literal(s, lang=lang, datatype=dt, normalize=False)  # as it is written, so that shapes see its text
+        if isinstance(literal.value, Decimal) and not literal.value.is_finite():
+            # xsd:decimal has no NaN and no infinity, but Python has; comparing with one raises through pySHACL.
+            literal._value, literal._ill_typed = None, True
+        return literal
 
     def newList(self, n: list[Any], f: Any) -> Any:
         opening, *members = self.open[-1]

@@ -1,4 +1,4 @@
-"""A configuration as RDF with its provenance (PROV-O): which task it answers, what was passed over, and why."""
+"""A configuration with its provenance (PROV-O) as RDF: what was chosen for which task, what was passed over, why."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ from selfconf.search.budget import Budget
 from selfconf.search.explain import Questions, core
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import Fed, LazyReduction, Played, reduced
-from selfconf.search.strategies import solution
+from selfconf.search.strategies import possible, solution
 
 TRIALS = 24
 """How many changed problems are looked at for each sort of repair."""
@@ -106,7 +106,8 @@ def _solution(problem: Problem, budget: Budget) -> list[list[Candidate]] | Undec
 
 
 def _possible(problem: Problem, budget: Budget) -> bool:
-    return isinstance(_solution(problem, budget), list)
+    with budget.portion(TRIAL_STEPS + sum(map(len, problem.candidates))) as part:
+        return possible(problem, part)
 
 
 def _small(problem: Problem, apart: Collection[IRI]) -> Problem:

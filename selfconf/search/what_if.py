@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterator
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.refusal import Refusal
-from selfconf.search import reconfigure as repair
+from selfconf.search import reconfigure
 from selfconf.search.problem import Problem
 
 
 def consequences(
     problem: Problem,
     running: Configuration,
-    search: Callable[[Problem, Configuration], Configuration | Refusal] = repair.nearest_configuration,
+    search: Callable[[Problem, Configuration], Configuration | Refusal] = reconfigure.nearest_configuration,
 ) -> Iterator[Consequence]:
     """The loss of each component of a configuration by itself, in the order of the roles."""
     for assignment in running.assignments:

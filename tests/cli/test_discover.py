@@ -10,6 +10,8 @@ from tests.cli.command import run
 from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
+pytestmark = pytest.mark.process
+
 
 def test_everything_that_is_advertised_is_shown_with_its_site_and_whether_it_lives(
     inhabited: Home, capsys: pytest.CaptureFixture[str]

@@ -17,6 +17,8 @@ from tests.cli.command import Outcome, run
 from tests.cli.endpoints import Scripted, http, oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, write_advertisements
 
+pytestmark = pytest.mark.process
+
 SENSORS = "SELECT ?c WHERE { ?c a rob:PositionSensor } ORDER BY ?c"
 TASK = ("--bind", "robot=:Astrid", "--bind", "goal=x")
 TYPES = '{"head":{"vars":["type"]},"results":{"bindings":[{"type":{"type":"uri","value":"urn:a"}}]}}'

@@ -14,6 +14,8 @@ from selfconf.cli.main import main
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
 
+pytestmark = pytest.mark.slow
+
 BAD = Path(__file__).parents[1] / "bad"
 
 

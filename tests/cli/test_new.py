@@ -71,6 +71,7 @@ def test_a_scaffolded_template_finds_the_scaffolded_component(home: Path, place:
     assert main(arguments) == code
 
 
+@pytest.mark.process
 def test_a_scaffolded_component_runs_until_it_is_interrupted(home: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "selfconf", "run", "watch.ttl", "--ads", "."],

@@ -15,7 +15,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.tasks import templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle

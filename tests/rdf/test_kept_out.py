@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from selfconf.composition.composer import Composer
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
-from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.nearly_eligible import near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.role_tests import ClassTest

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.index import AdvertisementIndex
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.role_tests import ParameterTest

@@ -13,7 +13,7 @@ from selfconf.api.reading import collector_at_rest
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Profile
 from selfconf.rdf.advertisements import loader as stream
-from selfconf.rdf.advertisements.reader import Advertisement
+from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.nearly_eligible import near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.role_tests import CompiledRole

@@ -13,7 +13,7 @@ from selfconf.errors import TurtleError
 from selfconf.rdf.advertisements import loader as stream
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements import statements as clauses
-from selfconf.rdf.advertisements.reader import Advertisement, MalformedAdvertisement
+from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.advertisements.segments import SegmentCache
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle.document import Triple

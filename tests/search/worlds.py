@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from itertools import islice
@@ -17,14 +16,13 @@ from selfconf.model.profile import Input, OperationalParameter, Output, Ports, P
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
-
-NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
+from tests.effort import NIGHTLY, examples
 
 
 def agreement(share: float = 1.0) -> settings:
-    """How many worlds a test sees: 500 where every push runs, 10,000 at night (HYPOTHESIS_PROFILE=nightly)."""
+    """How many worlds a test sees: 500 where every push runs, 50 in a quick run, 10,000 at night."""
     return settings(
-        max_examples=max(1, int((10_000 if NIGHTLY else 500) * share)),
+        max_examples=examples(int(500 * share)),
         deadline=None,
         derandomize=not NIGHTLY,
         database=None,

@@ -20,12 +20,11 @@ from selfconf.model.profile import NO_PREFERENCE, Input, OperationalParameter, O
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.advertisements.reader import Advertisement, MalformedAdvertisement, about
+from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement, about, property_order
+from selfconf.rdf.advertisements.fields import LINKS, NEXT
 from selfconf.rdf.advertisements.segments import SegmentCache, inlined_document
 from selfconf.rdf.advertisements.statements import (
     END,
-    LINKS,
-    NEXT,
     NotInlinableError,
     Statement,
     StatementTable,
@@ -153,7 +152,7 @@ def _keyed(statement: Statement, component: IRI) -> list[Keyed]:
     """The properties that a clause states, each behind what they are ordered by; remembered if all may share them."""
     pairs = statement.properties
     own = [(p, _own(v, component) if isinstance(v, BlankNode) and statement.bracketed else v) for p, v in pairs]
-    keyed = [(advertisements.property_order(pair), pair) for pair in own]
+    keyed = [(property_order(pair), pair) for pair in own]
     if not statement.bracketed:
         statement.keyed = keyed
     return keyed

@@ -11,16 +11,18 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from operator import attrgetter
+from typing import NamedTuple
 
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.advertisements.reader import STRUCTURE, allowed
-from selfconf.rdf.vocabulary import RDF, SC, TYPE, UNIT, XSD
+from selfconf.rdf.advertisements.advertisement import allowed
+from selfconf.rdf.advertisements.fields import COMPONENT, GROUNDING, LINKS, NAME, NEXT, PORTS, STRUCTURE, Field
+from selfconf.rdf.vocabulary import RDF, SC, TYPE, XSD
 
-END, NEXT = " .\n", " ;\n\t"
-"""What Oxigraph writes after the last clause of a subject, and between two; no term has a line break in it."""
+END = " .\n"
+"""What Oxigraph writes after the last statement about a subject."""
 _NAME = attrgetter("name")
 _SPOKEN_FOR = IRI("urn:selfconf:component")
 _KIND = IRI("urn:selfconf:kind")
@@ -28,10 +30,8 @@ _NOTHING = Profile(_SPOKEN_FOR)
 _NO_TYPES: frozenset[IRI] = frozenset()
 _BEYOND = f"<{SC.Component}>"
 """What a blank node may not say if it is to be folded: that it is a component itself."""
-LINKS = frozenset((SC.hasInput, SC.hasOutput, SC.hasParameter, SC.grounding, SC.rate))
-"""What leads from a component to what else its profile is made of."""
 _STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
-_SILENT = {f"<{predicate}>" for predicate in (SC.name, SC.signalType)}
+_SILENT = {f"<{predicate}>" for predicate in STRUCTURE - COMPONENT.predicates}
 """What says nothing of a component itself."""
 _SIMPLE = re.compile(
     r"<(?P<predicate>[^<>]*)> (?:"
@@ -45,17 +45,33 @@ _LINK = {f"<{predicate}>" for predicate in LINKS}
 _LINKS = re.compile(r"<[^<>]*>(?: , <[^<>]*>)*")
 _KINDS = r"a <[^<>]*>(?: , <[^<>]*>)*"
 _VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)?|[+-]?[0-9]+|[+-]?[0-9]*\.[0-9]+)'
-_NAMED, _TYPED = f"<{SC.name}> ", f"<{SC.base}(?P<kind>signalType|parameterType)> "
-_RATED = f"<{SC.rate}> \\[ <{SC.value}> (?P<rate>[0-9]{{1,9}}(?:\\.[0-9]{{1,9}})?){NEXT}<{SC.unit}> <{UNIT.HZ}> \\]"
-_PORT = re.compile(
-    rf"<{SC.base}(?P<link>hasInput|hasOutput|hasParameter)> \[ "
-    rf'(?:(?:{_KINDS}|{_NAMED}"(?P<name>[^"\\]+)"|{_TYPED}<(?P<type>[^<>]*)>|{_RATED}|<[^<>]*> {_VALUE})'
-    rf"(?:{NEXT}| (?=\])))+\]"
-)
-"""A port in brackets; it is well-formed if name and type are there once, and a rate at most."""
-_RATE = f"<{SC.rate}> "
-_NUMBER = re.compile(rf"<{SC.preference}> (?P<number>[+-]?[0-9]{{1,9}}(?:\.[0-9]{{1,9}})?)")
-_COMMAND = re.compile(rf'<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?<{SC.command}> "(?P<command>[^"\\]+)" \]')
+
+
+class _PortPattern(NamedTuple):
+    """What is recognised of the ports, or operational parameters, that one predicate links to."""
+
+    marks: tuple[tuple[str, Field, str], ...]
+    """How each field begins in Turtle, and the group that has its value or the first value in it."""
+    type: str
+    """The group of the type."""
+    pattern: re.Pattern[str]
+
+    @classmethod
+    def of(cls, link: Field) -> _PortPattern:
+        """The pattern from the table."""
+        fields = link.into.fields
+        allowed = "|".join(field.turtle for field in fields if field.most != 0)
+        statement = f"(?:{_KINDS}|{allowed}|<[^<>]*> {_VALUE})"
+        return cls(
+            tuple([(f"<{f.predicate}> ", f, (f.into.fields or (f,))[0].predicate.short) for f in fields]),
+            next(field.predicate.short for field in fields if field.least and field is not NAME),
+            re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]"),
+        )
+
+
+_PORTS = {f"<{link.predicate}>": _PortPattern.of(link) for link in PORTS}
+_PREFERENCE = re.compile(COMPONENT[SC.preference].turtle)
+_COMMAND = re.compile(rf"<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?{GROUNDING[SC.command].turtle} \]")
 _TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
 
 
@@ -119,38 +135,54 @@ def links(predicate: str, text: str) -> Sequence[str]:
     return list(dict.fromkeys(said.split(" , "))) if predicate in _LINK and _LINKS.fullmatch(said) else ()
 
 
-def port_of(text: str) -> re.Match[str] | None:
-    """A clause with one port, or one operational parameter, that is in order and of a common form."""
-    if text.count(_NAMED) != 1 or text.count("Type> <") != 1 or text.count(_RATE) > 1:
-        return None
-    found = _PORT.fullmatch(text)
-    if found is None or found["name"] is None or found["type"] is None or found["type"].startswith(turtle.SKOLEM):
-        return None
-    if (found["kind"] == "parameterType") != (found["link"] == "hasParameter"):
-        return None
-    if _RATE in text and (found["rate"] is None or found["link"] != "hasOutput" or not float(found["rate"])):
-        return None
-    return found
+class WrittenPort(NamedTuple):
+    """One port, or one operational parameter, as it stands in a text."""
+
+    link: str
+    """The predicate that leads to it, in angle brackets."""
+    name: str
+    type: str
+    rate: str | None
 
 
-def _ported(found: re.Match[str]) -> Profile:
-    """The part of such a clause."""
-    name, type_ = found["name"], IRI(found["type"])
-    if found["link"] == "hasInput":
+def port_of(text: str) -> WrittenPort | None:
+    """The port of a statement with one port that is in order and of a common form.
+
+    Each field has to be there as often as the table says, and its value has to be recognised. To count the predicates
+    in the text is enough: one in a string or in brackets would count too, and the statement would be read carefully.
+    """
+    link = text.partition(" ")[0]
+    known = _PORTS.get(link)
+    if known is None:
+        return None
+    present = [
+        (field.counts(text.count(mark)), group) for mark, field, group in known.marks if mark in text or field.least
+    ]
+    found = known.pattern.fullmatch(text) if all(counts for counts, _ in present) else None
+    if found is None or any(found[group] is None for _, group in present):
+        return None
+    said = found.groupdict()
+    return WrittenPort(link, said["name"], said[known.type], said.get("value"))
+
+
+def _ported(port: WrittenPort) -> Profile:
+    """The part of such a statement."""
+    name, type_ = port.name, IRI(port.type)
+    if port.link == f"<{SC.hasInput}>":
         return Profile(_SPOKEN_FOR, ports=Ports(inputs=(Input(name, type_),)))
-    if found["link"] == "hasOutput":
-        rate = found["rate"] and float(found["rate"])
-        return Profile(_SPOKEN_FOR, ports=Ports(outputs=(Output(name, type_, rate or None),)))
+    if port.link == f"<{SC.hasOutput}>":
+        rate = None if port.rate is None else float(port.rate)
+        return Profile(_SPOKEN_FOR, ports=Ports(outputs=(Output(name, type_, rate),)))
     return Profile(_SPOKEN_FOR, parameters=(OperationalParameter(name, type_),))
 
 
 def setting_of(text: str) -> Profile | None:
-    """The part of a clause with a preference or a command, in order and of a common form."""
+    """The part of a statement with a preference or a command, in order and of a common form."""
     command = _COMMAND.fullmatch(text)
-    if command is not None and command["command"].strip():
+    if command is not None:
         return Profile(_SPOKEN_FOR, command=command["command"])
-    number = _NUMBER.fullmatch(text)
-    return None if number is None else Profile(_SPOKEN_FOR, preference=Decimal(number["number"]))
+    preference = _PREFERENCE.fullmatch(text)
+    return None if preference is None else Profile(_SPOKEN_FOR, preference=Decimal(preference["preference"]))
 
 
 def _property(text: str) -> tuple[IRI, Term] | None:
@@ -236,7 +268,7 @@ class StatementTable(dict[str, Statement]):
             return
         names: list[str] = []
         if port is not None:
-            names = [port["name"]]
+            names = [port.name]
         elif predicate in _SILENT:
             statement.part = _NOTHING
         else:

@@ -18,7 +18,9 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from selfconf.rdf.advertisements.fields import RATE
 from selfconf.rdf.advertisements.statements import Statement, StatementTable, port_of
+from selfconf.rdf.vocabulary import SC
 
 OCCURRENCES = 4
 """Of how many pieces of a shape its form is made."""
@@ -33,6 +35,7 @@ _RIGID = re.compile(rb"\x01[^\s,;\[\]()<>\"/]{0,250}:|:\x01[^<>\s]{0,250}>|@[A-Z
 """Digits before a colon, or just after one in an IRI, or in a language tag."""
 _HOLES = re.compile(rb'"|\x01')
 _NAME = re.compile(r"s731([0-9]{4})")
+_RATE = re.compile(RATE[SC.value].kind.turtle.encode())
 _MARK = re.compile(r'"s731([0-9]{4})"|731([0-9]{4})')
 
 
@@ -159,10 +162,9 @@ def _filled(template: TokenTemplate, segment: bytes, known: StatementTable) -> S
 
 
 def _common(rate: Iterable[int], segment: bytes) -> bool:
-    """Whether the digits of a rate make a number of a common size above zero."""
+    """Whether the digits of a rate make a number that is recognised as one."""
     values = _HOLE.findall(segment)
-    digits = [values[hole] for hole in rate]
-    return max(map(len, digits)) < 10 and any(each.strip(b"0") for each in digits)
+    return _RATE.fullmatch(b".".join([values[hole] for hole in rate])) is not None
 
 
 def _marks(text: str) -> tuple[int, ...]:
@@ -174,7 +176,7 @@ def _template(shape: bytes, statement: Statement, known: StatementTable) -> Toke
     """The form of a clause with marks."""
     text = statement.text
     port, name = port_of(text), None
-    if port is not None and (mark := _NAME.fullmatch(port["name"])):
+    if port is not None and (mark := _NAME.fullmatch(port.name)):
         strings = [number for number, hole in enumerate(_HOLES.findall(shape)) if hole == b'"']
         name = 2 * strings.index(int(mark[1])) + 1
     return TokenTemplate(
@@ -184,7 +186,7 @@ def _template(shape: bytes, statement: Statement, known: StatementTable) -> Toke
         statement.bracketed,
         port is None and len(statement.links) > 0,
         name,
-        () if port is None else _marks(port["rate"] or ""),
+        () if port is None else _marks(port.rate or ""),
         statement.slot is statement and statement not in known.suspects and not _MARK.search(statement.predicate),
     )
 

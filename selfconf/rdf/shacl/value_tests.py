@@ -1,7 +1,7 @@
 """What SHACL asks of one value: its kind, datatype, range, length and pattern (SHACL 4.1.2, 4.1.3, 4.3, 4.4).
 
-Whether a literal is well-formed, and which of two is the greater, is decided by rdflib (`selfconf.rdf.literals`), as it
-is in pySHACL: two opinions on what `"07"^^xsd:integer` is would be one too many. Verdicts are remembered, as values
+Whether a literal is well-formed, and which of two is the greater, is decided by rdflib (`selfconf.rdf.literals`), as
+it is in pySHACL: two opinions on what `"07"^^xsd:integer` is would be one too many. Verdicts are remembered, as values
 recur.
 """
 

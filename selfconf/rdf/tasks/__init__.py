@@ -2,8 +2,8 @@
 
 `TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one. `bind`, `complete` and
 `read_term` give parameters their values, `suitable` and `misfits` tell which values a parameter can and cannot have,
-and `free_parameters` which ones are left. `mentions`, `shape_statements` and `ROLE_STRUCTURE` are for readers of the
-roles' shapes.
+and `free_parameters` which ones are left. `mentions`, `shape_statements` and `ROLE_STRUCTURE` are for readers
+of the roles' shapes.
 """
 
 from selfconf.rdf.tasks.bindings import bind, complete, free_parameters, read_term

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from selfconf.errors import TemplateError
-from selfconf.model.cost import CostLevel, CostTerm, number
+from selfconf.model.cost import CostLevel, CostTerm
+from selfconf.model.number import fraction
 from selfconf.model.profile import Place
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -247,7 +248,7 @@ class _Reader:
 
     def _number(self, term: Term, predicate: IRI) -> Fraction | None:
         values = self.document.values(term, predicate)
-        found = number(values[0]) if values else None
+        found = fraction(values[0]) if values else None
         if len(values) > 1 or (values and found is None):
             raise self._error(f"sc:{predicate.short} of a term of sc:cost is one finite number")
         return found

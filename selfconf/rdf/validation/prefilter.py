@@ -8,30 +8,26 @@ bad one; that is a property test.
 
 from __future__ import annotations
 
-import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import pyoxigraph as ox
 
-from selfconf.model.term import STRING
-from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
+from selfconf.rdf.advertisements import COMPONENT, Field, Subject
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE
 
 MOST_PROBLEMS = 100
 """After so many syntax errors a file is taken for something else than Turtle."""
 
-_NUMBER: dict[str, re.Pattern[str]] = {
-    XSD.integer: re.compile(r"[+-]?\d+"),
-    XSD.decimal: re.compile(r"[+-]?\d+(\.\d+)?"),
-    XSD.double: re.compile(r"[+-]?\d+(\.\d+)?([eE][+-]?\d+)?"),
-    XSD.float: re.compile(r"[+-]?\d+(\.\d+)?([eE][+-]?\d+)?"),
-}
 _PREFIX = re.compile(rb"(?i:@?\bprefix)\s+([^\s:]*):\s*<([^>\s]*)>")
-_OWN = frozenset((SC.hasInput, SC.hasOutput, SC.hasParameter, SC.preference, SC.grounding))
+_SUBJECTS = tuple(COMPONENT.walk())
+_RATE = COMPONENT[SC.hasOutput].into[SC.rate]
+_OWN = COMPONENT.predicates - {TYPE}
 """What only a component has."""
-_PART_TERMS = frozenset((SC.name, SC.signalType, SC.parameterType, SC.rate, SC.value, SC.unit, SC.command))
-_PARTS = frozenset((SC.Input, SC.Output, SC.OperationalParameter, SC.Grounding))
+_PART_TERMS = frozenset().union(*(subject.predicates for subject in _SUBJECTS)) - COMPONENT.predicates
+_PARTS = frozenset(subject.type for subject in _SUBJECTS if subject.type is not None) - {SC.Component}
 _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
 _SCHEMA = frozenset((OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDFS.Class, RDF.Property))
 _PLACING = frozenset((RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty))
@@ -207,70 +203,46 @@ def _harmless_type(kind: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Advertisements:
-    """The shapes of an advertisement over again, for files that are right."""
+    """The fields of an advertisement, looked for in the statements of a file."""
 
     statements: Statements
 
     def clear(self, component: str) -> bool:
-        """Whether a component certainly conforms, but for the rates of its outputs."""
-        properties = self.statements[component]
-        types = properties[TYPE]
-        preferences = properties.get(SC.preference, {})
-        return (
-            component[:2] != "_:"
-            and len(types) > 1
-            and all(isinstance(kind, str) and kind[:2] != "_:" for kind in types)
-            and len(preferences) < 2
-            and all(_number(value) is not None for value in preferences)
-            and self._named(properties, SC.hasInput, SC.signalType)
-            and self._named(properties, SC.hasOutput, SC.signalType)
-            and self._named(properties, SC.hasParameter, SC.parameterType)
-            and not any(SC.rate in self._of(port) for port in properties.get(SC.hasInput, ()))
-            and self._grounded(properties.get(SC.grounding, {}))
-        )
-
-    def _of(self, node: FileTerm) -> Properties:
-        return self.statements.get(node, {}) if isinstance(node, str) else {}
-
-    def _named(self, properties: Properties, link: str, kind: str) -> bool:
-        """Whether each port or parameter has one name, which no other has, and one type."""
-        names: set[str] = set()
-        nodes = properties.get(link, {})
-        for node in nodes:
-            name, type_ = _only(self._of(node), SC.name), _only(self._of(node), kind)
-            if not (_text(name) and isinstance(type_, str) and type_[:2] != "_:"):
-                return False
-            names.add(str(name))
-        return len(names) == len(nodes)
+        """Whether a component certainly conforms."""
+        return component[:2] != "_:" and self._conforms(self.statements[component], COMPONENT)
 
     def rated(self, properties: Properties) -> bool:
         """Whether something keeps to the shape of a rate, if it has one."""
-        if SC.rate not in properties:
-            return True
-        rate = self._of(_only(properties, SC.rate) or "")
-        return (_number(_only(rate, SC.value)) or 0) > 0 and _only(rate, SC.unit) == UNIT.HZ
+        return SC.rate not in properties or self._holds(properties, _RATE)
 
-    def _grounded(self, groundings: dict[FileTerm, None]) -> bool:
-        if len(groundings) > 1 or any(isinstance(node, Lexical) for node in groundings):
+    def _conforms(self, properties: Properties, subject: Subject) -> bool:
+        return all(
+            self._holds(properties, asked) if asked.predicate in properties else asked.least == 0
+            for asked in subject.fields
+        )
+
+    def _holds(self, properties: Properties, asked: Field) -> bool:
+        """Whether a field that is there has as many values as it may, each of its kind."""
+        values = properties[asked.predicate]
+        if not asked.counts(len(values)) or not all(_allowed(asked, value) for value in values):
             return False
-        described = [self._of(node) for node in groundings]
-        commands = [_only(node, SC.command) for node in described if SC.command in node]
-        return all(isinstance(text, Lexical) and _text(text) and text.form.strip() for text in commands)
+        if not asked.into.fields:
+            return True
+        nodes = [self.statements.get(node, {}) for node in values if isinstance(node, str)]
+        return all(self._conforms(node, asked.into) for node in nodes) and _distinct(nodes, asked.into)
 
 
-def _only(properties: Properties, predicate: str) -> FileTerm | None:
-    """The value of a property, if it has exactly one."""
-    values = properties.get(predicate, {})
-    return next(iter(values)) if len(values) == 1 else None
+def _allowed(asked: Field, value: FileTerm) -> bool:
+    """Whether a value is of the kind that a field takes."""
+    if isinstance(value, Lexical):
+        return asked.kind.literal(value.form, value.datatype)
+    return asked.kind.blank if value[:2] == "_:" else asked.kind.iri(value)
 
 
-def _text(value: FileTerm | None) -> bool:
-    return isinstance(value, Lexical) and value.datatype == STRING and bool(value.form)
-
-
-def _number(value: FileTerm | None) -> float | None:
-    pattern = _NUMBER.get(value.datatype) if isinstance(value, Lexical) else None
-    if pattern is None or not isinstance(value, Lexical) or not pattern.fullmatch(value.form):
-        return None
-    number = float(value.form)
-    return number if math.isfinite(number) else None
+def _distinct(nodes: Sequence[Properties], subject: Subject) -> bool:
+    """Whether nodes differ in the fields in which they have to, each of which they have once."""
+    return len(nodes) < 2 or all(
+        len({next(iter(node[asked.predicate])) for node in nodes}) == len(nodes)
+        for asked in subject.fields
+        if asked.distinct
+    )

@@ -19,6 +19,7 @@ from rdflib.term import Node
 
 from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.rdf.advertisements import COMPONENT
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.validation.diagnostics import at
 
@@ -86,11 +87,13 @@ class Shapes:
 
 
 def _names_repeat(graph: Graph) -> bool:
-    for link in (SC.hasInput, SC.hasOutput, SC.hasParameter):
-        for component in set(graph.subjects(link)):
-            names = [name for node in graph.objects(component, link) for name in graph.objects(node, SC.name)]
-            if len(names) != len(set(names)):
-                return True
+    for link in COMPONENT.fields:
+        for distinct in (field for field in link.into.fields if field.distinct):
+            predicate, word = URIRef(link.predicate), URIRef(distinct.predicate)
+            for component in set(graph.subjects(predicate)):
+                names = [name for node in graph.objects(component, predicate) for name in graph.objects(node, word)]
+                if len(names) != len(set(names)):
+                    return True
     return False
 
 

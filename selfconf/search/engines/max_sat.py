@@ -11,20 +11,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, NamedTuple
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import ClauseSolver
+from selfconf.search.reduction import Option
 
 TRIMS = 3
 """How often a core is asked again for a smaller one."""
 
 
-def minimise(clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget) -> tuple[int, bool]:
-    """The least weight of a model and True, or a lower bound of it and False when the budget ends.
+class Minimum(NamedTuple):
+    """A lower bound of the weight of all models, whether a model has it, and the lightest solution that was met."""
 
-    When it is the least, the clauses are narrowed to the models that have it, and the last model is one of them.
+    bound: int
+    proved: bool
+    lightest: list[Option] | None
+
+
+def minimise(clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget) -> Minimum:
+    """Return the least weight of a model, or what is known of it when the budget ends.
+
+    Once the least weight is proved, the clauses are narrowed to the models that have it, and the last model is one of
+    them.
     """
     with ExitStack() as stack:
         return _Cores(clauses, weights, budget, stack).run()
@@ -33,25 +43,35 @@ def minimise(clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget) 
 class _Cores:
     def __init__(self, clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget, stack: ExitStack) -> None:
         self.clauses, self.budget, self.stack = clauses, budget, stack
-        self.weights = {literal: weight for literal, weight in weights.items() if weight > 0}
+        self.stated = {literal: weight for literal, weight in weights.items() if weight > 0}
+        self.weights = dict(self.stated)
+        """What is left of the weights, with those of the totalizers."""
+        self.lightest: tuple[int, list[Option]] | None = None
         self.counters: dict[int, tuple[Any, int]] = {}
         """For an output of a totalizer: which one, and how many must hold for it."""
         self.bound = 0
 
-    def run(self) -> tuple[int, bool]:
-        """Cores until there are none, stratum by stratum."""
+    def run(self) -> Minimum:
+        """Relax cores until there are none, stratum by stratum."""
         for heavy in self._strata():
             while True:
                 active = [literal for literal, weight in self.weights.items() if weight >= heavy]
                 answer = self.clauses.solve([-literal for literal in active], self.budget)
                 if isinstance(answer, Undecided):
-                    return self.bound, False
+                    return Minimum(self.bound, False, self.lightest[1] if self.lightest else None)
                 if answer:
+                    self._meet()
                     break
                 self._relax(self._trimmed())
         for literal in self.weights:
             self.clauses.add([-literal])
-        return self.bound, True
+        return Minimum(self.bound, True, self.clauses.chosen())
+
+    def _meet(self) -> None:
+        """Remember the last model if none before it is lighter: a lower stratum may have heavier models than this."""
+        weight = sum(weight for literal, weight in self.stated.items() if self.clauses.holds(literal))
+        if self.lightest is None or weight < self.lightest[0]:
+            self.lightest = weight, self.clauses.chosen()
 
     def _strata(self) -> Iterator[int]:
         """Falling limits of weight, each about half of the one before, down to all that is left."""

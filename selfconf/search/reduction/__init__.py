@@ -9,7 +9,13 @@ from selfconf.search.reduction.arc_consistency import consistent
 from selfconf.search.reduction.constraints import Constraint, Distinct, Fed, Played, Shared, all_of, pruned, relaxed
 from selfconf.search.reduction.dominance import LazyReduction, reduced
 from selfconf.search.reduction.needs import Need
-from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem, likeness
+from selfconf.search.reduction.reduced_problem import (
+    InterchangeabilityClass,
+    Option,
+    ReducedProblem,
+    assigned,
+    likeness,
+)
 
 __all__ = [
     "Constraint",
@@ -23,6 +29,7 @@ __all__ = [
     "ReducedProblem",
     "Shared",
     "all_of",
+    "assigned",
     "consistent",
     "likeness",
     "pruned",

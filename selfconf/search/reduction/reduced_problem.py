@@ -12,13 +12,14 @@ arc consistency (`consistency`).
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from operator import attrgetter
 
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import Ports
 from selfconf.model.term import IRI
+from selfconf.search.problem import Problem
 from selfconf.search.reduction.needs import Need
 
 Likeness = tuple[Ports, tuple[int, ...]]
@@ -84,3 +85,12 @@ class ReducedProblem:
     def kinds(self) -> list[InterchangeabilityClass]:
         """The kinds that options are of, in order."""
         return list(dict.fromkeys([option.kind for options in self.options for option in options]))
+
+
+def assigned(problem: Problem, chosen: Iterable[Option]) -> list[list[Candidate]]:
+    """Return for each role of a problem the candidates that the chosen options stand for."""
+    playing: list[list[Candidate]] = [[] for _ in problem.roles]
+    for option in chosen:
+        role = option.kind.role
+        playing[role].append(problem.candidates[role][option.number])
+    return playing

@@ -37,7 +37,7 @@ from selfconf.search import explain
 from selfconf.search.budget import Budget
 from selfconf.search.engines import ClauseSolver, ReducedSearch, minimise, solver_available
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, pruned, reduced
+from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, pruned, reduced
 from selfconf.search.strategies.first import solution
 
 BRANCHING_STEPS = 20_000
@@ -72,13 +72,14 @@ def best_configuration(
     chosen, bound, done = _by_walking(
         part, prices, total, Budget(min(steps, BRANCHING_STEPS) if solver_available() else steps)
     )
+    if chosen is not None:
+        playing = assigned(problem, chosen)
     if not done and solver_available():
         better, bound, done = _by_clauses(part, prices, Budget(steps))
-        chosen = better or chosen
-    if chosen is not None:
-        playing = [[] for _ in problem.roles]
-        for option in chosen:
-            playing[option.kind.role].append(problem.candidates[option.kind.role][option.number])
+        other = playing if better is None else assigned(problem, better)
+        # What clause learning has met when its budget ends may cost more than what branch and bound has met.
+        if done or prices.total(other) < prices.total(playing):
+            playing = other
     spent = prices.levels(playing)
     least = spent if done else prices.unfolded(bound, len(part.slots))
     missing = [
@@ -205,9 +206,11 @@ def _by_clauses(part: ReducedProblem, prices: CostTable, budget: Budget) -> tupl
             unavoidable += min(costs) * ordered.slots.count(role)
             for literal, amount in zip(clauses.plays[role], costs, strict=True):
                 weights[literal] = amount - min(costs)
-        more, done = minimise(clauses, weights, budget)
+        more, done, lightest = minimise(clauses, weights, budget)
         found = clauses.least(budget) if done else None
-        return found if isinstance(found, list) else None, unavoidable + more, isinstance(found, list)
+        if isinstance(found, list):
+            return found, unavoidable + more, True
+        return lightest, unavoidable + more, False
 
 
 def _in_order(part: ReducedProblem) -> ReducedProblem:

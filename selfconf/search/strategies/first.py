@@ -48,7 +48,7 @@ from selfconf.search.engines import (
     solver_available,
 )
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, pruned, reduced
+from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, pruned, reduced
 
 Engine = Callable[[ReducedProblem, Budget], list[Option] | Undecided | None]
 
@@ -92,12 +92,17 @@ def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
 
 
 def possible(problem: Problem, budget: Budget) -> bool:
-    """Whether a configuration is found within the budget."""
-    return isinstance(solution(LazyReduction(problem), budget), list)
+    """Whether a configuration is found within the budget, be it the first one or another."""
+    return isinstance(solution(LazyReduction(problem), budget, any_by_clauses), list)
 
 
-def solution(given: LazyReduction, budget: Budget) -> list[list[Candidate]] | Undecided | None:
-    """The least solution as candidates per role; None if there is none."""
+def solution(
+    given: LazyReduction, budget: Budget, by_clauses: Engine = least_by_clauses
+) -> list[list[Candidate]] | Undecided | None:
+    """Return the least solution as candidates per role; None if there is none.
+
+    With `any_by_clauses` it is any solution, where clause learning takes over: it need not be proved to be the least.
+    """
     problem = given.problem
     if problem.valueless or any(
         len(candidates) < role.minimum or (role.maximum is not None and role.maximum < role.minimum)
@@ -115,14 +120,8 @@ def solution(given: LazyReduction, budget: Budget) -> list[list[Candidate]] | Un
     near = NEARBY * (filling.furthest + SLOT_HEADROOM)
     if SHARE * near < slots and _impossible(problem, filling.slots[near] + 1, budget):
         return None
-    chosen = least_of(given.reduced, budget)
-    if not isinstance(chosen, list):
-        return chosen
-    playing: list[list[Candidate]] = [[] for _ in problem.roles]
-    for option in chosen:
-        role = option.kind.role
-        playing[role].append(problem.candidates[role][option.number])
-    return playing
+    chosen = least_of(given.reduced, budget, by_clauses)
+    return assigned(problem, chosen) if isinstance(chosen, list) else chosen
 
 
 def _impossible(problem: Problem, roles: int, budget: Budget) -> bool:

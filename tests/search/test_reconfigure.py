@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate, Partition
+from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal
-from selfconf.search import reconfigure as repair
+from selfconf.search import reconfigure
 from selfconf.search.engines import clause_learning as sat
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first as solve
@@ -79,7 +80,7 @@ def test_a_repair_keeps_the_most_and_is_the_first_that_does(problem: Problem, da
     if not isinstance(running, Configuration) or not running.components:
         return
     left = _after_losses(problem, running, data)
-    answer = repair.nearest_configuration(left, running)
+    answer = reconfigure.nearest_configuration(left, running)
     expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
     assert (answer if isinstance(answer, Configuration) else None) == expected
 
@@ -93,20 +94,21 @@ def test_clause_learning_gives_the_same_repair(problem: Problem, data: st.DataOb
         return
     left = _after_losses(_fixed(problem), running, data)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(repair, "SPARING_STEPS", 0)
-        answer = repair.nearest(left, running)
+        patch.setattr(reconfigure, "DEPTH_FIRST_STEPS", 0)
+        answer = reconfigure.nearest(left, running)
     expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
-    assert (answer.configuration if isinstance(answer, repair.Reconfiguration) else None) == expected
+    assert (answer.configuration if isinstance(answer, reconfigure.Reconfiguration) else None) == expected
     assert isinstance(answer, Refusal) or answer.proved
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
 def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
     aided: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if aided:
         pytest.importorskip("pysat")
-        monkeypatch.setattr(repair, "SPARING_STEPS", 0)
+        monkeypatch.setattr(reconfigure, "DEPTH_FIRST_STEPS", 0)
     else:
         monkeypatch.setattr(sat, "find_spec", lambda name: None)
     unproved: list[bool] = []
@@ -122,8 +124,8 @@ def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
         left = _after_losses(whole, running, data)
         nearest = _nearest(World(left.task, left.partition, left.hierarchy), running)
         for steps in range(1, 11):
-            answer = repair.nearest(left, running, steps)
-            if isinstance(answer, repair.Reconfiguration):
+            answer = reconfigure.nearest(left, running, steps)
+            if isinstance(answer, reconfigure.Reconfiguration):
                 assert (answer.kept, answer.connections) == _score(answer.configuration, running)
                 if answer.proved:
                     assert answer.configuration == nearest
@@ -141,8 +143,8 @@ def test_who_has_to_change_roles_may_keep_connections_all_the_same() -> None:
     running = solve.search(problem({"first": [x], "second": [w], "control": [cap]}, "first>control second>control"))
     assert isinstance(running, Configuration)
     left = problem({"first": [n], "second": [v, x], "control": [cap]}, "first>control second>control")
-    answer = repair.nearest(left, running)
-    assert isinstance(answer, repair.Reconfiguration)
+    answer = reconfigure.nearest(left, running)
+    assert isinstance(answer, reconfigure.Reconfiguration)
     assert [one.short for one in answer.configuration.components] == ["n", "x", "cap"]
     assert (answer.kept, answer.connections, answer.proved) == (1, 1, True)
 
@@ -159,7 +161,7 @@ def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:
     )
     running = solve.search(problem({"sonar": [sonar], "position": [tracker], "control": [cap]}, "position>control"))
     assert isinstance(running, Configuration)
-    answer = repair.nearest_configuration(given_, running)
+    answer = reconfigure.nearest_configuration(given_, running)
     assert isinstance(answer, Configuration)
     assert [c.short for c in answer.components] == ["sonar", "odometry", "cap"]
 
@@ -167,4 +169,41 @@ def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:
 def test_where_nothing_is_left_the_repair_is_a_refusal() -> None:
     running = solve.search(problem({"eye": [component("camera")]}))
     assert isinstance(running, Configuration)
-    assert isinstance(repair.nearest_configuration(problem({"eye": []}), running), Refusal)
+    assert isinstance(reconfigure.nearest_configuration(problem({"eye": []}), running), Refusal)
+
+
+def test_when_the_steps_end_the_answer_is_the_nearest_configuration_that_was_met() -> None:
+    lamps = [component("red", "s:Scan"), component("green", "t:Time")]
+    cameras = [component("blind"), component("half", outputs="s:Scan"), component("full", outputs="s:Scan t:Time")]
+
+    def watching(*eyes: Profile) -> Problem:
+        return problem({"camera": eyes, "lamp": lamps}, "camera>lamp", {"lamp": (0, 2)})
+
+    running = solve.search(watching(component("lost", outputs="s:Scan t:Time")))
+    assert isinstance(running, Configuration)
+    # The slot of the camera takes the cameras in order, and the lamps that each of them can feed are added to it: one
+    # more step, one more lamp. Two steps meet the camera that keeps one lamp, but do not reach the one that keeps both.
+    found = [reconfigure.nearest(watching(*cameras), running, steps) for steps in range(1, 5)]
+    assert [
+        (one.configuration.components[0].short, one.kept, one.proved)
+        for one in found
+        if isinstance(one, reconfigure.Reconfiguration)
+    ] == [("blind", 0, False), ("half", 1, False), ("full", 2, False), ("full", 2, True)]
+
+
+@given(problems(), st.data())
+@agreement(0.2)
+def test_more_steps_never_find_a_configuration_farther_away(problem: Problem, data: st.DataObject) -> None:
+    running = solve.search(problem)
+    if not isinstance(running, Configuration) or not running.components:
+        return
+    left = _after_losses(problem, running, data)
+    first = solve.search(left)
+    if not isinstance(first, Configuration):
+        return
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sat, "find_spec", lambda name: None)
+        found = [reconfigure.nearest(left, running, steps) for steps in range(1, 11)]
+    scores = [_score(one.configuration, running) for one in found if isinstance(one, reconfigure.Reconfiguration)]
+    assert scores == sorted(scores)
+    assert len(scores) == len(found)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import CostTerm, cost, number
+from selfconf.model.cost import CostTerm, cost
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
@@ -128,6 +128,7 @@ def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
     assert not isinstance(expected, Optimum) or answer == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
 def test_what_is_found_in_few_steps_has_an_honest_bound(aided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if aided:
@@ -191,7 +192,32 @@ def test_what_is_known_is_better_than_what_is_not() -> None:
     assert answer.configuration.components[0].short == "known"
 
 
-def test_a_literal_that_is_no_measurement_is_no_number() -> None:
-    for lexical in ("INF", "NaN", "1e999999999", "fast", "9" * 1000):
-        assert number(Literal(lexical)) is None
-    assert number(Literal("2.50")) == Fraction(5, 2)
+def test_when_the_steps_end_the_cheapest_solution_that_clause_learning_met_is_the_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pytest.importorskip("pysat")
+    monkeypatch.setattr(best, "BRANCHING_STEPS", 1)
+    given_ = stating(
+        problem(
+            {
+                "eye": [
+                    priced(component("red", outputs="p:Red"), latency=7),
+                    priced(component("blue", outputs="p:Blue"), latency=3),
+                ],
+                "mind": [
+                    priced(component("r", "p:Red", "q:Red"), latency=4),
+                    priced(component("b", "p:Blue", "q:Blue"), latency=8),
+                ],
+                "leg": [priced(component("left", "q:Red"), latency=5), priced(component("right", "q:Blue"), latency=3)],
+            },
+            "eye>mind mind>leg",
+        ),
+        (CostTerm(LATENCY),),
+    )
+    first = best.best_configuration(given_, 1_000)
+    assert isinstance(first, Optimum)
+    assert first.cost == (14,)
+    # Three conflicts prove that nothing costs less than 14, and none is left to prove which solution is the first.
+    answer = best.best_configuration(given_, 3)
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.proved) == ((14,), True)

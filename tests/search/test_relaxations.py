@@ -12,7 +12,7 @@ from selfconf.model.obstacle import NotAmong, PropertyUnmet
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition, AskForOne
-from selfconf.search import relaxations as mend
+from selfconf.search import relaxations
 from selfconf.search.problem import Problem
 from selfconf.search.relaxations import relaxed_by, wanted_of, with_relaxations
 from selfconf.search.strategies import first as solve
@@ -123,11 +123,11 @@ def test_a_link_that_is_missing_is_found() -> None:
 
 
 def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mend, "TRIAL_STEPS", 100)
+    monkeypatch.setattr(relaxations, "TRIAL_STEPS", 100)
     given_ = problem({f"r{number}": [component(f"c{other}") for other in range(59)] for number in range(60)})
     refused = solve.search(given_)
     assert isinstance(refused, Refusal)
-    assert str(next(mend.relaxations(given_, refused))) == "add one more component for the role r0"
+    assert str(next(relaxations.relaxations(given_, refused))) == "add one more component for the role r0"
 
 
 def test_an_output_that_is_not_needed_is_not_asked_for() -> None:

@@ -1,0 +1,111 @@
+"""What an advertisement is: everything that is said about one component, and nothing about others.
+
+A document may hold several components. The advertisement of one is every statement that can be reached from it,
+through blank nodes and through named things that are not themselves components (a place, a robot), but not through
+its types: what a class means is for ontologies to say. An advertisement therefore speaks for its own component
+alone, and statements that would change what shapes or classes mean are left out of it, whichever site serves it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from selfconf.model.profile import Place, Profile
+from selfconf.model.term import IRI, BlankNode, Literal, Term, sort_key
+from selfconf.rdf.turtle import Document, Node, Triple
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SH, TYPE
+
+AXIOMS = frozenset((RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range))
+
+
+class Advertisement(ABC):
+    """What is said about one component, as a profile and as triples.
+
+    Advertisements are equal if they say the same; blank nodes of different documents are never equal.
+    """
+
+    __slots__ = ("component", "types")
+    component: IRI
+    """The component that it advertises."""
+    types: frozenset[IRI]
+    """The types of the component."""
+
+    @property
+    @abstractmethod
+    def profile(self) -> Profile:
+        """What it says, as a value."""
+
+    @property
+    @abstractmethod
+    def triples(self) -> tuple[Triple, ...]:
+        """What it says, in RDF."""
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Advertisement):
+            return NotImplemented
+        return self is other or (self.profile == other.profile and self.triples == other.triples)
+
+    def __hash__(self) -> int:
+        return hash(self.component)
+
+    def __repr__(self) -> str:
+        return f"<advertisement of {self.component}>"
+
+
+class ParsedAdvertisement(Advertisement):
+    """An advertisement that has been read in full."""
+
+    __slots__ = ("_profile", "_triples")
+
+    def __init__(self, profile: Profile, triples: tuple[Triple, ...]) -> None:
+        self.component, self.types = profile.component, profile.types
+        self._profile, self._triples = profile, triples
+
+    @property
+    def profile(self) -> Profile:
+        """What it says, as a value."""
+        return self._profile
+
+    @property
+    def triples(self) -> tuple[Triple, ...]:
+        """What it says, in RDF."""
+        return self._triples
+
+
+@dataclass(frozen=True, slots=True)
+class MalformedAdvertisement:
+    """An advertisement that does not conform, and why: one sentence for each problem."""
+
+    component: IRI | BlankNode
+    place: Place
+    problems: tuple[str, ...]
+
+
+def about(document: Document, component: Node, components: frozenset[Node]) -> Iterator[Triple]:
+    """The statements that the advertisement of a component makes."""
+    waiting: list[Node] = [component]
+    seen: set[Term] = {component}
+    while waiting:
+        subject = waiting.pop()
+        for predicate, value in document.statements.get(subject, ()):
+            if not allowed(predicate, value):
+                continue
+            yield subject, predicate, value
+            if predicate == TYPE or isinstance(value, Literal) or value in seen or value in components:
+                continue
+            seen.add(value)
+            waiting.append(value)
+
+
+def allowed(predicate: IRI, value: Term) -> bool:
+    """Whether an advertisement may make a statement: no axioms, no shapes, no ontology terms of its own."""
+    if predicate in AXIOMS or predicate in OWL or predicate in SH:
+        return False
+    return predicate != TYPE or not (value in OWL or value in SH or value in RDFS or value == RDF.Property)
+
+
+def property_order(pair: tuple[IRI, Term]) -> tuple[str, tuple[int, str, str, str]]:
+    """The order of the properties of a profile: by predicate, then by value."""
+    return pair[0], sort_key(pair[1])

@@ -1,0 +1,165 @@
+"""What an advertisement may say: one table of its fields, which all that reads or checks advertisements is made from.
+
+Each subject (a component, an input, an output, an operational parameter, a rate, a grounding) has fields; a field is a
+predicate with the number of its values and what kind of value it takes. The careful reader, the prefilter of
+validation, the patterns of the fast loader and the lints take both from here. `shapes/advertisement.ttl` says the same
+in SHACL, for everybody else; a test holds the two together, both ways.
+
+A kind of value is given three times: as a test of a value, as the words that an author reads, and as the Turtle that
+the fast loader recognises without looking closer. The last may accept less than the first, never more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from selfconf.model.number import number_of
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.rdf.turtle import SKOLEM
+from selfconf.rdf.vocabulary import SC, TYPE, UNIT
+
+NEXT = " ;\n\t"
+"""What Oxigraph writes between two statements about one subject; no term has a line break in it."""
+
+
+def _never(_: str) -> bool:
+    return False
+
+
+def _always(_: str) -> bool:
+    return True
+
+
+def _no_literal(_: str, __: str) -> bool:
+    return False
+
+
+@dataclass(frozen=True, slots=True)
+class ValueKind:
+    """A kind of value: which IRIs, literals (text and datatype) and blank nodes are of it."""
+
+    words: str
+    turtle: str = ""
+    """A regular expression for some values of the kind as Oxigraph writes them, with one group: the IRI or the text."""
+    iri: Callable[[str], bool] = _never
+    literal: Callable[[str, str], bool] = _no_literal
+    blank: bool = False
+
+    def allows(self, value: Term) -> bool:
+        """Whether a value is of this kind."""
+        if isinstance(value, Literal):
+            return self.literal(value.lexical, value.datatype)
+        return self.blank if isinstance(value, BlankNode) else self.iri(value)
+
+
+# A literal with a language has the datatype rdf:langString, so a test for xsd:string refuses it.
+RESOURCE = ValueKind("an IRI", rf"<((?!{SKOLEM})[^<>]*)>", iri=_always)
+TEXT = ValueKind(
+    "a string that is not empty",
+    r'"([^"\\]+)"',
+    literal=lambda lexical, datatype: datatype == STRING and lexical != "",
+)
+COMMAND_LINE = ValueKind(
+    "a string that is not blank, without a language",
+    r'"([^"\\]*[^\s"\\][^"\\]*)"',
+    literal=lambda lexical, datatype: datatype == STRING and lexical.strip() != "",
+)
+NUMBER = ValueKind(
+    "one number",
+    r"([+-]?[0-9]{1,9}(?:\.[0-9]{1,9})?)",
+    literal=lambda lexical, datatype: number_of(lexical, datatype) is not None,
+)
+POSITIVE = ValueKind(
+    "a number above zero",
+    r"((?=[0-9.]*[1-9])[0-9]{1,9}(?:\.[0-9]{1,9})?)",
+    literal=lambda lexical, datatype: (number_of(lexical, datatype) or 0) > 0,
+)
+HERTZ = ValueKind("unit:HZ", f"<({UNIT.HZ})>", iri=UNIT.HZ.__eq__)
+NODE = ValueKind("a node with properties", iri=_always, blank=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What an advertisement may speak of, with its fields."""
+
+    fields: tuple[Field, ...] = ()
+    type: IRI | None = None
+    """The class that it may, and a component has to, be declared as."""
+
+    def __getitem__(self, predicate: IRI) -> Field:
+        return next(field for field in self.fields if field.predicate == predicate)
+
+    @property
+    def predicates(self) -> frozenset[IRI]:
+        """The predicates of its fields."""
+        return frozenset(field.predicate for field in self.fields)
+
+    def walk(self) -> Iterator[Subject]:
+        """The subject, and all that its fields lead to."""
+        yield self
+        for field in self.fields:
+            if field.into.fields:
+                yield from field.into.walk()
+
+
+LEAF = Subject()
+"""What a value is that has no fields of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A predicate of a subject: how many values it may have, and of which kind."""
+
+    predicate: IRI
+    kind: ValueKind
+    least: int = 0
+    most: int | None = 1
+    into: Subject = LEAF
+    """What the values are themselves, where they are nodes with fields."""
+    distinct: bool = False
+    """Whether no two values of one link may agree in it, as the inputs of a component may not in their names."""
+
+    @property
+    def turtle(self) -> str:
+        """A regular expression for what the fast loader recognises of it; the value is a group named as the predicate.
+
+        Of a value with fields of its own it recognises those, each once, in the order of the table, in brackets.
+        """
+        if self.into.fields:
+            value = rf"\[ {NEXT.join(field.turtle for field in self.into.fields)} \]"
+        else:
+            value = self.kind.turtle.replace("(", f"(?P<{self.predicate.short}>", 1)
+        return f"<{self.predicate}> {value}"
+
+    def counts(self, values: int) -> bool:
+        """Whether it may have so many values."""
+        return self.least <= values and (self.most is None or values <= self.most)
+
+
+NAME = Field(SC.name, TEXT, least=1, distinct=True)
+SIGNAL_TYPE = Field(SC.signalType, RESOURCE, least=1)
+RATE = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, HERTZ, least=1)))
+INPUT = Subject((NAME, SIGNAL_TYPE, Field(SC.rate, NODE, most=0, into=RATE)), SC.Input)
+OUTPUT = Subject((NAME, SIGNAL_TYPE, Field(SC.rate, NODE, into=RATE)), SC.Output)
+PARAMETER = Subject((NAME, Field(SC.parameterType, RESOURCE, least=1)), SC.OperationalParameter)
+GROUNDING = Subject((Field(SC.command, COMMAND_LINE),), SC.Grounding)
+COMPONENT = Subject(
+    (
+        Field(TYPE, RESOURCE, least=2, most=None),  # sc:Component, and what kind of component it is
+        Field(SC.hasInput, NODE, most=None, into=INPUT),
+        Field(SC.hasOutput, NODE, most=None, into=OUTPUT),
+        Field(SC.hasParameter, NODE, most=None, into=PARAMETER),
+        Field(SC.preference, NUMBER),
+        Field(SC.grounding, NODE, into=GROUNDING),
+    ),
+    SC.Component,
+)
+
+PORTS = tuple(field for field in COMPONENT.fields if NAME in field.into.fields)
+"""The fields of a component that lead to what has a name: inputs, outputs, operational parameters."""
+LINKS = frozenset(field.predicate for subject in COMPONENT.walk() for field in subject.fields if field.into.fields)
+"""What leads from a component to what else its profile is made of."""
+STRUCTURE = COMPONENT.predicates | {SC.name, SC.signalType}
+"""The predicates that are no properties of a component: those that its profile has fields for, and the name and type
+that only its ports have."""

@@ -1,0 +1,200 @@
+"""The table of fields and the shape of an advertisement say the same, statement by statement and value by value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from rdflib import RDF, SH, XSD, Graph, Literal, URIRef
+from rdflib.collection import Collection
+from rdflib.compare import isomorphic
+from rdflib.term import Node
+
+from selfconf import library
+from selfconf.model import number as numbers
+from selfconf.model import term as model
+from selfconf.rdf.advertisements import reader
+from selfconf.rdf.advertisements.fields import (
+    COMMAND_LINE,
+    COMPONENT,
+    GROUNDING,
+    HERTZ,
+    INPUT,
+    NODE,
+    NUMBER,
+    OUTPUT,
+    PARAMETER,
+    POSITIVE,
+    RATE,
+    RESOURCE,
+    TEXT,
+    Field,
+    Subject,
+    ValueKind,
+)
+from selfconf.rdf.positions import parse_with_positions
+from selfconf.rdf.turtle import parse
+from selfconf.rdf.validation.prefilter import prefilter
+from selfconf.rdf.validation.shape_violations import Shapes, reported_violations
+from selfconf.rdf.vocabulary import SC, SHAPES, UNIT
+from tests.lab import PREFIXES
+
+SHAPE = Graph().parse(next(path for path in library.shapes() if path.stem == "advertisement"))
+SHAPES_NEEDED = Shapes.of(SHAPE)
+TARGETS: dict[Node, tuple[Subject, ...]] = {
+    URIRef(SC.Component): (COMPONENT,),
+    URIRef(SC.hasInput): (INPUT,),
+    URIRef(SC.hasOutput): (OUTPUT,),
+    URIRef(SC.hasParameter): (PARAMETER,),
+    URIRef(SC.rate): (RATE,),
+    URIRef(SC.grounding): (GROUNDING,),
+}
+"""What the node shapes of the file speak of, by the class or the property that makes it their target."""
+ASKED: dict[int, set[tuple[str, object]]] = {
+    id(RESOURCE): {("nodeKind", SH.IRI)},
+    id(TEXT): {("datatype", XSD.string), ("minLength", 1)},
+    id(COMMAND_LINE): {("datatype", XSD.string), ("pattern", r"\S")},
+    id(NUMBER): {("node", URIRef(SHAPES.Number))},
+    id(POSITIVE): {("node", URIRef(SHAPES.Number)), ("minExclusive", 0)},
+    id(HERTZ): {("in", (URIRef(UNIT.HZ),))},
+    id(NODE): {("nodeKind", SH.BlankNodeOrIRI)},
+}
+"""What a shape asks of a value of each kind."""
+Asked = set[tuple[int, str, str, object]]
+
+
+def in_the_table() -> Asked:
+    """Subject, predicate and each constraint that the table amounts to."""
+    found: Asked = set()
+    for subject in {id(one): one for one in COMPONENT.walk()}.values():
+        for field in subject.fields:
+            said: set[tuple[str, object]] = {("minCount", field.least)} if field.least else set()
+            said |= set() if field.most is None else {("maxCount", field.most)}
+            if field.kind is not NODE and field.most != 0:
+                said |= ASKED[id(field.kind)]
+            found |= {(id(subject), field.predicate, *each) for each in said}
+            if field.into.fields:  # the shape says it of the node, whatever leads to it
+                found |= {(id(field.into), "", *each) for each in ASKED[id(field.kind)]}
+    return found | {(id(COMPONENT), "", "nodeKind", SH.IRI)}
+
+
+def in_the_shape() -> Asked:
+    """Subject, predicate and each constraint of the property shapes and node kinds in the file."""
+    found: Asked = set()
+    for shape in SHAPE.subjects(RDF.type, SH.NodeShape):
+        targets = [*SHAPE.objects(shape, SH.targetClass), *SHAPE.objects(shape, SH.targetObjectsOf)]
+        for subject in (one for target in targets for one in TARGETS[target]):
+            found |= {(id(subject), "", "nodeKind", kind) for kind in SHAPE.objects(shape, SH.nodeKind)}
+            for each in SHAPE.objects(shape, SH.property):
+                path = str(SHAPE.value(each, SH.path))
+                found |= {(id(subject), path, *said) for said in constraints(each)}
+    return found
+
+
+def constraints(shape: Node) -> Iterator[tuple[str, object]]:
+    """What a property shape asks of the values of its path."""
+    for predicate, value in SHAPE.predicate_objects(shape):
+        if predicate not in (RDF.type, SH.path, SH.message):
+            word = str(predicate).removeprefix(str(SH))
+            if word == "in":
+                yield word, tuple(Collection(SHAPE, value))
+            else:
+                yield word, value.toPython() if isinstance(value, Literal) else value
+
+
+def test_the_table_and_the_shape_state_one_set_of_constraints() -> None:
+    assert in_the_table() == in_the_shape()
+
+
+def test_the_names_that_have_to_differ_are_those_of_the_shape() -> None:
+    queries = [str(query) for query in SHAPE.objects(None, SH.select)]
+    distinct = {link.predicate.short for link in COMPONENT.fields if any(field.distinct for field in link.into.fields)}
+    assert distinct == {word for word in ("hasInput", "hasOutput", "hasParameter") if any(word in q for q in queries)}
+
+
+def test_the_number_of_a_cost_is_the_number_of_an_advertisement() -> None:
+    template = Graph().parse(next(path for path in library.shapes() if path.stem == "template"))
+    one, other = SHAPE.cbd(URIRef(SHAPES.Number)), template.cbd(URIRef(SHAPES.CostNumber))
+    renamed = Graph()
+    for subject, predicate, value in other:
+        renamed.add((URIRef(SHAPES.Number) if subject == URIRef(SHAPES.CostNumber) else subject, predicate, value))
+    assert isomorphic(one, renamed)
+
+
+TEXTS = (
+    "5", "-5", "+5", "0", "-0", "05", "5.", "5.0", ".5", "1e3", "1E-3", "1e-400", "1e400", "INF", "-INF", "NaN", "inf",
+    "infinity", "1_000", " 5", "5\n", "\u0663", "", "abc", "1,5", "0x5", "127", "128", "-129", "255", "256", "65536",
+    "2147483648", "4294967296", "9223372036854775808", "18446744073709551616", "9" * 300, "9" * 301, "0." + "0" * 299,
+)  # fmt: skip
+
+
+def verdicts(text: str) -> tuple[set[str], set[str]]:
+    """The components of a text that break the shape, and those in which the careful reader finds a problem."""
+    graph, _ = parse_with_positions(text, "")
+    broken = {str(violation.focus) for violation in reported_violations(graph, SHAPES_NEEDED.needed(graph))}
+    return broken, {str(component) for component, _, problems in reader.profiles(parse(text, "")) if problems}
+
+
+def test_shape_reader_and_table_agree_on_every_form_of_number() -> None:
+    literals = [
+        model.Literal(text, model.IRI(datatype))
+        for datatype in (*sorted(numbers.DATATYPES), str(XSD.boolean), model.STRING)
+        for text in TEXTS
+        if (datatype, text[:1].isdigit()) != (str(XSD.boolean), True)  # rdflib warns of them, one by one
+    ]
+    named = {f"urn:c{number}": literal.turtle("<{}>".format) for number, literal in enumerate(literals)}
+    said = [f"<{one}> a sc:Component, :Lamp ; sc:preference {value} ." for one, value in named.items()]
+    broken, refused = verdicts(PREFIXES + "\n".join(said))
+    assert [named[one] for one in broken ^ refused] == []
+    assert refused == {f"urn:c{number}" for number, literal in enumerate(literals) if not NUMBER.allows(literal)}
+
+
+VALUES = st.sampled_from(
+    (
+        '"words"', '" "', '""', '"mot"@fr', "7", "-2.5", "0", "1e3", "true",
+        '"7"^^xsd:unsignedByte', '"INF"^^xsd:double',
+        '"x"^^xsd:integer', "rob:Audio", "unit:HZ", "[]", "[ sc:value 5 ; sc:unit unit:HZ ]", '[ sc:command "go" ]',
+        '[ sc:name "in" ; sc:signalType rob:Audio ]', '"one", "two"', "rob:Audio, rob:Text", "1, 2",
+    )
+)  # fmt: skip
+COMPONENTS = {
+    ":c a sc:Component, :L ; VALUE .": COMPONENT,
+    ':c a sc:Component, :L ; sc:hasInput [ sc:name "a" ; sc:signalType :S ; VALUE ] .': INPUT,
+    ':c a sc:Component, :L ; sc:hasOutput [ sc:name "a" ; sc:signalType :S ; VALUE ] .': OUTPUT,
+    ":c a sc:Component, :L ; sc:hasOutput [ sc:signalType :S ; VALUE ] .": OUTPUT,
+    ":c a sc:Component, :L ; sc:hasParameter [ sc:parameterType :S ; VALUE ] .": PARAMETER,
+    ':c a sc:Component, :L ; sc:hasParameter [ sc:name "a" ; VALUE ] .': PARAMETER,
+    ':c a sc:Component, :L ; sc:hasOutput [ sc:name "a" ; sc:signalType :S ; sc:rate [ sc:value 5 ; VALUE ] ] .': RATE,
+    ":c a sc:Component, :L ; sc:grounding [ VALUE ] .": GROUNDING,
+}
+PLACES = [(field, text) for text, subject in COMPONENTS.items() for field in subject.fields]
+
+
+@given(st.sampled_from(PLACES), VALUES)
+@example(PLACES[4], '"1_000"^^xsd:integer')
+@example(PLACES[4], '"true"^^xsd:boolean')
+def test_shape_and_careful_reader_agree_on_any_value_anywhere(place: tuple[Field, str], value: str) -> None:
+    text = PREFIXES + place[1].replace("VALUE", f"<{place[0].predicate}> {value}")
+    broken, refused = verdicts(text)
+    assert bool(broken) == bool(refused)
+    assert not (broken and prefilter(text.encode()).clear)
+
+
+@pytest.mark.parametrize(
+    "kind", [RESOURCE, TEXT, COMMAND_LINE, NUMBER, POSITIVE, HERTZ], ids=lambda kind: str(kind.words)
+)
+def test_what_the_fast_loader_recognises_is_of_the_kind(kind: ValueKind) -> None:
+    pattern = re.compile(kind.turtle)
+    samples = [
+        "<urn:a>", f"<{UNIT.HZ}>", "<urn:selfconf:blank:x>", '"a"', '" "', '""', '"\\n"', "0", "0.0", "00", "7",
+        "-7", "+7",
+        "2.5", "1e3", "1234567890", ".5", '"a"@en', "true",
+    ]  # fmt: skip
+    recognised = [sample for sample in samples if pattern.fullmatch(sample)]
+    assert recognised
+    for sample in recognised:
+        ((_, _, value),) = parse(f"<urn:s> <urn:p> {sample} .", "").triples()
+        assert kind.allows(value)
