@@ -52,7 +52,7 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
-from selfconf.configurator.state import Held, Inputs, Loss, Phase, Policy, State
+from selfconf.configurator.state import Held, InputWires, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause, Verdict, Wire
@@ -151,7 +151,7 @@ def _deploy(state: State) -> Reaction:
     return _then(effects, _proceed(deployed))
 
 
-def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, Inputs], changed: Sequence[IRI]) -> dict[IRI, Held]:
+def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, InputWires], changed: Sequence[IRI]) -> dict[IRI, Held]:
     """What is held of a configuration once the changed components are applied to: those have yet to confirm."""
     rewired = {component: before for component, before in held.items() if component in wires}
     for component in changed:
@@ -160,7 +160,7 @@ def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, Inputs], changed: Seq
     return rewired
 
 
-def _as_wanted(held: Held | None, inputs: Inputs) -> bool:
+def _as_wanted(held: Held | None, inputs: InputWires) -> bool:
     return held is not None and held.confirmed and held.inputs == inputs
 
 

@@ -12,7 +12,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause, Wire
 
-Inputs = Mapping[str, tuple[Wire, ...]]
+InputWires = Mapping[str, tuple[Wire, ...]]
 """Which outputs each input of a component follows."""
 
 
@@ -41,7 +41,7 @@ class Policy(str, Enum):
 class Held:
     """A component that was applied to: its inputs and life, whether it has confirmed, and what was set on it."""
 
-    inputs: Inputs
+    inputs: InputWires
     life: str = ""
     confirmed: bool = False
     values: Mapping[str, Term] = field(default_factory=dict)

@@ -14,7 +14,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 
-Compose = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
+ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
 
 Report = Callable[[RunEvent], None]
@@ -29,7 +29,7 @@ class RunRequest:
     """A task to run: how to compose, what to do after a loss, and where to report."""
 
     task: Task
-    compose: Compose
+    compose: ComposeFunction
     policy: Policy = Policy.REPAIR
     patient: bool = False
     """Whether a refusal does not end the run: it waits until the ecology has what the task needs."""
