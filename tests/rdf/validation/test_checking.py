@@ -14,7 +14,7 @@ from selfconf.model.codes import CODES, PREAMBLE, Code
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
 from selfconf.rdf.validation.checking import SourceText, validate
 
-BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.ttl"))
+BAD = sorted((Path(__file__).parents[2] / "bad").glob("*.ttl"))
 ADVERTISEMENT = ":tuner a sc:Component, rob:Tuner .\n"
 
 
