@@ -14,7 +14,7 @@ import rdflib
 
 from benchmarks.scale.worlds import ROLES, task
 from selfconf.api.ontologies import hierarchy_of
-from selfconf.api.reading import read, listed_files
+from selfconf.api.reading import listed_files, read
 from selfconf.composition import TimeLimit, explained
 from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
