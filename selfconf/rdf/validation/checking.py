@@ -24,6 +24,9 @@ from selfconf.rdf.validation.syntax import hint, telling
 from selfconf.rdf.validation.term_index import TermIndex, index_of
 
 _NOTHING = "There is no component, template, task, configuration or ontology in this file: nothing to validate."
+MOST_STATEMENTS = 250_000
+"""Statements of a file that is checked for the place of each problem, which takes a thousand times as long as reading:
+a bound on the work that is known before, and is the same on every machine."""
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
@@ -112,6 +115,9 @@ def validate(
         if source.name in seen
         and (source.name in elsewhere or not (seen[source.name].clear and familiar.clear(seen[source.name])))
     ]
+    for suspect in [one for one in suspects if seen[one.source.name].size > MOST_STATEMENTS]:
+        suspects.remove(suspect)
+        diagnostics.append(_too_large(suspect.source, seen[suspect.source.name].size))
     for problems in each(FileChecker(tuple(shapes), familiar), suspects):
         diagnostics += problems
     concerned = {found.file for found in diagnostics}
@@ -149,6 +155,12 @@ def _loaded(source: SourceText) -> Prefiltered:
     if found.problems:
         turtle.read_ontology(octets, source.name, source.base)  # which raises, and words it
     return found
+
+
+def _too_large(source: SourceText, size: int) -> Diagnostic:
+    message = f"With {size:,} statements this file is too large to be checked in full."
+    advice = f"Split it into files of at most {MOST_STATEMENTS:,} statements."
+    return Diagnostic(source.name, 1, 1, "SC-S05", message, hint=advice, source=source.line(1))
 
 
 def _encoding(source: SourceText) -> Iterator[Diagnostic]:

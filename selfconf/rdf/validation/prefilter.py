@@ -70,6 +70,8 @@ class Prefiltered:
     problems: list[SyntaxProblem] = field(default_factory=list)
     clear: bool = True
     """Whether every shape is certain to hold."""
+    size: int = 0
+    """How many statements the file makes."""
     relevant: bool = False
     """Whether the file speaks of anything that is validated."""
     components: list[str] = field(default_factory=list)
@@ -144,6 +146,7 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     """Note which terms a subject uses, and whether it declares one."""
     for predicate, values in properties.items():
         found.used.add(predicate)
+        found.size += len(values)
         for value in values:
             if isinstance(value, Lexical):
                 found.literal_of.add(predicate)
