@@ -22,7 +22,7 @@ NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
 
 
 def agreement(share: float = 1.0) -> settings:
-    """How many worlds a test sees: 500 where every push runs, 10,000 at night (HYPOTHESIS_PROFILE=nightly)."""
+    """Return how many problems a test draws: 500 for every push, 10,000 at night (HYPOTHESIS_PROFILE=nightly)."""
     return settings(
         max_examples=max(1, int((10_000 if NIGHTLY else 500) * share)),
         deadline=None,
@@ -242,7 +242,7 @@ def _candidates(
     players: Sequence[int],
     common: Sequence[int],
 ) -> tuple[Candidate, ...]:
-    """The candidates of a role in an order of its own; whoever is meant to play it is one and allows what is common."""
+    """Return the candidates of a role, in an order of its own: what is meant to play it is one, and allows what is common."""
     order = draw(st.permutations(range(len(profiles)))) if draw(st.booleans()) else range(len(profiles))
     left_out = draw(st.sets(st.sampled_from(NUMBERS), max_size=1)) - set(players)
     return tuple(
