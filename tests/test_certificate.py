@@ -53,7 +53,7 @@ def test_what_is_accepted_is_valid_by_enumeration_too(problem: Problem) -> None:
 
 
 def _answer() -> tuple[Problem, Configuration]:
-    """Return a problem and its answer: a camera on Astrid, a mind that is set to that robot, and a goal that is bound."""
+    """Return a problem and its answer: a camera on Astrid, a mind that is set to that robot, a goal that is bound."""
     plain = problem(
         {
             "eye": [component("camera", outputs="o:Image"), component("spare", outputs="o:Image")],

@@ -28,6 +28,7 @@ def agreement(share: float = 1.0) -> settings:
         deadline=None,
         derandomize=not NIGHTLY,
         database=None,
+        print_blob=True,  # a failure then says how to replay it
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
 
@@ -242,7 +243,10 @@ def _candidates(
     players: Sequence[int],
     common: Sequence[int],
 ) -> tuple[Candidate, ...]:
-    """Return the candidates of a role, in an order of its own: what is meant to play it is one, and allows what is common."""
+    """Return the candidates of a role in an order of its own.
+
+    Components that are meant to play it are among them, and admit the common value of each variable.
+    """
     order = draw(st.permutations(range(len(profiles)))) if draw(st.booleans()) else range(len(profiles))
     left_out = draw(st.sets(st.sampled_from(NUMBERS), max_size=1)) - set(players)
     return tuple(
