@@ -1,7 +1,7 @@
 """The one door to a clause-learning solver, for the instances on which depth-first search thrashes.
 
 *Which library.* python-sat (MIT; Ignatiev, Morgado and Marques-Silva, SAT 2018), with its MiniCard (Liffiton and
-Maglalang, SAT 2012): MiniSat 2.2 with "no more than so many" as a constraint of its own, which spares the clauses
+Maglalang, SAT 2012): MiniSat 2.2 with "at most k of these hold" as a constraint of its own, which spares the clauses
 that would count. python-sat has only pre-releases on the index, which is why it is an extra (`solvers`) and
 why nothing else knows it; clingo has stable releases. But python-sat stops after a given number of *conflicts*, so
 that a budget means the same on every machine; it imports in a fortieth of a second and starts in well under a

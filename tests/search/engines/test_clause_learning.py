@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import given
@@ -17,6 +19,15 @@ from selfconf.search.reduction.dominance import reduced
 from tests.search.comparison import least_numbers, numbers
 from tests.search.worlds import agreement, problems
 
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Handle SIGINT as Python does at a terminal: a shell starts what runs in the background with SIGINT ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(), signal.SIGINT)"
 
 
@@ -29,6 +40,7 @@ def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
     assert numbers(clause_learning.least_by_clauses(reduced(problem), Budget(10_000))) == expected
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_in_the_middle_of_a_call_reaches_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20_000)  # conflicts: calls of about a tenth of a second
     command = [sys.executable, "-c", INTERRUPTING]

@@ -30,7 +30,7 @@ def test_one_candidate_of_each_class_is_not_enough_where_roles_share_candidates(
 
 
 def _first_roles(problem: Problem, roles: int) -> Problem:
-    """The first so many roles by themselves, without the inputs that a later one may feed."""
+    """Return the problem of the first roles by themselves, without the inputs that a later one may feed."""
     template = problem.task.template
     kept = {role.iri for role in template.roles[:roles]}
     candidates = []

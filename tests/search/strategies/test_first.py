@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 
 from benchmarks.search import families, sparql
+from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
@@ -58,3 +59,15 @@ def test_where_the_first_roles_are_impossible_the_whole_problem_is_not_reduced()
     given_ = LazyReduction(families.graph("graph", 200, 10, 3, 7_001))
     assert first.solution(given_, Budget()) is None
     assert "reduced" not in vars(given_)
+
+
+def test_a_problem_is_possible_though_the_steps_end_before_its_first_solution_is_proved() -> None:
+    pytest.importorskip("pysat")
+    problem = families.satisfiability(60, 3.8, seed=2)
+    # Each call of the solver is a step, and the first solution takes one more for each slot at least.
+    undecided = [
+        steps
+        for steps in range(300, 540, 6)
+        if isinstance(first.solution(LazyReduction(problem), Budget(steps)), Undecided)
+    ]
+    assert any(first.possible(problem, Budget(steps)) for steps in undecided)
