@@ -91,9 +91,8 @@ def nearest(problem: Problem, running: Configuration, steps: int | None = None) 
             search.meet(found)
             budget = Budget(steps)
             found = search.by_clauses(budget)
-        if not budget.steps:
+        if found is None or not budget.steps:
             found = search.nearest_of(found, problem.solved(playing, running), search.incumbent)
-    assert found is not None  # a solution exists, and only a budget that ended keeps the engines from one
     return Reconfiguration(found, *preserved(found, running), proved=bool(budget.steps))
 
 
@@ -139,9 +138,10 @@ class _NearestSearch:
             self._score, self.incumbent = score, configuration
         return score
 
-    def nearest_of(self, *configurations: Configuration | None) -> Configuration | None:
-        """Return the nearest of some configurations, of equals the first one."""
-        return max(configurations, key=lambda one: (-1, -1) if one is None else preserved(one, self.running))
+    def nearest_of(self, *configurations: Configuration | None) -> Configuration:
+        """Return the nearest of some configurations, at least one of which is there; of equals the first one."""
+        met = [configuration for configuration in configurations if configuration is not None]
+        return max(met, key=lambda configuration: preserved(configuration, self.running))
 
     def with_fewest_losses(self, budget: Budget) -> Configuration | None:
         """Return the best configuration with the fewest losses, one at least; None if the budget ends before."""

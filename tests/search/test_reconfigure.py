@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from selfconf.certificate import broken_conditions
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate, Partition
 from selfconf.model.profile import Profile
@@ -110,6 +111,7 @@ def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
     if aided:
         pytest.importorskip("pysat")
         monkeypatch.setattr(reconfigure, "DEPTH_FIRST_STEPS", 0)
+        monkeypatch.setattr(reconfigure, "LEAST_STEPS", 1)  # too few to name the first of the nearest
     else:
         monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
     unproved: list[bool] = []
@@ -128,6 +130,7 @@ def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
             answer = reconfigure.nearest(left, running, steps)
             if isinstance(answer, reconfigure.Reconfiguration):
                 assert (answer.kept, answer.connections) == _score(answer.configuration, running)
+                assert broken_conditions(left.task, left.partition, answer.configuration, left.hierarchy) == []
                 if answer.proved:
                     assert answer.configuration == nearest
                 else:
