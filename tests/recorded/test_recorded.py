@@ -16,10 +16,14 @@ from tests.recorded import cases
 from tests.recorded.answers import Answer, differences, taken_apart
 from tests.recorded.record import GROUPS, answers, compared, load
 
+pytestmark = pytest.mark.slow
 pytest.importorskip("pysat", reason="with fewer solvers, fewer searches are decided: install the extra solvers")
 
 
-@pytest.fixture(scope="module", params=sorted(GROUPS))
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(group, marks=pytest.mark.xdist_group(f"recorded {group}")) for group in sorted(GROUPS)],
+)
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, Answer]]:
     """A group, and what is answered to its cases now."""
     with pytest.MonkeyPatch.context() as patch:
