@@ -11,7 +11,7 @@ from selfconf.api.answer import Method
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.memory import Faults, MemoryBus, Network
-from selfconf.configurator.machine import Phase, Policy
+from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.configuration import Configuration
@@ -69,7 +69,7 @@ class MemoryRun:
             policy=policy,
             patient=wait,
             report=self.events.append,
-            settle=self._settle,
+            ended=self._settle,
         )
         network = ecology.network
         self._runner = TaskRunner(network.node(), NAME, request, f"c{len(network.nodes)}", lambda: network.time)
