@@ -88,7 +88,7 @@ def write_advertisements(folder: Path, *names: str) -> Path:
 
 
 class Recorder(Component):
-    """A component that writes down what it is told."""
+    """A component that writes down which of its methods were called."""
 
     def __init__(self) -> None:
         self.said: list[tuple[Any, ...]] = []
@@ -194,14 +194,14 @@ class Lab:
         return _node(program.bus).open
 
     def isolate(self, program: TaskRunner | Site | str) -> None:
-        """Cut a program off from everybody else."""
+        """Cut a program off from all others."""
         node = _node(self.runtimes[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and self.network.reaches(node, other):
                 self.network.cut(node, other)
 
     def rejoin(self, program: TaskRunner | Site | str) -> None:
-        """Let a program reach everybody again."""
+        """Let a program reach all others again."""
         node = _node(self.runtimes[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and not self.network.reaches(node, other):

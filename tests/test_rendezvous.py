@@ -146,7 +146,7 @@ def test_the_name_of_a_living_site_is_taken() -> None:
         rendezvous.announce(meeting())
 
 
-def test_a_site_that_leaves_takes_nobody_elses_file_with_it() -> None:
+def test_a_site_that_leaves_removes_no_file_of_another_process() -> None:
     path = rendezvous.announce(meeting(process=os.getppid()))
     rendezvous.leave(path)
     assert path.is_file()

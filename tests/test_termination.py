@@ -1,4 +1,4 @@
-"""When a program ends: who counts as gone."""
+"""When a program ends: which processes count as gone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import sys
 from selfconf.termination import alive
 
 
-def test_a_process_lives_until_it_has_ended_even_if_nobody_has_asked_for_its_exit_code() -> None:
+def test_a_process_lives_until_it_has_ended_even_if_its_parent_has_not_waited_for_it() -> None:
     process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     try:
         assert alive(process.pid)
@@ -22,6 +22,6 @@ def test_a_process_lives_until_it_has_ended_even_if_nobody_has_asked_for_its_exi
     assert not alive(process.pid)
 
 
-def test_a_process_of_somebody_else_may_live() -> None:
+def test_a_process_of_another_user_may_live() -> None:
     assert alive(os.getpid())
     assert alive(1)

@@ -116,7 +116,7 @@ def test_with_steps_given_no_more_than_these_are_taken_for_the_best() -> None:
 # Who stands by.
 
 
-def test_the_next_who_could_feed_an_input_stand_by_and_not_those_who_play() -> None:
+def test_components_that_could_feed_an_input_next_stand_by_and_chosen_ones_do_not() -> None:
     names = [f"locator{number}" for number in range(STANDBY + 3)]
     given = ecology(*map(locator, names), controller("cap", start="Pose", end="Pose"))
     composer = Composer(task(PLAIN))
@@ -127,7 +127,7 @@ def test_the_next_who_could_feed_an_input_stand_by_and_not_those_who_play() -> N
     assert composer.standby(configuration, NOBODY) == {iri("cap"): {"start": spare, "end": spare}}
 
 
-def test_who_is_lost_does_not_stand_by() -> None:
+def test_a_lost_component_does_not_stand_by() -> None:
     names = [f"locator{number}" for number in range(STANDBY + 3)]
     given = ecology(*map(locator, names), controller("cap"))
     composer = Composer(task(PLAIN))
@@ -135,7 +135,7 @@ def test_who_is_lost_does_not_stand_by() -> None:
     assert found == {iri("cap"): {"where": tuple(Wire(iri(one), "pose") for one in names[2 : 2 + STANDBY])}}
 
 
-def test_who_plays_another_role_does_not_stand_by() -> None:
+def test_a_component_in_another_role_does_not_stand_by() -> None:
     text = PLAIN.replace(":position :control", ":position :spare :control") + ":spare a sc:Role ; sh:class :Locator ."
     given = ecology(locator("a"), locator("b"), locator("c"), controller("cap"))
     composer = Composer(task(text))
@@ -143,6 +143,6 @@ def test_who_plays_another_role_does_not_stand_by() -> None:
     assert found == {iri("cap"): {"where": (Wire(iri("c"), "pose"),)}}
 
 
-def test_where_nobody_is_left_nobody_stands_by() -> None:
+def test_where_no_candidate_is_left_none_stands_by() -> None:
     composer, given = Composer(task(PLAIN)), ecology(locator("gps"), controller("cap"))
     assert composer.standby(configured(composer, given), NOBODY) == {}

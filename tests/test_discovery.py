@@ -1,4 +1,4 @@
-"""Discovery: who lives, what they advertise, who did not answer, and what strangers try to smuggle in."""
+"""Discovery: what lives, what is advertised, which sites did not answer, and what strangers try to pass in."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Field:
         self.stranger(name, lambda request: request.reply(KEYS.advertisement(name, component), payload, page))
 
     def discover(self) -> Discovery:
-        """Ask everybody."""
+        """Ask all sites."""
         found: list[Discovery] = []
         self.ecology.discover(found.append)
         assert self.network.run(lambda: bool(found), 10 * DISCOVERY)
@@ -90,7 +90,7 @@ def test_what_is_found_is_what_was_advertised(field: Field) -> None:
     assert not found.startable
 
 
-def test_nobody_is_found_at_once_where_nobody_is(field: Field) -> None:
+def test_an_ecology_without_sites_is_discovered_at_once(field: Field) -> None:
     assert field.discover() == Discovery()
     assert field.network.time < 1.0
 
@@ -242,7 +242,7 @@ def test_an_advertisement_speaks_for_its_own_component_only(field: Field) -> Non
     assert iri("astrid-drive") not in subjects
 
 
-def test_axioms_and_shapes_that_are_smuggled_in_are_left_out(field: Field) -> None:
+def test_axioms_and_shapes_in_an_advertisement_are_left_out(field: Field) -> None:
     field.lie(
         "stranger",
         TRACKER,
