@@ -15,7 +15,7 @@ from selfconf.api.run import Run
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh_bus import client
-from selfconf.configurator.machine import Policy
+from selfconf.configurator.state import Policy
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import NetworkError, PeerError, TurtleError
 from selfconf.model.refusal import Refusal, Undecided

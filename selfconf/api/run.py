@@ -12,7 +12,7 @@ from selfconf.api.places import Places
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.zenoh_bus import client
 from selfconf.composition import TimeLimit, composed
-from selfconf.configurator.machine import Loss, Policy
+from selfconf.configurator.state import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
@@ -69,7 +69,7 @@ class Run:
                 policy=policy,
                 patient=wait,
                 report=self._events.append,
-                settle=self._settle,
+                ended=self._settle,
             ),
         )
 

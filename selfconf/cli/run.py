@@ -86,7 +86,7 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     from selfconf import rendezvous
     from selfconf.api.local_site import SiteProcess
     from selfconf.api.run import Run
-    from selfconf.configurator.machine import Policy
+    from selfconf.configurator.state import Policy
 
     policy, method = Policy(given.policy), method_of(given, task)
     if given.ads is None:

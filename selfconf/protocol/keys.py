@@ -25,7 +25,7 @@ import hashlib
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from urllib.parse import quote, unquote
+from urllib.parse import quote
 
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
@@ -179,8 +179,3 @@ def site_of(key: str) -> str:
 def call_of(key: str) -> str:
     """The name of the call at the end of a control key."""
     return key.rsplit("/", 1)[-1]
-
-
-def port_of(key: str) -> str:
-    """The port at the end of an output's key."""
-    return unquote(key.rsplit("/", 1)[-1])

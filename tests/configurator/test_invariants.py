@@ -19,7 +19,8 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
-from selfconf.configurator.machine import OBEYED, Phase, Policy, State, step
+from selfconf.configurator.machine import OBEYED, step
+from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict

@@ -28,7 +28,8 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
-from selfconf.configurator.machine import Phase, Policy, State, wiring
+from selfconf.configurator.machine import wiring
+from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Connection
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict, Wire
