@@ -16,6 +16,7 @@ from shapely import MultiPoint
 from sim.pictures.colours import BLUE, FAIL, GREY, INK, ORANGE, PAPER
 from sim.pictures.record import CameraImage
 from sim.pictures.svg import Point, Style, add, badge, document, image, points, shortened, write
+from sim.tracker import plate_colours
 
 TITLE, TEXT, CLOCK = Style(22, bold=True), Style(14.5), Style(14.5, GREY)
 MARK = "#ffe100"
@@ -63,9 +64,7 @@ def chosen(sights: Sequence[CameraImage]) -> list[tuple[CameraImage, str]]:
 
 def plate(picture: NDArray[np.uint8]) -> tuple[list[Point], Point, Point] | None:
     """Return the outline of Astrid's plate in pixels, and the middles of its back and front; None if it is not seen."""
-    red, green, blue = (picture[:, :, k].astype(np.int32) for k in range(3))
-    magenta = (red > 100) & (blue > 100) & (red > 3 * green) & (blue > 3 * green)
-    cyan = (green > 100) & (blue > 100) & (green > 3 * red) & (blue > 3 * red)
+    magenta, cyan = plate_colours(picture)
     if magenta.sum() < _FEWEST or cyan.sum() < _FEWEST:
         return None
     # The corners of the pixels, not their middles: the outline goes round them.

@@ -61,11 +61,10 @@ def shoot(
     progress: Callable[[float], None],
 ) -> list[Image.Image]:
     """Return the frames of a run's film, with captions; `progress` hears the share that is done."""
-    scene.move(None)
-    scene.paint(floor.painted)
-    painted = scene.picture(view, samples)
-    scene.paint(floor.bare)
-    empty = scene.picture(view, samples)
+    scene.change(None, floor.painted)
+    painted = scene.picture(view, 2 * samples)
+    scene.change(None, floor.bare)
+    empty = scene.picture(view, 2 * samples)
     # The largest scale of the floor anywhere in the picture: what lies nearest to the eye.
     scale = view.zoom / float(np.linalg.norm(view.eye) * 0.6)
 
@@ -80,8 +79,7 @@ def shoot(
         shown = np.where(trail(run, moment.time, view.size, place, scale)[..., None], painted, empty)
         left, top, right, bottom = window = _reach(view, at)
         if right > left and bottom > top:
-            scene.paint(floor.until(run, moment.time))
-            scene.move(at)
+            scene.change(at, floor.until(run, moment.time))
             drawn, part = scene.picture(view, samples, window), shown[top:bottom, left:right]
             part += (drawn - part) * _feather(drawn.shape[:2])
         frames.append(_captioned(Image.fromarray(to_screen(shown)), view, run, moment))
@@ -120,7 +118,7 @@ def _captioned(scene: Image.Image, view: Viewpoint, run: RunRecord, moment: Mome
     frame = Image.new("RGB", (scene.width, scene.height + CAPTION), PAPER)
     frame.paste(scene, (0, 0))
     root = document(*frame.size)
-    fade(root, 38, CAPTION + 4, 12)
+    fade(root, 38, CAPTION + 26, 12)
     base, room = frame.height - 17.0, frame.width - 160.0
     if moment.failure is not None:
         for share in (moment.spread, moment.spread - 0.35):

@@ -59,20 +59,9 @@ def _sofa(piece: Furniture) -> Iterator[Solid]:
     for side in (-1, 1):
         yield box(cloth, (side * (w - arm) / 2, 0, 0.05 + 0.34 * h), (arm, d, 0.66 * h), 0.05)
         seat = (w - 2 * arm) / 2
-        yield box(
-            light,
-            (side * seat / 2, -back / 2, 0.05 + base + 0.06),
-            (seat - 0.012, d - back - 0.01, 0.15),
-            0.045,
-        )
+        yield box(light, (side * seat / 2, -back / 2, 0.05 + base + 0.06), (seat - 0.012, d - back - 0.01, 0.15), 0.045)
         rest = _leaning(-0.20)
-        yield box(
-            light,
-            (side * seat / 2, d / 2 - back - 0.06, 0.72 * h),
-            (seat - 0.03, 0.13, 0.42 * h),
-            0.055,
-            rest,
-        )
+        yield box(light, (side * seat / 2, d / 2 - back - 0.06, 0.72 * h), (seat - 0.03, 0.13, 0.42 * h), 0.055, rest)
     for side, colour in ((-1, "#e3a72f"), (1, "#efe9dd")):
         turn = _leaning(-0.42) @ upright(side * -0.22)
         cushion = Material(colour, grain="cloth")
@@ -184,12 +173,7 @@ def _wardrobe(piece: Furniture) -> Iterator[Solid]:
     yield box(DARK, (0, 0.02, 0.03), (w - 0.06, d - 0.08, 0.06))
     yield box(wood, (0, 0.01, 0.05 + (h - 0.05) / 2), (w, d - 0.02, h - 0.05), 0.008)
     for side in (-1, 1):
-        yield box(
-            door,
-            (side * w / 4, -d / 2 + 0.012, 0.06 + (h - 0.1) / 2),
-            (w / 2 - 0.012, 0.024, h - 0.12),
-            0.006,
-        )
+        yield box(door, (side * w / 4, -d / 2 + 0.012, 0.06 + (h - 0.1) / 2), (w / 2 - 0.012, 0.024, h - 0.12), 0.006)
         yield box(CHROME, (side * 0.035, -d / 2 - 0.006, 0.55 * h), (0.014, 0.014, 0.22), 0.005)
     yield box(door, (0, 0, h + 0.006), (w - 0.05, d - 0.07, 0.012), 0.005)
 
@@ -205,10 +189,7 @@ def _bed(piece: Furniture) -> Iterator[Solid]:
     quilt = 0.64 * w
     yield box(cover, (-w / 2 + quilt / 2 + 0.005, 0, h - 0.08), (quilt, d + 0.01, 0.24), 0.06)
     yield box(
-        _tint(piece, "#ffffff", 0.55, "cloth"),
-        (-w / 2 + quilt - 0.01, 0, h - 0.07),
-        (0.2, d + 0.018, 0.24),
-        0.06,
+        _tint(piece, "#ffffff", 0.55, "cloth"), (-w / 2 + quilt - 0.01, 0, h - 0.07), (0.2, d + 0.018, 0.24), 0.06
     )
     for side in (-1, 1):
         turn = _raised(0.30) @ upright(0.06 * side)

@@ -38,7 +38,7 @@ class Quality:
     samples: int = 9
     density: float = 256.0
     film_size: tuple[int, int] = (760, 440)
-    film_samples: int = 6
+    film_samples: int = 4
     film_density: float = 160.0
     frames: int = 54
 
@@ -71,7 +71,7 @@ def draw(
     ground, solids = extent(apartment), house(apartment)
     floor = lay(ground, apartment.rooms, coverings, areas, record, care.density)
     scene = Scene(solids, robot(), ground, floor.painted)
-    scene.move(record.samples[-1])
+    scene.change(record.samples[-1])
     paths = []
     entries = legend.entries(record, seen=bool(areas))
     width, height = care.size

@@ -76,18 +76,16 @@ class Scene:
         self.scene = mitsuba.load_dict(scene | _shapes(solids))
         self.integrator = mitsuba.load_dict({"type": "path", "max_depth": 4})
         self.parameters = mitsuba.traverse(self.scene)
-        self.move(None)
+        self.change(None)
 
-    def move(self, at: Sample | None) -> None:
-        """Put the robot somewhere, or (None) far below the ground."""
+    def change(self, at: Sample | None, floor: Array | None = None) -> None:
+        """Put the robot somewhere, or (None) far below the ground; give the floor another picture of its size."""
         place = [at.x, at.y, 0.0] if at else [0.0, 0.0, -9.0]
         turn = _transform().rotate([0, 0, 1], math.degrees(at.theta) if at else 0.0)
         self.parameters["robot.to_world"] = _transform().translate(place) @ turn
-        self.parameters.update()
-
-    def paint(self, floor: Array) -> None:
-        """Give the floor another picture of the same size."""
-        self.parameters["floor.bsdf.reflectance.data"] = mitsuba.TensorXf(np.ascontiguousarray(floor[::-1], np.float32))
+        if floor is not None:
+            pixels = np.ascontiguousarray(floor[::-1], np.float32)
+            self.parameters["floor.bsdf.reflectance.data"] = mitsuba.TensorXf(pixels)
         self.parameters.update()
 
     def picture(self, view: Viewpoint, samples: int, window: Window | None = None) -> Array:

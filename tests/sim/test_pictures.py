@@ -260,7 +260,7 @@ def test_the_robot_is_where_it_was_put_and_nowhere_before() -> None:
     view = plan(solids, (120, 120), (10, 10, 110, 110))
     column, row = (int(pixel) for pixel in view.project(np.array([[1.0, -0.5, PLATE_HEIGHT]]))[0])
     empty = scene.picture(view, 4)[row, column]
-    scene.move(Sample(0.0, 1.0 - 0.085, -0.5))
+    scene.change(Sample(0.0, 1.0 - 0.085, -0.5))
     magenta = scene.picture(view, 4)[row, column]
     assert magenta[1] < 0.5 * min(magenta[0], magenta[2])
     assert np.ptp(empty) < 0.3 * empty.max()
