@@ -9,17 +9,24 @@ PYTHON ?= $(shell for p in python3.11 python3.10 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && echo $$p && exit; done)
 SEEDS  ?= 20
 
-.PHONY: demo test nightly check package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test quick nightly check package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
 
+# As many processes as processors; which tests share one is said in tests/schedule.py.
+PARALLEL := --numprocesses auto
+
 test: $(VENV)/with-dev
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(PARALLEL)
+
+# The inner loop: without tests that start processes or are slow, and a tenth of the examples of each property.
+quick: $(VENV)/with-dev
+	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow'
 
 # Ten thousand random ecologies for each property of the search, against every oracle; about twenty minutes.
 nightly: $(VENV)/with-dev
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest tests/search tests/test_certificate.py
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py
 
 check: $(VENV)/with-dev lint types floors shapes docs-check test package
 

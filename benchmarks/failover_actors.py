@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 from selfconf.sdk import Component, Host, Signal, Termination
-from selfconf.sdk.program import join
+from selfconf.sdk.program import open_host
 
 ADVERTISEMENTS = Path(__file__).parent / "failover"
 
@@ -74,14 +74,14 @@ class Phoenix:
 
     def _reborn(self) -> None:
         say("fail", self._raised)  # not before: whoever reads it would take a core from those who are measured
-        self._host.bodies.pop().close()
+        self._host.runtimes.pop().close()
         self._component = self._host.add(self._kind())
 
 
 def main() -> None:
     """Run one actor until told to end."""
     name = sys.argv[1]
-    host = join()
+    host = open_host()
     ending = Termination(host.bus)
     if name.startswith("position"):
         Phoenix(host, actor(name))

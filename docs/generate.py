@@ -10,7 +10,8 @@ from pathlib import Path
 
 from docs import ontology
 from selfconf.cli import validate
-from selfconf.cli.main import COMMANDS, command, parser
+from selfconf.cli.main import COMMANDS, parser
+from selfconf.model.codes import CODES
 
 HERE = Path(__file__).parent
 NOTE = "<!-- Made by `python -m docs.generate`; edit the code instead. -->"
@@ -24,14 +25,14 @@ def commands() -> str:
     subparsers = next(action for action in top._actions if isinstance(action, argparse._SubParsersAction))
     for name in COMMANDS:
         help_ = subparsers.choices[name].format_help().rstrip()
-        pages.append(f"## selfconf {name}\n\n{command(name).HELP[0].upper()}{command(name).HELP[1:]}.\n")
+        pages.append(f"## selfconf {name}\n\n{COMMANDS[name][0].upper()}{COMMANDS[name][1:]}.\n")
         pages.append(f"```text\n{help_}\n```\n")
     return "\n".join(pages)
 
 
 def codes() -> str:
     """The reference of the codes that `validate` reports."""
-    return f"{NOTE}\n\n{validate.reference()}"
+    return f"{NOTE}\n\n{validate.reference(CODES)}"
 
 
 PAGES: dict[str, Callable[[], str]] = {"commands.md": commands, "codes.md": codes, "ontology.html": ontology.page}

@@ -1,1 +1,86 @@
-"""selfconf: components of a robot ecology that wire themselves."""
+"""selfconf: components of a robot ecology that wire themselves.
+
+    import selfconf as sc
+
+    home = sc.read("examples/peis-home")
+    task = sc.template("examples/navigate.ttl").bind(robot=":Astrid", goal="(AT BEDROOM)")
+    answer = sc.configure(task, home)
+    if answer:                                  # a Configuration is true, a Refusal is false
+        print(answer["position"], answer.connections)
+    else:
+        print(answer.reasons, answer.near_misses, answer.repairs)
+
+`read` reads an ecology, `template` a task, `configure` answers it, `partition` shows who is eligible, `validate` checks
+files, `join` joins the living ecology, and `sites` lists those of this machine. A component is written with
+`selfconf.sdk` and tried without a network by `selfconf.testing`.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from selfconf.api.answer import configure
+    from selfconf.api.ecology import Ecology
+    from selfconf.api.living import LivingEcology, join
+    from selfconf.api.local_site import sites
+    from selfconf.api.partition_table import partition
+    from selfconf.api.reading import read
+    from selfconf.api.run import Run
+    from selfconf.api.task import TaskSpecification, template
+    from selfconf.api.validation import validate
+    from selfconf.errors import SelfconfError
+    from selfconf.model.configuration import Configuration
+    from selfconf.model.refusal import Refusal, Undecided
+    from selfconf.model.term import IRI, Literal
+
+__all__ = [
+    "IRI",
+    "Configuration",
+    "Ecology",
+    "Literal",
+    "LivingEcology",
+    "Refusal",
+    "Run",
+    "SelfconfError",
+    "TaskSpecification",
+    "Undecided",
+    "configure",
+    "join",
+    "partition",
+    "read",
+    "sites",
+    "template",
+    "validate",
+]
+
+_HOME = {
+    "configure": "api.answer",
+    "Ecology": "api.ecology",
+    "LivingEcology": "api.living",
+    "join": "api.living",
+    "sites": "api.local_site",
+    "partition": "api.partition_table",
+    "read": "api.reading",
+    "Run": "api.run",
+    "TaskSpecification": "api.task",
+    "template": "api.task",
+    "validate": "api.validation",
+    "SelfconfError": "errors",
+    "Configuration": "model.configuration",
+    "Refusal": "model.refusal",
+    "Undecided": "model.refusal",
+    "IRI": "model.term",
+    "Literal": "model.term",
+}
+"""Where each name is defined. It is loaded when it is first used, so that a program pays for what it needs alone."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'selfconf' has no attribute {name!r}")
+    found = globals()[name] = getattr(import_module(f"selfconf.{_HOME[name]}"), name)
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

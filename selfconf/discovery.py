@@ -1,8 +1,8 @@
-"""The living ecology as seen from a bus: who is alive, and what they advertise.
+"""The living ecology as seen from a bus: which components live, and what the sites advertise.
 
-Discovery is acts 1 and 2 of the paper (section 2.4). It hears from liveliness which sites there are, asks them all,
-and ends when all the living have answered, or at the time-out, and then says who did not. An answer is checked for
-completeness, n of n, because a site that dies in the middle of it is not reported by the network.
+Discovery is acts 1 and 2 of the paper (section 2.4). It asks liveliness which sites there are, asks them all for their
+advertisements, and ends when all have answered, or at the time-out, with the names of those that did not. An answer is
+checked for completeness, n of n, because the network does not report a site that dies in the middle of its answer.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
 
 DISCOVERY = 3.0
-"""How long, in seconds, a site may take to answer; those who answer are not waited for longer than they need."""
+"""How long, in seconds, the sites may take to answer; once all have answered, nothing is waited for any more."""
 DISCOVERY_ATTEMPTS = 3
-"""How often a site whose answer is incomplete is asked."""
+"""How often a site whose answer is incomplete is asked, all in all."""
 LARGEST_ADVERTISEMENT = 1 << 20
-"""An advertisement of more bytes is left out."""
+"""An advertisement of more bytes than this is left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class FoundAdvertisement:
-    """An advertisement of the living ecology: at which site, from which source, and whether the site can start it."""
+    """An advertisement of the living ecology: at which site, from which file, and whether the site can start it."""
 
     advertisement: Advertisement
     site: str
@@ -39,16 +39,21 @@ class FoundAdvertisement:
 
 @dataclass(slots=True)
 class Discovery:
-    """What a discovery has found: the advertisements by component, the sites, and which of them did not answer."""
+    """What a discovery has found: the advertisements by component, and the sites."""
 
     found: dict[IRI, FoundAdvertisement] = field(default_factory=dict)
     sites: tuple[str, ...] = ()
+    """Every site that lives or has answered, sorted."""
     missing: tuple[str, ...] = ()
+    """The sites that did not answer, or not in full: what they advertise may be missing from `found`. Sorted."""
+    site_tokens: frozenset[str] = frozenset()
+    """The liveliness keys of the sites at the roll-call: which life of which site was asked."""
     complaints: list[str] = field(default_factory=list)
+    """What was left out, and why, in sentences."""
 
 
 class EcologyView:
-    """The living ecology as seen from a bus: it can be discovered, and says which components live."""
+    """One ecology as seen from a bus: it can be discovered, and its lives followed."""
 
     def __init__(self, bus: Bus, name: str) -> None:
         self.bus, self.keys = bus, Keys(name)
@@ -67,10 +72,10 @@ class EcologyView:
         return self._followed
 
     def follow(self, changed: Callable[[str, bool], None], site_changed: Callable[[str, bool], None]) -> None:
-        """From now on hear of the life of every component and site, those there first; asking twice does nothing.
+        """Follow the life of every component and site from now on, those that are there first; twice does nothing.
 
-        Not before the first discovery has ended: a roll-call that runs while a watch of the same lives begins is
-        answered in part only.
+        Not to be called before the first discovery has ended: Zenoh answers a roll-call in part only if a watch of
+        the same lives begins meanwhile.
         """
         if not self._followed:
             self._followed = True
@@ -78,7 +83,7 @@ class EcologyView:
             self.bus.watch(self.keys.any_site_life(), site_changed)
 
     def discover(self, done: Callable[[Discovery], None]) -> None:
-        """Ask everything that lives what it advertises; `done` hears once, when all have answered or time is up."""
+        """Ask all sites what they advertise; `done` is called once, when all have answered or time is up."""
         _Inquiry(self, done).start()
 
 
@@ -87,6 +92,7 @@ class _Inquiry:
 
     def __init__(self, ecology: EcologyView, done: Callable[[Discovery], None]) -> None:
         self.ecology, self.bus, self.keys, self._done = ecology, ecology.bus, ecology.keys, done
+        self._tokens: tuple[str, ...] = ()
         self._sites: tuple[str, ...] = ()
         self._pages: dict[str, dict[int, tuple[Page, Sample]]] = {}
         self._expected: dict[str, tuple[int, int]] = {}
@@ -108,7 +114,7 @@ class _Inquiry:
         self.bus.roll_call(self.keys.any_site_life(), DISCOVERY, self._called)
 
     def _called(self, keys: tuple[str, ...]) -> None:
-        self._sites = tuple(sorted({owner_of(key) for key in keys}))
+        self._tokens, self._sites = keys, tuple(sorted({owner_of(key) for key in keys}))
         self._ask("*")
 
     def _ask(self, site: str) -> None:
@@ -118,7 +124,8 @@ class _Inquiry:
     def _replied(self, replies: Replies) -> None:
         for sample in replies.samples:
             self._take(sample)
-        incomplete = [site for site in self._sites if not self._complete(site)]
+        # A site may begin to answer and die, or begin to live after the roll-call: pages count as much as a token.
+        incomplete = [site for site in sorted({*self._sites, *self._pages}) if not self._complete(site)]
         if incomplete and self._attempt < DISCOVERY_ATTEMPTS and replies.complete:
             self._ask(incomplete[0] if len(incomplete) == 1 else "*")
         else:
@@ -154,10 +161,11 @@ class _Inquiry:
                     self._complaints.append(f"left out {component} of site {site}: site {other} advertises it too")
                 else:
                     found[component] = FoundAdvertisement(advertisement, site, page.source, page.startable)
-        return Discovery(found, tuple(sorted({*self._sites, *self._pages})), missing, self._complaints)
+        sites = tuple(sorted({*self._sites, *self._pages}))
+        return Discovery(found, sites, missing, frozenset(self._tokens), self._complaints)
 
     def _advertisement(self, site: str, page: Page, payload: bytes) -> Advertisement | None:
-        """What a site says is untrusted: it must be one advertisement, of the component it is said to be of."""
+        """The advertisement in a reply, which is untrusted: there must be one, of the component that its page names."""
         name = f"site {site}, {page.source}"
         if len(payload) > LARGEST_ADVERTISEMENT:
             self._complaints.append(f"left out {page.component} of {name}: {len(payload)} bytes are too many")

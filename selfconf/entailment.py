@@ -1,9 +1,9 @@
 """What an ontology entails under OWL 2 RL: computed in a process of its own, with a time limit, and remembered.
 
-The closure of an ontology takes seconds to minutes in Python, and always comes out the same. So it is kept in the
-user's cache folder under a hash of the triples and of the reasoners' versions, and a computation that takes too long is
-ended. `python -m selfconf.entailment` is the process: N-Triples in, the entailed hierarchy as N-Triples out. It reasons
-by `reasonable`, where that is installed and certain to find the same, and else by owlrl.
+The closure of an ontology takes seconds to minutes in Python, and depends on the ontology and the reasoner alone. So it
+is kept in the user's cache folder under a hash of the triples and of the reasoners' versions, and a computation that
+takes too long is ended. `python -m selfconf.entailment` is the process: N-Triples in, the entailed hierarchy as
+N-Triples out. It reasons by `reasonable`, where that is installed and certain to agree with owlrl, else by owlrl.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ import sys
 import tempfile
 import threading
 from collections.abc import Iterable, Iterator
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TypeVar
 
@@ -54,6 +53,8 @@ def entailed_hierarchy(triples: Iterable[Triple]) -> Iterator[Triple]:
 
 def _reasoners() -> str:
     """The reasoners that there are, with their versions."""
+    from importlib.metadata import PackageNotFoundError, version  # takes longer to load than most tasks to answer
+
     found = []
     for name in ("owlrl", "reasonable"):
         with contextlib.suppress(PackageNotFoundError):
@@ -62,7 +63,7 @@ def _reasoners() -> str:
 
 
 def _relabelled(triples: Iterable[Triple]) -> Iterator[Triple]:
-    """The same triples with blank nodes numbered as they come: parsing gives them other labels each time."""
+    """The triples with blank nodes numbered as they come: parsing gives them other labels each time."""
     labels: dict[Term, BlankNode] = {}
 
     def label(term: T) -> T | BlankNode:
@@ -73,7 +74,7 @@ def _relabelled(triples: Iterable[Triple]) -> Iterator[Triple]:
 
 
 def _limit() -> float:
-    """The seconds that a closure may take. Raises AuthorError for what is no number of them."""
+    """The seconds that a closure may take. Raises AuthorError for a setting that is no number above zero."""
     given = os.environ.get("SELFCONF_OWL_RL_SECONDS", str(LIMIT))
     try:
         seconds = float(given)
@@ -101,18 +102,22 @@ def _computed(lines: bytes) -> bytes:
 
 
 def _keep(path: Path, entailed: bytes) -> None:
-    """Write it so that nobody ever reads half of it; a cache that cannot be written is done without."""
+    """Write a closure in one step, so that no other process reads half of it; do without where that cannot be."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as temporary:
-            temporary.write(entailed)
-        Path(temporary.name).replace(path)
+            try:
+                temporary.write(entailed)
+                temporary.close()
+                Path(temporary.name).replace(path)
+            except OSError:
+                Path(temporary.name).unlink(missing_ok=True)
     except OSError:
         return
 
 
 def main() -> None:
-    """Close what comes in on stdin."""
+    """Write the hierarchy that the triples on stdin entail to stdout."""
     triples = list(turtle.parse(sys.stdin.buffer.read(), "stdin").triples())
     entail = reasoning.reasonable_owl_rl if reasoning.suits(triples) else reasoning.owlrl_owl_rl
     entailed = (triple for triple in entail(triples) if triple[1] in reasoning.HIERARCHY)

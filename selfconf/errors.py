@@ -72,6 +72,10 @@ class NetworkError(SelfconfError):
     """The ecology cannot be reached: no site answers, an endpoint is taken, the session was lost."""
 
 
+class SiteMisusedError(AuthorError):
+    """A site that another program has started has ended at once, and has said why on stderr already."""
+
+
 class InstallationError(SelfconfError):
     """This installation lacks something that the command needs; the text says what to install."""
 

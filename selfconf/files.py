@@ -1,7 +1,7 @@
 """Turtle files as every program of selfconf reads them: which there are, what is in them, and what that means.
 
-A mark of the byte order is no part of the text, and a relative IRI counts from the file (RFC 3986, section 5.1.3): a
-file means the same to whoever reads it, be it a command, a site or a component.
+A mark of the byte order is no part of the text, and a relative IRI counts from the file (RFC 3986, section 5.1.3). So a
+file has one meaning, whether a command, a site or a component reads it.
 """
 
 from __future__ import annotations
@@ -18,12 +18,18 @@ if TYPE_CHECKING:
     from selfconf.rdf.advertisements import Advertisement, MalformedAdvertisement, SegmentCache
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+TURTLE = (".ttl",)
+"""The ending of the files that stand for a folder."""
+ONTOLOGY = (".ttl", ".rdf", ".owl", ".nt", ".nq", ".trig", ".jsonld")
+"""The endings of the files that stand for a folder of ontologies, which come in every format of RDF."""
 
 
-def within(path: Path, left_out: Callable[[AuthorError], None] | None = None) -> list[Path]:
-    """The files that a path stands for, sorted: all *.ttl below a folder, or else itself.
+def within(
+    path: Path, left_out: Callable[[AuthorError], None] | None = None, endings: tuple[str, ...] = TURTLE
+) -> list[Path]:
+    """The files that a path stands for, sorted: all below a folder that end so, or else itself.
 
-    A folder that cannot be read raises AuthorError, or is `left_out`, where somebody hears of that.
+    A folder that cannot be read raises AuthorError, unless `left_out` is given, which receives the error instead.
     """
     if not path.is_dir():
         return [path]
@@ -35,7 +41,7 @@ def within(path: Path, left_out: Callable[[AuthorError], None] | None = None) ->
         left_out(wrong)
 
     found = [Path(folder, name) for folder, _, names in os.walk(path, onerror=unreadable) for name in names]
-    return sorted(file for file in found if file.suffix == ".ttl" and file.is_file())
+    return sorted(file for file in found if file.suffix in endings and file.is_file())
 
 
 def advertisements(
@@ -51,7 +57,7 @@ def advertisements(
 
 
 def octets(path: Path) -> bytes:
-    """What is in a file. Raises AuthorError."""
+    """The bytes of a file. Raises AuthorError if it cannot be read."""
     try:
         return path.read_bytes()
     except IsADirectoryError:
@@ -63,7 +69,7 @@ def octets(path: Path) -> bytes:
 
 
 def text(found: bytes, name: str) -> bytes:
-    """What is to be parsed of the octets of a source. Raises TurtleError where that cannot be text."""
+    """What is to be parsed of the bytes of a source. Raises TurtleError where that cannot be text."""
     if b"\0" in found:
         raise TurtleError("not Turtle: this is a binary file", file=name)
     return found.removeprefix(BYTE_ORDER_MARK)
@@ -77,5 +83,5 @@ def base(path: Path) -> str:
 
 @lru_cache(maxsize=64)
 def _resolved(folder: Path) -> Path:
-    """A folder without links; what a thousand files in it have in common."""
+    """A folder without symbolic links, remembered: a thousand files have it in common."""
     return folder.resolve()

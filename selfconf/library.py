@@ -1,18 +1,20 @@
-"""The one door to the ontologies and shapes that ship with selfconf."""
+"""The one door to the ontologies and shapes that ship with selfconf.
+
+They are files in a checkout and in an installed wheel. A wheel that is imported as it is, zipped, has none; there they
+are unpacked once per process into a temporary folder, because everything that reads Turtle takes a path: its name is
+what messages call it, and its place is what relative IRIs are relative to.
+"""
 
 from __future__ import annotations
 
-from importlib.resources import as_file, files
+import tempfile
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-
-def _folder(name: str) -> Path:
-    """The folder in the wheel (`selfconf/_data/...`), or else at the root of the checkout."""
-    packaged = files("selfconf") / "_data" / name
-    if packaged.is_dir():
-        with as_file(packaged) as folder:
-            return folder
-    return Path(__file__).resolve().parent.parent / name
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
 
 
 def ontologies() -> list[Path]:
@@ -23,3 +25,28 @@ def ontologies() -> list[Path]:
 def shapes() -> list[Path]:
     """The SHACL shapes files of selfconf, sorted by name: advertisement, configuration, task, template."""
     return sorted(_folder("shapes").glob("*.ttl"))
+
+
+def _folder(name: str) -> Path:
+    """The folder in the wheel (`selfconf/_data/...`), or else at the root of the checkout."""
+    packaged = files("selfconf") / "_data" / name
+    if not packaged.is_dir():
+        return Path(__file__).resolve().parent.parent / name
+    if isinstance(packaged, Path):
+        return packaged
+    folder = Path(_unpacked().name, name)
+    if not folder.is_dir():
+        _unpack(packaged, folder)
+    return folder
+
+
+@cache
+def _unpacked() -> tempfile.TemporaryDirectory[str]:
+    """Where the files of a zipped wheel are unpacked; it is removed when the process ends, and not before."""
+    return tempfile.TemporaryDirectory(prefix="selfconf-")
+
+
+def _unpack(packaged: Traversable, folder: Path) -> None:
+    folder.mkdir()
+    for file in packaged.iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())

@@ -1,7 +1,7 @@
-"""How programs on one machine find each other's routers: a small file for each site, in the user's runtime folder.
+"""How a program finds its ecology: by its arguments, by its environment, or by the sites that run on this machine.
 
-Across machines endpoints are given (`--connect`); on one machine none is needed. A file whose process is gone is
-passed over, and removed.
+Across machines endpoints are given (`--connect`, or `SELFCONF_CONNECT`); on one machine none is needed, for each site
+writes a small file into the user's runtime folder. A file whose process is gone is passed over, and removed.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,10 +21,17 @@ from selfconf.errors import NetworkError
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 from selfconf.termination import alive
 
+ECOLOGY_VARIABLE = "SELFCONF_ECOLOGY"
+"""The variable that names the ecology of a program to which none is given."""
+CONNECT_VARIABLE = "SELFCONF_CONNECT"
+"""The variable with the endpoints, apart by spaces, that a program connects to when none are given."""
 ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
 USUAL_PORTS = range(20000, 32768)
-"""Below those that Linux takes for outgoing connections, or who tries to connect again might get the port itself."""
+"""The ports of sites: below those that Linux takes for outgoing connections.
+
+Else a client that tries to connect to a port where nothing listens might be given that very port for its own end.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +56,10 @@ def runtime_folder() -> Path:
 
 
 def usual_endpoint(ecology: str) -> str:
-    """Where a site of an ecology listens if nobody else does: the same each time, another for another runtime folder.
+    """Where a site of an ecology listens unless the port is taken.
 
-    So a site that is started again is where those look for it who were connected to the one before.
+    It depends on the ecology and the runtime folder alone, so that a site that is started again is where the clients
+    of the one before look for it.
     """
     digest = hashlib.blake2s(f"{runtime_folder()} {ecology}".encode(), digest_size=8).digest()
     return f"tcp/127.0.0.1:{USUAL_PORTS[int.from_bytes(digest, 'big') % len(USUAL_PORTS)]}"
@@ -59,12 +67,12 @@ def usual_endpoint(ecology: str) -> str:
 
 @contextmanager
 def _writing() -> Iterator[Path]:
-    """The folder, to write in. Raises NetworkError where that cannot be."""
+    """The folder, made and checked, to write in. Raises NetworkError where that cannot be."""
     root = runtime_folder()
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
         if root.stat().st_uid != os.getuid():
-            raise NetworkError(f"{root} belongs to somebody else; set SELFCONF_RUNTIME_DIR to a folder of your own")
+            raise NetworkError(f"{root} belongs to another user; set SELFCONF_RUNTIME_DIR to a folder of your own")
         yield root
     except OSError as error:
         raise NetworkError(
@@ -74,9 +82,9 @@ def _writing() -> Iterator[Path]:
 
 @contextmanager
 def turn() -> Iterator[None]:
-    """The time in which one site, and no other, looks who is there, opens its router, and announces itself.
+    """Hold a lock in which one site, and no other, looks for other sites, opens its router, and announces itself.
 
-    Else two that start at once would miss each other, and each stay alone.
+    Without it two sites that start at once would miss each other, and neither would connect to the other.
     """
     with _writing() as root:
         descriptor = os.open(root, os.O_RDONLY)
@@ -87,20 +95,20 @@ def turn() -> Iterator[None]:
         os.close(descriptor)
 
 
-def announce(meeting: LocalSite) -> Path:
-    """Write the file of a site; whoever wrote it removes it by `leave`. Raises NetworkError where that cannot be."""
-    if any(other.site == meeting.site and other.process != os.getpid() for other in local_sites(meeting.ecology)):
-        raise NetworkError(f"a site {meeting.site!r} of ecology {meeting.ecology!r} runs on this machine already")
+def announce(site: LocalSite) -> Path:
+    """Write the file of a site, which `leave` removes; return its path. Raises NetworkError where that cannot be."""
+    if any(other.site == site.site and other.process != os.getpid() for other in local_sites(site.ecology)):
+        raise NetworkError(f"a site {site.site!r} of ecology {site.ecology!r} runs on this machine already")
     with _writing() as root:
-        path = root / f"{meeting.ecology}@{meeting.site}.json"
+        path = root / f"{site.ecology}@{site.site}.json"
         temporary = path.with_suffix(f".{os.getpid()}")
-        temporary.write_text(json.dumps(asdict(meeting)))
+        temporary.write_text(json.dumps(asdict(site)))
         temporary.replace(path)
     return path
 
 
 def leave(path: Path) -> None:
-    """Remove the file of a site, unless another program has taken its place."""
+    """Remove the file of a site of this process; a file that another process has written since stays."""
     try:
         if json.loads(path.read_text())["process"] == os.getpid():
             path.unlink()
@@ -116,25 +124,37 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
         return found
     for path in sorted(root.glob("*.json")):
         try:
-            meeting = LocalSite(**json.loads(path.read_text()))
-            living = alive(int(meeting.process))
+            site = LocalSite(**json.loads(path.read_text()))
+            living = alive(int(site.process))
         except (OSError, ValueError, TypeError):
             continue
         if not living:
             path.unlink(missing_ok=True)
-        elif ecology is None or meeting.ecology == ecology:
-            found.append(meeting)
+        elif ecology is None or site.ecology == ecology:
+            found.append(site)
     return found
 
 
-def find(ecology: str | None, connect: list[str]) -> tuple[str, list[str]]:
-    """The ecology and the endpoints to connect to; raises NetworkError, saying what to try, if there are none."""
+def environment(ecology: str, endpoint: str) -> dict[str, str]:
+    """The variables by which a program that is started finds an ecology."""
+    return {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
+
+
+def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
+    """The ecology and the endpoints to connect to.
+
+    Each is what is given, else what the environment says, else that of the sites on this machine. Raises NetworkError,
+    saying what to try, if there are none, and AuthorError for what cannot name an ecology.
+    """
+    if ecology is None:
+        ecology = os.environ.get(ECOLOGY_VARIABLE) or None
+    endpoints = list(connect) or os.environ.get(CONNECT_VARIABLE, "").split()
     if ecology is not None:
         checked_name(ecology, "an ecology")
-    if connect:
-        return ecology or _ecology_at(connect), connect
+    if endpoints:
+        return ecology or _ecology_at(endpoints), endpoints
     found = local_sites(ecology)
-    names = sorted({meeting.ecology for meeting in found})
+    names = sorted({site.ecology for site in found})
     if not names:
         which = "" if ecology is None else f"of the ecology {ecology!r} "
         raise NetworkError(
@@ -142,7 +162,7 @@ def find(ecology: str | None, connect: list[str]) -> tuple[str, list[str]]:
         )
     if len(names) > 1:
         raise NetworkError(f"several ecologies run on this machine; say which with --ecology: {', '.join(names)}")
-    return names[0], [meeting.endpoint for meeting in found]
+    return names[0], [site.endpoint for site in found]
 
 
 def _ecology_at(endpoints: list[str]) -> str:

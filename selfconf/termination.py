@@ -1,7 +1,7 @@
 """When a program of selfconf ends: SIGINT, SIGTERM, or because the program that started it is gone.
 
-A program that starts others puts `environment()` into their environment; they look at intervals whether it is still
-there, so that a parent that is killed with -9 leaves nobody behind.
+A program that starts others puts `parent_environment()` into their environment; they look at intervals whether it is
+still there, so that a parent that is killed with -9 leaves no process behind.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _PARENT = "SELFCONF_PARENT"
 
 
 def parent_environment() -> Mapping[str, str]:
-    """What a started program needs to know in order to end with this one."""
+    """The variables by which a program that is started ends with this one."""
     return {_PARENT: str(os.getpid())}
 
 
@@ -36,7 +36,7 @@ def orphaned(parent: int) -> bool:
 
 
 def alive(process: int) -> bool:
-    """Whether a process of this machine is there. One that has ended is not, even if its parent has not heard yet."""
+    """Whether a process of this machine is there. One that has ended is not, waited for or not."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -55,15 +55,15 @@ def _zombie(process: int) -> bool:
 
 
 def end_as_by_ctrl_c() -> None:
-    """From now on SIGTERM raises KeyboardInterrupt, as SIGINT does; until an `Ending` hears of both."""
+    """Let SIGTERM raise KeyboardInterrupt, as SIGINT does, until there is a `Termination` that handles both."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
 
 
 class Termination:
-    """Holds, when called, once the program is to end; `then` is called once, on the bus's thread."""
+    """True, when called, once the program is to end; `then` is called once, on the bus's thread."""
 
     def __init__(self, bus: Bus, then: Callable[[], None] = lambda: None) -> None:
-        self._bus, self._then, self._told = bus, then, False
+        self._bus, self._then, self._ending = bus, then, False
         self._parent = os.getppid()
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._signalled)
@@ -71,18 +71,18 @@ class Termination:
             self._look()
 
     def __call__(self) -> bool:
-        return self._told
+        return self._ending
 
     def _signalled(self, _: int, __: FrameType | None) -> None:
-        self._bus.wake_up(self._tell)
+        self._bus.wake_up(self._end)
 
-    def _tell(self) -> None:
-        if not self._told:
-            self._told = True
+    def _end(self) -> None:
+        if not self._ending:
+            self._ending = True
             self._then()
 
     def _look(self) -> None:
         if orphaned(self._parent):
-            self._tell()
+            self._end()
         else:
             self._bus.later(PARENT_CHECK, self._look)

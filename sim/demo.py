@@ -6,7 +6,6 @@ in an ecology with a name of its own, on free ports of 127.0.0.1, so that any nu
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import secrets
@@ -16,9 +15,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
+import selfconf
 from sim.account import Account
 from sim.crew import Crew, Line
 
@@ -36,6 +37,20 @@ RESULTS = (
 """What a run leaves in its folder."""
 STARTING = 60.0
 """Seconds that a process may take to be there."""
+
+
+@dataclass(frozen=True)
+class DemoOptions:
+    """What is played, and how: the scene, its noise and speed, and where the results go."""
+
+    out: Path
+    scene: str = "navigate"
+    seed: int = 1
+    speed: float = 1.0
+    """Simulated seconds for each second; infinite for as fast as it goes."""
+    gui: bool = False
+    pictures: str = "fine"
+    policy: str = "repair"
 
 
 class DemoError(Exception):
@@ -57,15 +72,16 @@ class Stage:
         paths = map(str, advertisements)
         self.crew.start(name, "-m", "selfconf", "site", *paths, "--ecology", self.ecology, "--name", name, *connect)
         deadline = time.monotonic() + STARTING
-        for line in self.crew.lines(STARTING):
-            if line.process == name and line.text is None:
-                break
-            if line.process == name and line.text is not None and " on tcp/" in line.text:
-                self.endpoint = line.text.rpartition(" on ")[2]
-                self._say(f"{time.time() - self.account.began:8.3f} s         {line.text}")
-                return
-            self.hear(line.process, line.text)
-        raise DemoError(f"the site {name} does not listen after {STARTING - deadline + time.monotonic():.0f} s")
+        while time.monotonic() < deadline:
+            for site in selfconf.sites(self.ecology):
+                if site.site == name:
+                    self.endpoint = site.endpoint
+                    return
+            for line in self.crew.lines(0.05):
+                self.hear(line.process, line.text)
+                if line.process == name and line.text is None:
+                    raise DemoError(f"the site {name} has ended before it listened")
+        raise DemoError(f"the site {name} does not listen after {STARTING:.0f} s")
 
     def configurator(self, template: Path, policy: str, *bound: str) -> None:
         """Start the configurator with a task."""
@@ -93,8 +109,8 @@ class Stage:
         raise DemoError(f"{what} did not happen within {seconds:.0f} s")
 
 
-def run(given: argparse.Namespace) -> int:
-    """Run the scene that the arguments name; 0 if it ends as it should."""
+def run(given: DemoOptions) -> int:
+    """Play the scene that the options name; 0 if it ends as it should."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     scenes = {"navigate": _navigate, "radio": _radio}
@@ -114,7 +130,7 @@ def _tell(sentence: str) -> None:
     print(sentence, flush=True)
 
 
-def _navigate(given: argparse.Namespace) -> int:
+def _navigate(given: DemoOptions) -> int:
     from sim.gallery import draw_run, result, summary
 
     for old in (path for pattern in RESULTS for path in given.out.glob(pattern)):
@@ -158,7 +174,7 @@ def _navigate(given: argparse.Namespace) -> int:
     return 0 if account.end["outcome"] == "arrived" and not account.end["touched"] else 1
 
 
-def _radio(given: argparse.Namespace) -> int:
+def _radio(given: DemoOptions) -> int:
     _tell("The radio plays in the living room; then somebody pulls the plug of a speaker.")
     sound = Path(tempfile.mkdtemp(prefix="selfconf-sound-"))
     try:

@@ -1,20 +1,50 @@
-"""What every test shares: a runtime folder of its own, and names of ecologies that nobody else uses."""
+"""What every test shares: a runtime folder of its own, names of ecologies that no other test uses, and the order."""
 
 from __future__ import annotations
 
 import secrets
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
-settings.register_profile("selfconf", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+from tests import schedule
+from tests.effort import examples
+
+settings.register_profile(
+    "selfconf",
+    max_examples=examples(100),
+    deadline=None,
+    derandomize=True,
+    print_blob=True,
+    suppress_health_check=[HealthCheck.too_slow],
+)
 settings.load_profile("selfconf")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The option by which a history is replayed."""
     parser.addoption("--seed", type=int, help="the seed of the first history of faults to run")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Spread the tests over processes so that those of a group share one."""
+    return schedule.scheduler(config, log)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Where tests run in several processes, begin with those that take longest, so that all processes end together."""
+    for item in items:
+        if "inhabited" in getattr(item, "fixturenames", ()) and schedule.group_of(item.nodeid) != "inhabited":
+            raise pytest.UsageError(f"{item.nodeid} uses `inhabited`: add its module to INHABITED in tests/schedule.py")
+    if hasattr(config, "workerinput"):
+        items.sort(key=_takes_seconds, reverse=True)
+
+
+def _takes_seconds(item: pytest.Item) -> bool:
+    return any(item.get_closest_marker(mark) for mark in ("process", "slow"))
 
 
 @pytest.fixture(autouse=True)

@@ -9,18 +9,19 @@ from typing import Any
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
 from selfconf.composition.composer import Composer
-from selfconf.configurator.machine import Phase, Policy
-from selfconf.deployment import Account, RunRequest, TaskRunner
+from selfconf.configurator.state import Phase, Policy
+from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.refusal import Refusal
+from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
-from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component, Signal
-from selfconf.site.site import Shelf, Site
+from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.site import Shelf, Site
 
 PREFIXES = """@prefix sc:  <https://w3id.org/selfconf#> .
 @prefix rob: <https://w3id.org/selfconf/robotics#> .
@@ -87,7 +88,7 @@ def write_advertisements(folder: Path, *names: str) -> Path:
 
 
 class Recorder(Component):
-    """A component that writes down what it is told."""
+    """A component that writes down which of its methods were called."""
 
     def __init__(self) -> None:
         self.said: list[tuple[Any, ...]] = []
@@ -116,9 +117,9 @@ class Lab:
         self.folder = folder
         self.keys = Keys("lab")
         self.components: dict[str, Recorder] = {}
-        self.bodies: dict[str, Body] = {}
+        self.runtimes: dict[str, ComponentRuntime] = {}
         self.complaints: list[str] = []
-        self.accounts: list[Account] = []
+        self.events: list[RunEvent] = []
         self.ended: list[Refusal | None] = []
 
     def site(self, name: str, *names: str) -> Site:
@@ -132,7 +133,7 @@ class Lab:
         (advertisement,), _ = advertisements.read(document)
         recorder = recorder or Recorder()
         life = f"{name}{len(self.network.nodes)}"
-        self.bodies[name] = Body(self.network.node(), self.keys, advertisement.profile, recorder, life)
+        self.runtimes[name] = ComponentRuntime(self.network.node(), self.keys, advertisement.profile, recorder, life)
         self.components[name] = recorder
         return recorder
 
@@ -161,8 +162,8 @@ class Lab:
             passed_over=composer.passed_over,
             policy=policy,
             patient=patient,
-            tell=self.accounts.append,
-            settle=self.ended.append,
+            report=self.events.append,
+            ended=self.ended.append,
         )
         agent = TaskRunner(
             self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time
@@ -177,34 +178,34 @@ class Lab:
     def running(self, agent: TaskRunner) -> bool:
         """Whether an agent's configuration is complete, after letting time pass."""
         running = self.until(lambda: agent.state.phase is Phase.RUNNING)
-        self.until(lambda: False, 2 * AT_LEISURE)  # accounts are told when there is time for it
+        self.until(lambda: False, 2 * AT_LEISURE)  # events are reported when there is time for it
         return running and agent.state.phase is Phase.RUNNING
 
     def node_of(self, name: str) -> MemoryBus:
         """The node of a component."""
-        return _node(self.bodies[name].bus)
+        return _node(self.runtimes[name].bus)
 
     def crash(self, program: TaskRunner | Site | str) -> None:
         """End a configurator, a site, or the component of that name, as kill -9 does."""
-        _node(self.bodies[program].bus if isinstance(program, str) else program.bus).close()
+        _node(self.runtimes[program].bus if isinstance(program, str) else program.bus).close()
 
     def is_open(self, program: TaskRunner | Site) -> bool:
         """Whether a program has not been ended."""
         return _node(program.bus).open
 
     def isolate(self, program: TaskRunner | Site | str) -> None:
-        """Cut a program off from everybody else."""
-        node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
+        """Cut a program off from all others."""
+        node = _node(self.runtimes[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and self.network.reaches(node, other):
                 self.network.cut(node, other)
 
     def rejoin(self, program: TaskRunner | Site | str) -> None:
-        """Let a program reach everybody again."""
-        node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
+        """Let a program reach all others again."""
+        node = _node(self.runtimes[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and not self.network.reaches(node, other):
-                self.network.mend(node, other)
+                self.network.reconnect(node, other)
 
     def let_pass(self, seconds: float) -> None:
         """Let simulated time pass."""
@@ -212,11 +213,11 @@ class Lab:
 
     def active(self) -> set[str]:
         """The names of the components that act, crashed ones left out."""
-        return {name for name, body in self.bodies.items() if body.active and self.node_of(name).open}
+        return {name for name, runtime in self.runtimes.items() if runtime.active and self.node_of(name).open}
 
-    def acts(self, act: str) -> list[Account]:
-        """The accounts of one kind."""
-        return [account for account in self.accounts if account.act == act]
+    def acts(self, act: str) -> list[Any]:
+        """The events of one kind."""
+        return [event for event in self.events if event.act == act]
 
 
 def _node(bus: Bus) -> MemoryBus:

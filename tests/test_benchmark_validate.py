@@ -9,11 +9,13 @@ import pytest
 from benchmarks import validate
 
 
+@pytest.mark.process
 def test_the_short_run_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert validate.main(["--smoke"]) == 0
     assert capsys.readouterr().out.count("\n| 20 |") == 4
 
 
+@pytest.mark.process
 def test_verdicts_that_differ_are_noticed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     real = validate.run
     monkeypatch.setattr(validate, "SAMPLE", 2)

@@ -19,6 +19,7 @@ from selfconf.search.problem import Problem
 ROOT = Path(__file__).resolve().parents[1]
 
 
+@pytest.mark.process
 def test_the_short_run_runs() -> None:
     command = [sys.executable, "-m", "benchmarks.search.run", "--smoke"]
     done = subprocess.run(

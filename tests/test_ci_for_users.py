@@ -16,6 +16,8 @@ import pytest
 
 from selfconf.cli.main import command, parser
 
+pytestmark = pytest.mark.process
+
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
 ROOT = Path(__file__).parents[1]
 ACTION: dict[str, Any] = yaml.safe_load((ROOT / "action.yml").read_text())

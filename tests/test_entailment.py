@@ -59,6 +59,17 @@ def test_a_cache_that_cannot_be_written_is_done_without(cache: Path, monkeypatch
     assert ("Tracker", "Sensor") in closed()
 
 
+def test_a_closure_that_cannot_be_kept_leaves_no_half_of_it_behind(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    closed()
+    (kept,) = cache.rglob("*.nt")
+    kept.unlink()
+    kept.mkdir()  # a file cannot take the place of a folder
+    assert ("Tracker", "Sensor") in closed()
+    assert list(kept.parent.iterdir()) == [kept]
+
+
 @pytest.mark.parametrize("given", ["abc", "0", "-1", "nan", "inf", ""])
 def test_a_limit_that_is_no_time_is_a_sentence(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", given)

@@ -10,7 +10,7 @@ import pytest
 
 from selfconf import files
 from selfconf.errors import AuthorError
-from selfconf.site.site import Shelf
+from selfconf.site import Shelf
 
 CLOCK = "@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:x:> . :clock a sc:Component, :Clock ."
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+import zipfile
 from pathlib import Path
 
 from selfconf import library
@@ -20,3 +24,37 @@ def test_the_ontologies_and_shapes_of_the_checkout_are_found() -> None:
 def test_all_of_them_are_turtle() -> None:
     for path in (*library.ontologies(), *library.shapes()):
         assert turtle.parse(path.read_bytes(), str(path)).statements
+
+
+def zipped(wheel: Path) -> Path:
+    """The package zipped as a wheel has it: the code, and the ontologies and shapes below `selfconf/_data`."""
+    with zipfile.ZipFile(wheel, "w") as archive:
+        for path in (ROOT / "selfconf").rglob("*.py"):
+            archive.write(path, path.relative_to(ROOT))
+        for folder in ("ontology", "shapes"):
+            for path in (ROOT / folder).iterdir():
+                archive.write(path, Path("selfconf", "_data", folder, path.name))
+    return wheel
+
+
+def test_a_wheel_that_is_not_unpacked_has_the_ontologies_and_shapes_and_leaves_nothing_behind(tmp_path: Path) -> None:
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    program = f"""if True:
+        import sys
+        sys.path.insert(0, {str(zipped(tmp_path / "selfconf.whl"))!r})
+        from selfconf import library
+        from selfconf.cli.main import main
+        assert ".whl" in library.__file__, library.__file__
+        for path in (*library.ontologies(), *library.shapes(), *library.shapes()):
+            print(path.name, len(path.read_bytes()), sep=" ")
+        raise SystemExit(main(["validate", {str(ROOT / "examples" / "navigate.ttl")!r}]))
+    """
+    environment = {**os.environ, "TMPDIR": str(temporary)}
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    files = sorted((ROOT / "ontology").glob("*.ttl")) + 2 * sorted((ROOT / "shapes").glob("*.ttl"))
+    assert done.stdout.splitlines()[: len(files)] == [f"{path.name} {path.stat().st_size}" for path in files]
+    assert list(temporary.iterdir()) == []

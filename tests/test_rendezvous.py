@@ -89,6 +89,32 @@ def test_endpoints_that_are_given_need_no_file() -> None:
     assert rendezvous.find("office", ["tcp/127.0.0.1:1"]) == ("office", ["tcp/127.0.0.1:1"])
 
 
+def test_the_environment_says_where_the_ecology_is_unless_it_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in rendezvous.environment("home", "tcp/127.0.0.1:1").items():
+        monkeypatch.setenv(name, value)
+    assert rendezvous.find(None, []) == ("home", ["tcp/127.0.0.1:1"])
+    assert rendezvous.find("office", []) == ("office", ["tcp/127.0.0.1:1"])
+    assert rendezvous.find(None, ["tcp/127.0.0.1:2"]) == ("home", ["tcp/127.0.0.1:2"])
+    monkeypatch.setenv(rendezvous.CONNECT_VARIABLE, "tcp/127.0.0.1:3  tcp/[::1]:4")
+    assert rendezvous.find(None, []) == ("home", ["tcp/127.0.0.1:3", "tcp/[::1]:4"])
+    monkeypatch.setenv(rendezvous.ECOLOGY_VARIABLE, "a/b")
+    with pytest.raises(AuthorError, match="cannot name an ecology"):
+        rendezvous.find(None, [])
+
+
+def test_an_environment_that_names_an_ecology_alone_has_its_sites_looked_for_here(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rendezvous.announce(meeting("home"))
+    rendezvous.announce(meeting("office", "bb"))
+    monkeypatch.setenv(rendezvous.ECOLOGY_VARIABLE, "office")
+    monkeypatch.setenv(rendezvous.CONNECT_VARIABLE, "")
+    assert rendezvous.find(None, []) == ("office", [meeting("office", "bb").endpoint])
+    monkeypatch.setenv(rendezvous.ECOLOGY_VARIABLE, "")
+    with pytest.raises(NetworkError, match="several"):
+        rendezvous.find(None, [])
+
+
 def test_the_folder_is_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SELFCONF_RUNTIME_DIR")
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
@@ -99,13 +125,13 @@ def test_the_folder_is_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert str(os.getuid()) in rendezvous.runtime_folder().name
 
 
-def test_a_folder_of_somebody_else_is_neither_written_nor_read(
+def test_a_folder_of_another_user_is_neither_written_nor_read(
     runtime_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rendezvous.announce(meeting())
     monkeypatch.setattr("os.getuid", lambda: runtime_folder.stat().st_uid + 1)
     assert rendezvous.local_sites() == []
-    with pytest.raises(NetworkError, match="belongs to somebody else"):
+    with pytest.raises(NetworkError, match="belongs to another user"):
         rendezvous.announce(meeting())
 
 
@@ -120,7 +146,7 @@ def test_the_name_of_a_living_site_is_taken() -> None:
         rendezvous.announce(meeting())
 
 
-def test_a_site_that_leaves_takes_nobody_elses_file_with_it() -> None:
+def test_a_site_that_leaves_removes_no_file_of_another_process() -> None:
     path = rendezvous.announce(meeting(process=os.getppid()))
     rendezvous.leave(path)
     assert path.is_file()

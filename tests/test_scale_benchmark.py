@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
 import rdflib
 
 from benchmarks.scale import engines, report, worlds
@@ -15,6 +16,7 @@ from selfconf.rdf.advertisements import loader as stream
 ROOT = Path(__file__).resolve().parents[1]
 
 
+@pytest.mark.process
 def test_the_short_run_runs() -> None:
     command = [sys.executable, "-m", "benchmarks.scale", "--smoke"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)

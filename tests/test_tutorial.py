@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.process
+
 PAGE = (Path(__file__).parents[1] / "docs" / "tutorial.md").read_text()
 PATIENCE = 40.0
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import resource
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -14,9 +13,9 @@ import pyoxigraph as ox
 import rdflib
 
 from benchmarks.scale.worlds import ROLES, task
-from selfconf.cli.budget import Clock
-from selfconf.cli.inputs import read_advertisements, turtle_files
-from selfconf.cli.why import explained
+from selfconf.api.ontologies import hierarchy_of
+from selfconf.api.reading import listed_files, read
+from selfconf.composition import TimeLimit, explained
 from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Reasoning
@@ -54,7 +53,7 @@ def peak() -> float:
 
 def bare(path: Path) -> None:
     """Every triple of the parser, and nothing done with it."""
-    for file in turtle_files([path]):
+    for file in listed_files([path]):
         for _ in ox.parse(file.read_bytes(), format=ox.RdfFormat.TURTLE, base_iri="file:///ads.ttl"):
             pass
 
@@ -62,11 +61,11 @@ def bare(path: Path) -> None:
 def loading(path: Path, trials: int) -> Found:
     """From the files to advertisements, with the time of bare parsing beside it; the two in turns."""
     before = peak()
-    number = len(read_advertisements([path]))
+    number = len(read(path))
     found = {"bytes": (peak() - before) / number}
     for _ in range(trials):
         keep(found, "parse", timed(bare, path)[0])
-        keep(found, "load", timed(read_advertisements, [path])[0])
+        keep(found, "load", timed(read, path)[0])
     return found
 
 
@@ -75,8 +74,11 @@ def configure(path: Path, trials: int) -> Found:
     found, before = Found(), peak()
     given = task("robot0")
     for trial in range(trials):
-        ads = AdvertisementIndex({})  # the last trial's are given back before the next are read
-        seconds, ads = timed(read_advertisements, [path])
+        ads: Mapping[IRI, Advertisement] = AdvertisementIndex(
+            {}
+        )  # the last trial's are given back before the next are read
+        seconds, ecology = timed(read, path)
+        ads = ecology.advertisements()
         keep(found, "load", seconds)
         if trial == 0:
             found["bytes"] = (peak() - before) / len(ads)
@@ -99,15 +101,15 @@ def refuse(composer: Composer, ads: Mapping[IRI, Advertisement]) -> None:
     """All that a refusal costs `configure`: reasons, near misses, repairs, and whether subclass mode knows better."""
     refusal = composer.compose(ads, frozenset(), None)
     assert isinstance(refusal, Refusal)
-    options = argparse.Namespace(reasoning=Reasoning.SYNTACTIC.value, ontology=[])
-    assert explained(composer, ads, refusal, options, Clock(None)).repairs
+    wider = hierarchy_of(Reasoning.SUBCLASS)
+    assert explained(composer, ads, refusal, wider, TimeLimit(None)).repairs
 
 
 def crowd(path: Path, trials: int) -> Found:
     """The search alone, in an ecology and in the same ecology among components that no role wants."""
     given, found = task("robot0"), Found()
-    few = read_advertisements([path])
-    many = AdvertisementIndex({**few, **read_advertisements([path.with_name("unwanted.ttl")])})
+    few = read(path).advertisements()
+    many = AdvertisementIndex({**few, **read(path.with_name("unwanted.ttl")).advertisements()})
     problems = {
         name: Problem(given.task, Composer(given).partition(ads))
         for name, ads in {"alone": few, "in the crowd": many}.items()

@@ -53,8 +53,8 @@ def _ports(rng: random.Random) -> tuple[list[str], list[str]]:
     return [f"Signal{rng.randrange(50)}" for _ in range(2)], [f"Signal{rng.randrange(50)}" for _ in range(2)]
 
 
-def task(robot: str) -> TaskDocument:
-    """The paper's template over the generated kinds, on a robot."""
+def template() -> str:
+    """The paper's template over the generated kinds, as Turtle."""
     edges = {"sonar": "control", "encoder": "control", "position": "control", "control": "drive"}
     roles = [
         f":{name} a sc:Role ; sh:class :Kind{kind} ; sh:property [ sh:path rob:support ; sh:in ( :robot ) ]"
@@ -62,8 +62,12 @@ def task(robot: str) -> TaskDocument:
         for kind, name in enumerate(ROLES)
     ]
     text = f"{PREFIXES}:t a sc:Template ; sc:parameter :robot ; sc:roles ( {' '.join(f':{r}' for r in ROLES)} ) .\n"
-    text += ':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .\n' + "\n".join(roles)
-    given = templates.read_task(turtle.parse(text, "scale.ttl"))
+    return text + ':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .\n' + "\n".join(roles)
+
+
+def task(robot: str) -> TaskDocument:
+    """The paper's template over the generated kinds, on a robot."""
+    given = templates.read_task(turtle.parse(template(), "scale.ttl"))
     return bindings.complete(bindings.bind(given, [("robot", f":{robot}")]))
 
 

@@ -1,4 +1,4 @@
-"""The loop of a bus that lives in real time: a queue of things to say, and timers, on one thread."""
+"""The event loop of a bus in real time: callbacks from a queue, and timers, on one thread."""
 
 from __future__ import annotations
 
@@ -8,19 +8,24 @@ import logging
 import queue
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 log = logging.getLogger(__name__)
 
 
 class Loop:
-    """Says one thing after the other, in the thread that calls `poll` or `run`."""
+    """Runs one callback after the other, in the thread that calls `poll` or `run`."""
 
     MOST_AT_ONCE = 1000
-    """How many things a call of `poll` says at most, so that `run` gets to ask whether to go on, whatever comes in."""
+    """How many callbacks a call of `poll` runs at most, so that `run` asks whether to go on even in a flood of them."""
+    FEW_TIMERS = 64
+    """How many timers are kept without asking how many of them were taken back."""
 
     def __init__(self) -> None:
         self._waiting: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._timers: list[tuple[float, int, _Timer]] = []
+        self._taken_back = 0
+        """How many entries of the heap were taken back; they stay until their time, or until they are the majority."""
         self._count = itertools.count()
         self._ended = False
 
@@ -36,37 +41,55 @@ class Loop:
         """Call `action` once, after that time; the result takes it back."""
         timer = _Timer(action)
         heapq.heappush(self._timers, (self.now() + seconds, next(self._count), timer))
-        return timer.undo
+
+        def undo() -> None:
+            if timer.action is not None:
+                timer.action = None
+                self._taken_back += 1
+                self._drop_taken_back()
+
+        return undo
 
     def poll(self, seconds: float = 0.0) -> None:
-        """Say everything there is to say; wait up to that long for something if there is nothing."""
+        """Run every callback that is due; if there is none, wait up to that long for the first."""
         deadline = self.now() + seconds
-        for said in range(self.MOST_AT_ONCE):
-            action = self._due() or self._next(None if said else deadline)
+        for already_run in range(self.MOST_AT_ONCE):
+            action = self._due() or self._next(None if already_run else deadline)
             if action is None or self._ended:
                 return
-            self._say(action)
+            self._run_callback(action)
 
     def run(self, until: Callable[[], bool]) -> None:
-        """Say everything there is to say, until `until` holds; it is asked after each round."""
+        """Run callbacks until `until` holds; it is asked after each round."""
         while not until():
             self.poll(0.5)
 
     def end(self) -> None:
-        """Say nothing any more."""
+        """Run no callback any more."""
         self._ended = True
         self._timers.clear()
+        self._taken_back = 0
 
     def _due(self) -> Callable[[], None] | None:
-        """The timer whose time has come; timers go first, or whoever says much would hold them up."""
+        """The timer whose time has come; timers go before the queue, or a flood in the queue would hold them up."""
         while self._timers and (self._timers[0][2].action is None or self._timers[0][0] <= self.now()):
-            action = heapq.heappop(self._timers)[2].action
-            if action is not None:
-                return action
+            timer = heapq.heappop(self._timers)[2]
+            if timer.action is None:
+                self._taken_back -= 1
+                continue
+            action, timer.action = timer.action, None  # taking it back from now on does nothing
+            return action
         return None
 
+    def _drop_taken_back(self) -> None:
+        """Build the heap anew once most of it was taken back: constant cost per timer, as none is dropped twice."""
+        if len(self._timers) > self.FEW_TIMERS and 2 * self._taken_back > len(self._timers):
+            self._timers = [entry for entry in self._timers if entry[2].action is not None]
+            heapq.heapify(self._timers)
+            self._taken_back = 0
+
     def _next(self, deadline: float | None) -> Callable[[], None] | None:
-        """The next thing to say, be it a timer; it is waited for until the deadline, if there is one."""
+        """The next callback, of the queue or of a timer; it is waited for until the deadline, if there is one."""
         while True:
             wait = 0.0 if deadline is None else deadline - self.now()
             if self._timers:
@@ -78,7 +101,7 @@ class Loop:
                 if action is not None or deadline is None or self.now() >= deadline:
                     return action
 
-    def _say(self, action: Callable[[], None]) -> None:
+    def _run_callback(self, action: Callable[[], None]) -> None:
         """The outermost loop: what breaks in a callback is logged, and the loop goes on."""
         try:
             action()
@@ -86,13 +109,8 @@ class Loop:
             log.exception("a callback broke; going on")
 
 
+@dataclass(slots=True, eq=False)
 class _Timer:
-    """Something to be said at a time, until it is taken back."""
+    """A callback to be run at a time; no action is left once it was run or taken back."""
 
-    __slots__ = ("action",)
-
-    def __init__(self, action: Callable[[], None]) -> None:
-        self.action: Callable[[], None] | None = action
-
-    def undo(self) -> None:
-        self.action = None
+    action: Callable[[], None] | None

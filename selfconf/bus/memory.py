@@ -1,6 +1,6 @@
 """A network in memory: one thread, a clock turned by hand, and a seed for everything that can go wrong.
 
-`Network` delivers what nodes say in the order of simulated time. Faults are policy: each message may be delayed, lost
+`Network` delivers what nodes send in the order of simulated time. Faults are policy: each message may be delayed, lost
 or doubled with given chances, and nodes may be cut off from each other. Events are never lost between nodes that
 reach each other, as on the real bus. A history is replayed by its seed.
 """
@@ -68,13 +68,13 @@ class Network:
         return bus
 
     def cut(self, left: MemoryBus, right: MemoryBus) -> None:
-        """Nothing gets through between two nodes from now on; each thinks the other's lives have ended."""
+        """Nothing gets through between two nodes from now on; to each the other's lives seem to have ended."""
         self._cut.add(frozenset((left.number, right.number)))
         left.unsee(right)
         right.unsee(left)
         left.match_all()
 
-    def mend(self, left: MemoryBus, right: MemoryBus) -> None:
+    def reconnect(self, left: MemoryBus, right: MemoryBus) -> None:
         """Two nodes reach each other again, and see each other's lives."""
         self._cut.discard(frozenset((left.number, right.number)))
         left.see(right)
@@ -93,7 +93,10 @@ class Network:
         return self._chance.random() < self.faults.loss
 
     def deliver(self, sender: MemoryBus, receiver: MemoryBus, action: Callable[[], None], sure: bool = True) -> bool:
-        """Have the receiver hear something after the network's delay; False if it is lost."""
+        """Have the receiver act on a message after the network's delay; False if it is lost.
+
+        What is `sure` is neither lost nor doubled, and keeps its order.
+        """
         if not self.reaches(sender, receiver) or (not sure and self.loses()):
             return False
 
@@ -104,7 +107,7 @@ class Network:
         times = 2 if not sure and self._chance.random() < self.faults.doubling else 1
         for _ in range(times):
             delay = self._chance.uniform(self.faults.least_delay, self.faults.most_delay)
-            if sure:  # what is never lost keeps its order
+            if sure:  # one delay for all keeps the order
                 delay = self.faults.least_delay
             self.at(self.time + delay, receiver, arrive)
         return True
@@ -193,7 +196,7 @@ class MemoryBus:
     def subscribe(
         self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL
     ) -> Callable[[], None]:
-        """Hear every sample put on a key from now on."""
+        """Receive every sample put on a key from now on."""
         undo = self._declare(self._subscribers, (key, receive))
         self.match_all()
 
@@ -208,7 +211,7 @@ class MemoryBus:
         return self._declare(self._queryables, (key, answer))
 
     def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
-        """Ask everybody who serves a key; a question or a reply that is lost shows as a time-out."""
+        """Ask all queryables of a key; a question or a reply that is lost shows as a time-out."""
         question = _Question(self, done)
         for node in self.network.nodes:
             for served, answer in list(node._queryables.values()):
@@ -219,24 +222,24 @@ class MemoryBus:
     def announce(self, key: str) -> Callable[[], None]:
         """Be alive under a key."""
         undo = self._declare(self._tokens, key)
-        self._tell_life(key, True)
+        self._publish_life(key, True)
 
         def undone() -> None:
             if key in self._tokens.values():
                 undo()
-                self._tell_life(key, False)
+                self._publish_life(key, False)
 
         return undone
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
-        """Hear of every life under a key, those that are there already first."""
+        """Follow every life under a key, those that are there already first."""
         undo = self._declare(self._watchers, (key, changed))
         number = max(self._watchers)
         for node in self.network.nodes:
             if self.network.reaches(self, node):
                 for token in list(node._tokens.values()):
                     if intersects(key, token):
-                        self.network.deliver(node, self, _said(self, number, changed, token, True))
+                        self.network.deliver(node, self, _life_notice(self, number, changed, token, True))
         return undo
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
@@ -263,30 +266,30 @@ class MemoryBus:
     def close(self) -> None:
         """Leave the network, as a crash or a clean exit does: others see the lives end."""
         for key in list(self._tokens.values()):
-            self._tell_life(key, False)
+            self._publish_life(key, False)
         self.open = False
         self._tokens.clear()
         self.match_all()
 
     def see(self, other: MemoryBus) -> None:
-        """Hear of the lives of another node."""
-        self._hear_lives(other, True)
+        """Notice the lives of another node."""
+        self._notice_lives(other, True)
 
     def unsee(self, other: MemoryBus) -> None:
-        """Hear of the end of the lives of another node."""
-        self._hear_lives(other, False)
+        """Notice the end of the lives of another node."""
+        self._notice_lives(other, False)
 
-    def _hear_lives(self, other: MemoryBus, alive: bool) -> None:
+    def _notice_lives(self, other: MemoryBus, alive: bool) -> None:
         for token in other._tokens.values():
             for number, (key, changed) in list(self._watchers.items()):
                 if intersects(key, token):
-                    self.network.at(self.network.time, self, _said(self, number, changed, token, alive))
+                    self.network.at(self.network.time, self, _life_notice(self, number, changed, token, alive))
 
-    def _tell_life(self, token: str, alive: bool) -> None:
+    def _publish_life(self, token: str, alive: bool) -> None:
         for node in self.network.nodes:
             for number, (key, changed) in list(node._watchers.items()):
                 if intersects(key, token):
-                    self.network.deliver(self, node, _said(node, number, changed, token, alive))
+                    self.network.deliver(self, node, _life_notice(node, number, changed, token, alive))
 
     def _declare(self, where: dict[int, _T], what: _T) -> Callable[[], None]:
         number = next(self._count)
@@ -298,7 +301,7 @@ class MemoryBus:
         return undo
 
     def match_all(self) -> None:
-        """Let every publisher of the network notice whether somebody subscribes."""
+        """Let every publisher of the network notice whether there is a subscriber."""
         for node in self.network.nodes:
             for declared in list(node._publishers.values()):
                 declared.match()
@@ -308,26 +311,26 @@ class MemoryBus:
             for number, (key, receive) in list(node._subscribers.items()):
                 if intersects(key, sample.key):
                     self.network.deliver(
-                        self, node, _heard(node, number, receive, sample), sure=urgency is Urgency.EVENT
+                        self, node, _arrival(node, number, receive, sample), sure=urgency is Urgency.EVENT
                     )
 
 
-def _heard(node: MemoryBus, number: int, receive: Callable[[Sample], None], sample: Sample) -> Callable[[], None]:
-    def hear() -> None:
-        if number in node._subscribers:
+def _arrival(node: MemoryBus, number: int, receive: Callable[[Sample], None], sample: Sample) -> Callable[[], None]:
+    def arrive() -> None:
+        if number in node._subscribers:  # it may have been undone while the sample was on its way
             receive(sample)
 
-    return hear
+    return arrive
 
 
-def _said(
+def _life_notice(
     node: MemoryBus, number: int, changed: Callable[[str, bool], None], token: str, alive: bool
 ) -> Callable[[], None]:
-    def say() -> None:
-        if number in node._watchers:
+    def notice() -> None:
+        if number in node._watchers:  # it may have been undone while the notice was on its way
             changed(token, alive)
 
-    return say
+    return notice
 
 
 class _Publisher:
@@ -349,7 +352,7 @@ class _Publisher:
         self._bus._publishers.pop(self._number, None)
 
     def match(self) -> None:
-        """Tell, if it has changed, whether somebody subscribes."""
+        """Call `matched` if it has changed whether there is a subscriber."""
         network = self._bus.network
         matching = any(
             network.reaches(self._bus, node) and intersects(key, self._key)
@@ -364,7 +367,7 @@ class _Publisher:
 
 
 class _Question:
-    """A question that is out: collects replies until everybody has finished, or the time is over."""
+    """A question that was asked: collects replies until all queryables have finished, or the time is over."""
 
     def __init__(self, bus: MemoryBus, done: Callable[[Replies], None]) -> None:
         self.bus, self._done = bus, done

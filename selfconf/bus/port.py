@@ -1,9 +1,12 @@
 """What the programs of selfconf ask of a network.
 
-A bus belongs to one thread: everything it has to say (samples, requests, replies, lives, timers) is said by calling
-back inside `run` or `poll`, one call after the other, in order of arrival. So a program needs no locks, and the same
-program runs in a simulated network with a clock turned by hand. The one exception: `Publisher.put` and `wake_up` may
-be called from any thread.
+A bus belongs to one thread: everything that arrives (samples, requests, replies, lives, timers) is delivered by
+callbacks inside `run` or `poll`, one after the other, in order of arrival. So a program needs no locks, and it can run
+unchanged in a simulated network with a clock turned by hand. The one exception: `Publisher.put` and `wake_up` may be
+called from any thread.
+
+A *life* is one incarnation of a program or a component: a liveliness token under a key of its own, which is there from
+`announce` until that is undone, or until the node is gone.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ class Urgency(str, Enum):
     EVENT = "event"
     """FAIL and the like: never dropped, and ahead of everything else, between nodes that reach each other.
 
-    Nothing is kept for a subscriber that was cut off: that shows as a life that ended, which says more.
+    Nothing is kept for a subscriber that was cut off: a life that has ended tells it more than a late event would.
     """
 
 
@@ -39,7 +42,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Replies:
-    """All the replies to a question; not `complete` if somebody who might have answered did not in time."""
+    """All the replies to a question; not `complete` if a queryable that was asked did not finish in time."""
 
     samples: tuple[Sample, ...] = ()
     errors: tuple[str, ...] = ()
@@ -47,7 +50,7 @@ class Replies:
 
 
 class Request(Protocol):
-    """A question to a queryable; nobody hears the end of the answer before `finish`."""
+    """A question to a queryable; the asker waits for the end of the answer until `finish`."""
 
     @property
     def key(self) -> str:
@@ -95,9 +98,9 @@ class Bus(Protocol):
 
     @property
     def link(self) -> str:
-        """By what this node reaches the network; empty if it does not. Another one than before: it was cut off.
+        """By what this node reaches the network; empty if it does not. A link that differs from before: it was cut off.
 
-        That others seem dead says nothing about them if the link is not what it was.
+        Lives that ended while the link changed may go on: this node has only lost sight of them.
         """
         ...
 
@@ -114,11 +117,11 @@ class Bus(Protocol):
         ...
 
     def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> Publisher:
-        """Declare a key to put on; `matched` hears when there begins to be, or ceases to be, a subscriber."""
+        """Declare a key to put on; `matched` is called when there begins to be, or ceases to be, a subscriber."""
         ...
 
     def subscribe(self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL) -> Undo:
-        """Hear every sample put on a key from now on."""
+        """Receive every sample put on a key from now on."""
         ...
 
     def serve(self, key: str, answer: Callable[[Request], None]) -> Undo:
@@ -126,7 +129,7 @@ class Bus(Protocol):
         ...
 
     def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
-        """Ask everybody who serves a key; `done` hears all the replies at once, when the last one has finished."""
+        """Ask all queryables of a key; `done` receives all replies at once, when the last queryable has finished."""
         ...
 
     def announce(self, key: str) -> Undo:
@@ -134,7 +137,7 @@ class Bus(Protocol):
         ...
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Undo:
-        """Hear of every life under a key: those that are there already, those that begin, those that end."""
+        """Follow every life under a key: those that are there already, those that begin, those that end."""
         ...
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
@@ -142,13 +145,13 @@ class Bus(Protocol):
         ...
 
     def poll(self, seconds: float = 0.0) -> None:
-        """Say everything there is to say; wait up to that long for something if there is nothing."""
+        """Run every callback that is due; if there is none, wait up to that long for the first."""
         ...
 
     def run(self, until: Callable[[], bool]) -> None:
-        """Say everything there is to say, until `until` holds."""
+        """Run callbacks until `until` holds."""
         ...
 
     def close(self) -> None:
-        """Leave the network: what was declared is taken back, and nothing is said any more."""
+        """Leave the network: what was declared is taken back, and no callback is run any more."""
         ...

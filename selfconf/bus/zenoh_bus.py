@@ -2,12 +2,12 @@
 
 Each site opens a *router* session that listens on one endpoint; everything else on its host is a *client* of it;
 routers connect to each other. Multicast is off, endpoints are explicit, and nothing listens anywhere but on loopback
-unless it is told to. What was measured and why it is so: `docs/protocol.md`.
+unless an endpoint says so. The topology and the keys are in `docs/protocol.md`.
 
-* Callbacks only put into the loop's queue (`indirect=False`): one that works would hold up every other message, and
-  the default kind is a thread each.
-* Questions go to all, are not consolidated (that keeps one reply per key and waits for the slowest), and end when
-  every queryable has finished, not at the time-out.
+* Callbacks of Zenoh only put into the loop's queue (`indirect=False`): work in one would hold up every other message,
+  and by default each would have a thread.
+* Questions go to all queryables and are not consolidated, for that keeps one reply per key and waits for the slowest.
+  They end when every queryable has finished, not at the time-out.
 * All control calls of one component have the same priority and are express, or they would overtake each other.
 * A lease of one second: a component that is stopped or cut off counts as dead after about that time.
 """
@@ -27,6 +27,7 @@ from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.errors import NetworkError
 
 LEASE_MS = 1000
+"""After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
 ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
 
 zenoh.init_log_from_env_or("error")
@@ -53,7 +54,7 @@ _QUALITY: dict[Urgency, dict[str, Any]] = {
 def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = ()) -> ZenohBus:
     """Open a site's session: it listens on `listen` and connects to the routers of other sites.
 
-    Port 0 means any free one; `endpoint` tells which. Raises NetworkError if the endpoint is taken.
+    Port 0 means any free one; `endpoint` is the one that was taken. Raises NetworkError if the endpoint is taken.
     """
     attempts = 5 if listen.endswith(":0") else 1
     for attempt in range(1, attempts + 1):
@@ -67,7 +68,7 @@ def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = ()) -> Z
 
 
 def _with_port(endpoint: str) -> str:
-    """The endpoint with a free port in place of port 0; Zenoh does not tell which one it would have taken."""
+    """The endpoint with a free port in place of port 0; Zenoh would not say which one it has taken."""
     head, _, port = endpoint.rpartition(":")
     if port != "0":
         return endpoint
@@ -159,19 +160,19 @@ class _Request:
             self._query = None
 
 
-class _Ear:
-    """Says on the loop's thread what a declaration hears, until that is taken back."""
+class _Receiver:
+    """Calls back on the loop's thread for what a declaration receives, until the declaration is taken back."""
 
-    def __init__(self, bus: ZenohBus, say: Callable[..., None]) -> None:
-        self._bus, self._say = bus, say
+    def __init__(self, bus: ZenohBus, call: Callable[..., None]) -> None:
+        self._bus, self._call = bus, call
         self._listening = True
 
-    def hear(self, *words: Any) -> None:
+    def received(self, *arguments: Any) -> None:
         """Called by Zenoh, on a thread of its own."""
-        self._bus.wake_up(lambda: self._say(*words) if self._listening else None)
+        self._bus.wake_up(lambda: self._call(*arguments) if self._listening else None)
 
     def open(self, declared: Any) -> Callable[[], None]:
-        """Listen to what has been declared; the result takes it back, with what has not been said yet."""
+        """Begin, for what has been declared; the result takes it back, with every callback that has not run yet."""
         undeclare = self._bus._keep(declared)
 
         def undo() -> None:
@@ -197,7 +198,7 @@ class ZenohBus(Loop):
             what = "nobody answers at" if self._client else "cannot listen on"
             if "Address already in use" in str(error):
                 raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
-            raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_clause(error)})") from None
+            raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
         self._declared: set[Any] = set()
         self._open = True
 
@@ -212,11 +213,11 @@ class ZenohBus(Loop):
         """Declare a key to put on."""
         declared = self._session.declare_publisher(key, **_QUALITY[urgency])
         if matched is not None:
-            hear = matched
+            changed = matched
 
             def listen(status: zenoh.MatchingStatus) -> None:
                 matching = bool(status.matching)
-                self.wake_up(lambda: hear(matching))
+                self.wake_up(lambda: changed(matching))
 
             declared.declare_matching_listener(Callback(listen, indirect=False))
         return _Publisher(self, declared)
@@ -224,22 +225,26 @@ class ZenohBus(Loop):
     def subscribe(
         self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL
     ) -> Callable[[], None]:
-        """Hear every sample put on a key from now on."""
-        ear = _Ear(self, receive)
-        return ear.open(
-            self._session.declare_subscriber(key, Callback(lambda sample: ear.hear(_sample(sample)), indirect=False))
+        """Receive every sample put on a key from now on."""
+        receiver = _Receiver(self, receive)
+        return receiver.open(
+            self._session.declare_subscriber(
+                key, Callback(lambda sample: receiver.received(_sample(sample)), indirect=False)
+            )
         )
 
     def serve(self, key: str, answer: Callable[[_Request], None]) -> Callable[[], None]:
         """Answer questions to a key."""
 
-        ear = _Ear(self, answer)
-        return ear.open(
-            self._session.declare_queryable(key, Callback(lambda query: ear.hear(_Request(query)), indirect=False))
+        receiver = _Receiver(self, answer)
+        return receiver.open(
+            self._session.declare_queryable(
+                key, Callback(lambda query: receiver.received(_Request(query)), indirect=False)
+            )
         )
 
     def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
-        """Ask everybody who serves a key."""
+        """Ask all queryables of a key."""
         samples: list[Sample] = []
         errors: list[str] = []
 
@@ -251,8 +256,8 @@ class ZenohBus(Loop):
 
         def end() -> None:
             late = "Timeout" in errors
-            said = Replies(tuple(samples), tuple(e for e in errors if e != "Timeout"), not late)
-            self.wake_up(lambda: done(said))
+            replies = Replies(tuple(samples), tuple(e for e in errors if e != "Timeout"), not late)
+            self.wake_up(lambda: done(replies))
 
         self._session.get(
             key,
@@ -271,14 +276,14 @@ class ZenohBus(Loop):
         return self._keep(self._session.liveliness().declare_token(key))
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
-        """Hear of every life under a key, those that are there already first."""
+        """Follow every life under a key, those that are there already first."""
 
-        ear = _Ear(self, changed)
+        receiver = _Receiver(self, changed)
 
         def listen(sample: zenoh.Sample) -> None:
-            ear.hear(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+            receiver.received(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
 
-        return ear.open(
+        return receiver.open(
             self._session.liveliness().declare_subscriber(key, Callback(listen, indirect=False), history=True)
         )
 
@@ -321,5 +326,5 @@ def _sample(sample: zenoh.Sample) -> Sample:
     return Sample(str(sample.key_expr), bytes(sample.payload), attachment)
 
 
-def _first_clause(error: Exception) -> str:
+def _first_sentence(error: Exception) -> str:
     return str(error).split(" at ")[0][:120]

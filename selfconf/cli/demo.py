@@ -12,8 +12,6 @@ from pathlib import Path
 
 from selfconf.errors import AuthorError, InstallationError
 
-NAME = "demo"
-HELP = "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over"
 EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2"""
 ANSWERS = 5.0
 """Seconds within which a display on another machine must answer."""
@@ -64,7 +62,9 @@ def run(given: argparse.Namespace) -> int:
         raise AuthorError(f"cannot write in {given.out}: {error.strerror}; choose another folder by --out") from None
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))
-    code: int = importlib.import_module("sim.demo").run(given)
+    demo = importlib.import_module("sim.demo")
+    options = demo.DemoOptions(given.out, given.scene, given.seed, given.speed, given.gui, given.pictures, given.policy)
+    code: int = demo.run(options)
     return code
 
 

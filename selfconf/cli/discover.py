@@ -6,23 +6,16 @@ import argparse
 import json
 from typing import NamedTuple
 
-from selfconf.cli import words
-from selfconf.cli.live import add_connection_arguments, connected, discover
-from selfconf.discovery import EcologyView, FoundAdvertisement
-from selfconf.model.term import IRI
-from selfconf.rdf.sparql import QUERY_PREFIXES
-from selfconf.rdf.vocabulary import SC
+from selfconf.cli.options import add_connection_arguments, complain_of, joined
 
-NAME = "discover"
-HELP = "show what is out there: every advertised component, its site, and whether it lives"
 EXAMPLE = """  selfconf discover --format json"""
 
 
-class Row(NamedTuple):
+class DiscoveredComponent(NamedTuple):
     """A component that is out there."""
 
-    component: IRI
-    types: list[IRI]
+    component: str
+    types: list[str]
     site: str
     state: str
 
@@ -35,35 +28,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once the ecology has answered."""
-    with connected(given) as ecology:
-        discovery = discover(ecology)
+    from selfconf.rdf.sparql import QUERY_PREFIXES
+    from selfconf.rdf.vocabulary import SC
+    from selfconf.render import Names, count, table
+
+    with joined(given) as ecology:
+        discovery = ecology.discover()
+        complain_of(ecology)
         rows = [
-            Row(
+            DiscoveredComponent(
                 component,
                 sorted(found.advertisement.profile.types - {SC.Component}),
                 found.site,
-                state(ecology, component, found),
+                ecology.state(component),
             )
             for component, found in sorted(discovery.found.items())
         ]
     if given.format == "json":
-        body = {
-            "ecology": ecology.keys.ecology,
-            "components": [row._asdict() for row in rows],
-            "sites": discovery.sites,
-        }
+        body = {"ecology": ecology.name, "components": [row._asdict() for row in rows], "sites": discovery.sites}
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
-    names = words.Names(QUERY_PREFIXES)
-    cells = [[str(row.component), ", ".join(names(kind) for kind in row.types), row.site, row.state] for row in rows]
-    print(words.table(["component", "types", "site", "state"], cells))
-    where = f"{words.count(len(discovery.sites), 'site')} of ecology {ecology.keys.ecology}"
-    print(f"{words.count(len(rows), 'component')} at {where}")
+    names = Names(QUERY_PREFIXES)
+    kinds = [", ".join(names(kind) for kind in found.types) for found in rows]  # type: ignore[arg-type]  # they are IRIs
+    cells = [[row.component, kind, row.site, row.state] for row, kind in zip(rows, kinds, strict=True)]
+    print(table(["component", "types", "site", "state"], cells))
+    print(f"{count(len(rows), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
     return 0
-
-
-def state(ecology: EcologyView, component: IRI, found: FoundAdvertisement) -> str:
-    """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but nobody runs it."""
-    if ecology.life(component) is not None:
-        return "alive"
-    return "dormant" if found.startable else "absent"

@@ -10,14 +10,27 @@ import importlib
 import logging
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from types import ModuleType
 from typing import NoReturn
 
 from selfconf.cli.terminal import for_programs, guard, show, silence
-from selfconf.errors import SelfconfError, reason
+from selfconf.errors import SelfconfError, SiteMisusedError, reason
 
-COMMANDS = ("new", "validate", "partition", "configure", "query", "site", "discover", "run", "status", "stop", "demo")
+COMMANDS = {
+    "new": "write the first files of a component, a template or an ontology, to be changed to what you want",
+    "validate": "check advertisements, templates, tasks and ontologies",
+    "partition": "show who could play each role of a template, and what keeps the others out",
+    "configure": "compute a configuration for a template, or say why there is none; changes nothing",
+    "query": "ask the ecology something in SPARQL, over files, at an endpoint, or over everything that is alive",
+    "site": "serve the advertisements of this host to an ecology, and watch their files",
+    "discover": "show what is out there: every advertised component, its site, and whether it lives",
+    "run": "configure, deploy, monitor and configure again, until Ctrl-C takes everything down",
+    "status": "show what is deployed, by whom, and since when",
+    "stop": "take down what is deployed; components are turned off, not ended",
+    "demo": "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over",
+}
+"""Each command with what it does. Its module, `selfconf.cli.NAME`, is loaded when it is asked for."""
 INTERRUPTED = 130
 FOR_PEOPLE = ("text", "table")
 """The formats that no program reads."""
@@ -31,17 +44,27 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}; see `{self.prog} --help`\n")
 
 
+class Version(argparse.Action):
+    """`--version`, which looks the version up only when it is asked for: that takes as long as all other arguments."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print the version and end."""
+        print(f"selfconf {_version()}")
+        parser.exit()
+
+
 def command(name: str) -> ModuleType:
-    """The module of a command: NAME, HELP, EXAMPLE, add_arguments, run."""
+    """The module of a command: EXAMPLE, add_arguments, run."""
     return importlib.import_module(f"selfconf.cli.{name}")
 
 
-def parser_of(name: str, module: ModuleType, subparsers: argparse._SubParsersAction[Parser]) -> None:
-    """Add the parser of one command."""
+def command_parser(name: str, subparsers: argparse._SubParsersAction[Parser]) -> None:
+    """Add the parser of one command with its options."""
+    module, does = command(name), COMMANDS[name]
     parser = subparsers.add_parser(
         name,
-        help=module.HELP,
-        description=module.HELP[0].upper() + module.HELP[1:] + ".",
+        help=does,
+        description=f"{does[0].upper()}{does[1:]}.",
         epilog=f"example:\n{module.EXAMPLE}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
@@ -51,8 +74,8 @@ def parser_of(name: str, module: ModuleType, subparsers: argparse._SubParsersAct
     parser.set_defaults(run=module.run, misused=parser.error)
 
 
-def parser(names: Sequence[str] = COMMANDS) -> Parser:
-    """The parser of the command line, or of some commands of it: those that are not asked for are not loaded."""
+def parser(names: Collection[str] = tuple(COMMANDS)) -> Parser:
+    """The parser of the command line; commands that are not among the names are listed, but not loaded."""
     top = Parser(
         prog="selfconf",
         description="Robots, sensors and home devices that wire themselves.",
@@ -61,10 +84,13 @@ def parser(names: Sequence[str] = COMMANDS) -> Parser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    top.add_argument("--version", action="version", version=f"selfconf {_version()}")
+    top.add_argument("--version", action=Version, nargs=0, help="show the version and exit")
     subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for name in names:
-        parser_of(name, command(name), subparsers)
+    for name, does in COMMANDS.items():
+        if name in names:
+            command_parser(name, subparsers)
+        else:
+            subparsers.add_parser(name, help=does)
     return top
 
 
@@ -72,9 +98,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
     guard()
     typed = sys.argv[1:] if arguments is None else arguments
-    given, unknown = parser([name for name in typed[:1] if name in COMMANDS] or COMMANDS).parse_known_args(typed)
+    given, unknown = parser(typed[:1]).parse_known_args(typed)
     if unknown:
-        given.misused(f"unrecognized arguments: {' '.join(unknown)}")
+        given.misused(f"unrecognized arguments: {' '.join(unknown)}{_advice(unknown)}")
     if getattr(given, "format", "text") not in FOR_PEOPLE:
         for_programs()
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)
@@ -83,6 +109,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = given.run(given)
         sys.stdout.flush()
         return code
+    except SiteMisusedError:
+        return 2  # its site has said why, to the same reader
     except SelfconfError as error:
         if given.debug:
             traceback.print_exc()
@@ -100,6 +128,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         show(f"selfconf {given.command}: interrupted", sys.stderr)
         return INTERRUPTED
+
+
+def _advice(unknown: Sequence[str]) -> str:
+    """What to try where words are left over that are no options."""
+    left_over = all(not word.startswith("-") for word in unknown)
+    return "; an option takes one value, repeat it for each: --ads A --ads B" if left_over else ""
 
 
 def _version() -> str:

@@ -10,12 +10,11 @@ from pathlib import Path
 from selfconf.cli.scaffolds import SCAFFOLDS
 from selfconf.errors import AuthorError
 
-NAME = "new"
-HELP = "write the first files of a component, a template or an ontology, to be changed to what you want"
 EXAMPLE = """  selfconf new component kitchen-thermometer
   selfconf new template watch-the-temperature
   selfconf configure watch-the-temperature.ttl --ads ."""
 
+__NAMESPACE = re.compile(r"[a-z][a-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*[#/:]", re.IGNORECASE)
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:[-_][A-Za-z0-9]+)*")
 _NAMESPACE = re.compile(r"[a-z][a-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*[#/:]", re.IGNORECASE)
 _HOME = "https://example.org/my-home#"

@@ -4,25 +4,25 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator
+from contextlib import closing
+from typing import TYPE_CHECKING, Any
 
-from selfconf.cli import words
-from selfconf.cli.endpoint import add_endpoint_argument
-from selfconf.cli.inputs import add_task_arguments, read_hierarchy, read_task
-from selfconf.cli.live import add_connection_arguments
-from selfconf.cli.sources import read_ecology
+from selfconf.cli.options import (
+    add_connection_arguments,
+    add_endpoint_argument,
+    add_task_arguments,
+    complain_of,
+    ecology_of,
+    task_of,
+)
 from selfconf.cli.terminal import show
-from selfconf.model.partition import Candidate
-from selfconf.model.template import Role
-from selfconf.rdf import role_export
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import CompiledRole, Exclusion, Partitioner, exclusions
-from selfconf.rdf.tasks import TaskDocument
 
-NAME = "partition"
-HELP = "show who could play each role of a template, and what keeps the others out"
+if TYPE_CHECKING:
+    from selfconf.api.answer import Inquiry
+    from selfconf.api.partition_table import PartitionTable, RolePartition
+    from selfconf.render import Names
+
 EXAMPLE = """  selfconf partition examples/navigate.ttl --ads examples/peis-home --bind robot=:Astrid --bind goal=x
   selfconf partition examples/navigate.ttl --ads examples/peis-home --bind robot=:Astrid --bind goal=x --show sparql"""
 SHOWN = 8
@@ -42,74 +42,63 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 if every role has as many candidates as it asks for, else 1."""
-    task, seconds = read_task(given), dict[str, float]()
-    hierarchy = read_hierarchy(given)
-    partitioner = Partitioner(task, hierarchy)
-    began = time.perf_counter()
-    ecology = list(read_ecology(given, partitioner).values())
-    seconds["load"] = time.perf_counter() - began
-    roles = task.task.template.roles
+    from selfconf.api.answer import Inquiry, Method
+    from selfconf.api.partition_table import PartitionTable
+
+    task = task_of(given)
+    with closing(ecology_of(given)) as ecology:
+        inquiry = Inquiry(task, ecology, Method.of(reasoning=given.reasoning, ontologies=given.ontology))
+        if given.ads is None:
+            complain_of(ecology)
     if given.show:
-        show(_spelt(task, partitioner, ecology, given.show))
+        show(_exported(inquiry, given.show))
         return 0
-    began = time.perf_counter()
-    partition = partitioner.partition(ecology)
-    seconds["partition"] = time.perf_counter() - began
-    rows = [
-        (role, candidates, exclusions(partitioner, compiled, {c.profile.component for c in candidates}, ecology))
-        for role, compiled, candidates in zip(roles, partitioner.roles, partition.candidates, strict=True)
-    ]
+    found = PartitionTable(inquiry)
     if given.format == "json":
-        show(json.dumps(_body(task, rows, seconds), indent=2, ensure_ascii=False))
+        show(json.dumps(_body(found), indent=2, ensure_ascii=False))
     else:
-        names = words.Names(task.document.prefixes)
-        show("\n".join(line for row in rows for line in _lines(*row, names)))
-    return 0 if all(len(candidates) >= role.minimum for role, candidates, _ in rows) else 1
+        show("\n".join(line for one in found.roles for line in _lines(one, found.names)))
+    return 0 if found.sufficient else 1
 
 
-Row = tuple[Role, Sequence[Candidate], list[Exclusion]]
-
-
-def _spelt(task: TaskDocument, partitioner: Partitioner, ecology: Sequence[Advertisement], how: str) -> str:
+def _exported(inquiry: Inquiry, how: str) -> str:
     """Every role as a document or query of its own, under its name as a comment."""
+    from selfconf.rdf import role_export
 
-    def spelt(role: CompiledRole) -> str:
-        if how == "shape":
-            return role_export.shape(task, role, partitioner.hierarchy)
-        return role_export.query(role, partitioner.hierarchy, ecology)
-
-    return "\n\n".join(f"# {role.iri}\n{spelt(role)}" for role in partitioner.roles)
-
-
-def _lines(role: Role, candidates: Sequence[Candidate], kept_out: Sequence[Exclusion], names: words.Names) -> list[str]:
-    lines = [f"{names(role.iri)}  {len(candidates) or 'nobody is'} eligible"]
-    lines += [f"  {number}. {names(c.profile.component)}" for number, c in enumerate(candidates, 1)]
-    if kept_out:
-        lines.append("  kept out")
-        lines += [f"    {names(e.component)}: {', '.join(map(str, e.obstacles))}" for e in kept_out[:SHOWN]]
-    if len(kept_out) > SHOWN:
-        lines.append(f"    and {len(kept_out) - SHOWN} more; --format json has them all")
-    return lines
+    partitioner = inquiry.composer.partitioner
+    texts = {
+        "shape": lambda role: role_export.shape(inquiry.task.document, role, partitioner.hierarchy),
+        "sparql": lambda role: role_export.query(role, partitioner.hierarchy, inquiry.ecology.values()),
+    }
+    return "\n\n".join(f"# {role.iri}\n{texts[how](role)}" for role in partitioner.roles)
 
 
-def _body(task: TaskDocument, rows: Sequence[Row], seconds: Mapping[str, float]) -> dict[str, Any]:
+def _lines(one: RolePartition, names: Names) -> Iterator[str]:
+    yield f"{names(one.role.iri)}  {len(one.eligible) or 'nobody is'} eligible"
+    yield from (f"  {number}. {names(component)}" for number, component in enumerate(one.eligible, 1))
+    if one.excluded:
+        yield "  kept out"
+        yield from (f"    {names(e.component)}: {', '.join(map(str, e.obstacles))}" for e in one.excluded[:SHOWN])
+    if len(one.excluded) > SHOWN:
+        yield f"    and {len(one.excluded) - SHOWN} more; --format json has them all"
+
+
+def _body(found: PartitionTable) -> dict[str, Any]:
+    from selfconf.render import value_body
+
     return {
-        "template": task.task.template.iri,
-        "bindings": {name: words.plain(value) for name, value in task.task.by_name().items()},
+        "template": found.inquiry.task.iri,
+        "bindings": {name: value_body(value) for name, value in found.inquiry.task.bindings.items()},
         "roles": [
             {
-                "role": role.iri,
-                "eligible": [candidate.profile.component for candidate in candidates],
+                "role": one.role.iri,
+                "eligible": list(one.eligible),
                 "excluded": [
-                    {
-                        "component": e.component,
-                        "of_its_class": e.akin,
-                        "obstacles": [str(obstacle) for obstacle in e.obstacles],
-                    }
-                    for e in kept_out
+                    {"component": e.component, "of_its_class": e.akin, "obstacles": list(map(str, e.obstacles))}
+                    for e in one.excluded
                 ],
             }
-            for role, candidates, kept_out in rows
+            for one in found.roles
         ],
-        "seconds": {part: round(value, 6) for part, value in seconds.items()},
+        "seconds": {part: round(value, 6) for part, value in found.inquiry.seconds.items()},
     }

@@ -3,22 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import os
-import secrets
 from pathlib import Path
 
-from selfconf import rendezvous
-from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, ZenohBus, router
-from selfconf.cli import words
-from selfconf.cli.inputs import complain, existing
-from selfconf.errors import NetworkError
-from selfconf.protocol.keys import checked_name
-from selfconf.rendezvous import LocalSite
-from selfconf.site import Shelf, Site
-from selfconf.termination import Termination
+from selfconf.cli.terminal import complain
 
-NAME = "site"
-HELP = "serve the advertisements of this host to an ecology, and watch their files"
 EXAMPLE = """  selfconf site examples/peis-home --ecology home"""
 
 
@@ -50,32 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT or SIGTERM; then 0."""
-    for path in given.paths:
-        existing(path)
-    checked_name(given.ecology, "an ecology")
-    name = checked_name(given.name or f"s{secrets.token_hex(3)}", "a site")
-    shelf = Shelf(given.paths, complain)
-    with rendezvous.turn():
-        others = [meeting.endpoint for meeting in rendezvous.local_sites(given.ecology)]
-        bus = _router(given.listen, given.ecology, list(dict.fromkeys([*given.connect, *others])))
-        ending = Termination(bus)
-        environment = {"SELFCONF_ECOLOGY": given.ecology, "SELFCONF_CONNECT": bus.endpoint}
-        site = Site(bus, given.ecology, name, shelf, environment)
-        meeting = rendezvous.announce(LocalSite(given.ecology, name, bus.endpoint, os.getpid()))
-    count = len(site.shelf.advertisements)
-    complain(f"site {name} of ecology {given.ecology} serves {words.count(count, 'advertisement')} on {bus.endpoint}")
-    try:
-        bus.run(ending)
-    finally:
-        rendezvous.leave(meeting)
-        site.close()
+    from selfconf.api.site_program import serve
+
+    serve(given.paths, given.ecology, given.name, given.listen, given.connect, complain)
     return 0
-
-
-def _router(listen: str | None, ecology: str, connect: list[str]) -> ZenohBus:
-    if listen is not None:
-        return router(listen, connect)
-    try:
-        return router(rendezvous.usual_endpoint(ecology), connect)
-    except NetworkError:  # somebody else has that port
-        return router(ANYWHERE_ON_LOOPBACK, connect)

@@ -5,18 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from typing import TYPE_CHECKING
 
-from selfconf.cli import words
-from selfconf.cli.inputs import complain
-from selfconf.cli.live import add_connection_arguments, ask, connected
-from selfconf.discovery import EcologyView
-from selfconf.errors import PeerError
-from selfconf.protocol.codec import decode
-from selfconf.protocol.messages import Status
-from selfconf.rdf.sparql import QUERY_PREFIXES
+from selfconf.cli.options import add_connection_arguments, complain_of, joined
 
-NAME = "status"
-HELP = "show what is deployed, by whom, and since when"
+if TYPE_CHECKING:
+    from selfconf.protocol.messages import Status
+
 EXAMPLE = """  selfconf status --format json"""
 
 
@@ -28,14 +23,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once the ecology has answered, also if nothing is deployed."""
-    with connected(given) as ecology:
-        found = statuses(ecology)
+    from selfconf.rdf.sparql import QUERY_PREFIXES
+    from selfconf.render import Names
+
+    with joined(given) as ecology:
+        found = ecology.tasks
+        complain_of(ecology)
     if given.format == "json":
         print(json.dumps([_body(status) for status in found], indent=2))
         return 0
     if not found:
-        print(f"nothing is deployed in ecology {ecology.keys.ecology}")
-    names = words.Names(QUERY_PREFIXES)
+        print(f"nothing is deployed in ecology {ecology.name}")
+    names = Names(QUERY_PREFIXES)
     for status in found:
         seconds = max(0.0, time.time() - status.since)
         print(f"{names(status.template)}: {status.phase} for {seconds:.0f} s, epoch {status.epoch}")
@@ -45,22 +44,6 @@ def run(given: argparse.Namespace) -> int:
         for lost, cause in status.lost.items():
             print(f"  lost: {lost} ({cause})")
     return 0
-
-
-def statuses(ecology: EcologyView) -> list[Status]:
-    """What each configurator of the ecology says of itself, sorted by name."""
-    found: list[Status] = []
-    for sample in ask(ecology, ecology.keys.configurator_call("*", "status")).samples:
-        try:
-            status = decode(sample.payload, Status)
-        except PeerError as error:
-            complain(f"left out an answer: {error}")
-            continue
-        if sample.key == ecology.keys.configurator_call(status.configurator, "status"):
-            found.append(status)
-        else:
-            complain(f"left out an answer on {sample.key}: it speaks of another configurator")
-    return sorted(found, key=lambda status: status.configurator)
 
 
 def _body(status: Status) -> dict[str, object]:

@@ -82,6 +82,11 @@ def show(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
         silence(stream)
 
 
+def complain(sentence: str) -> None:
+    """Say something on stderr that is not a result."""
+    show(sentence, sys.stderr)
+
+
 def silence(stream: TextIO) -> None:
     """Let what is still to be written to a stream come to nothing."""
     nowhere = os.open(os.devnull, os.O_WRONLY)

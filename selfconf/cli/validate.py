@@ -6,22 +6,17 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable, Iterator
-from pathlib import Path
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from selfconf import files, library
-from selfconf.cli.close_looks import Remembered, shared
-from selfconf.cli.reports import FORMATS, text
 from selfconf.cli.terminal import show
 from selfconf.errors import AuthorError
-from selfconf.model.codes import BY_CODE, CODES, Code
-from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
-from selfconf.rdf.validation import CheckEach, SourceText, validate
 
-LARGEST = 64 << 20
-"""A file of more bytes is not read."""
-NAME = "validate"
-HELP = "check advertisements, templates, tasks and ontologies"
+if TYPE_CHECKING:
+    from selfconf.model.codes import Code
+
+FORMATS = ("text", "json", "github", "sarif", "junit")
+# Those of `selfconf.cli.reports`, which is not loaded to parse arguments; a test compares them.
 EXAMPLE = """  selfconf validate examples/navigate.ttl examples/peis-home --ontology ontology/peis-home.ttl"""
 
 
@@ -35,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--format",
-        choices=tuple(FORMATS),
+        choices=FORMATS,
         default="text",
         help="how problems are written (default: %(default)s)",
     )
@@ -43,8 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--ontology",
         action="append",
         default=[],
-        metavar="FILE",
-        help="an ontology whose terms the files use, besides those of selfconf; may be repeated",
+        metavar="PATH",
+        help="an ontology whose terms the files use, besides those of selfconf, or a folder of them; repeatable",
     )
     parser.add_argument(
         "--cache",
@@ -65,9 +60,12 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if not arguments.paths:
         raise AuthorError("there is nothing to validate; name a Turtle file or a folder")
-    result = check(arguments.paths, arguments.ontology, _remembered(arguments.paths) if arguments.cache else shared)
+    from selfconf.api.validation import validate
+    from selfconf.cli.reports import RENDERERS, text
+
+    result = validate(arguments.paths, ontologies=arguments.ontology, cache=arguments.cache)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
-    show(text.illustrate(result) if illustrated else FORMATS[arguments.format](result), end="")
+    show(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
     show(text.summary(result), sys.stderr)
     if result.unreadable:
         names = ", ".join(sorted(result.unreadable))
@@ -76,34 +74,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 0 if result.conforms else 1
 
 
-def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach = map) -> Report:
-    """Validate files and folders against the shapes that selfconf brings along."""
-    sources: dict[Path, SourceText] = {}
-    found: list[Diagnostic] = []
-    for path in paths:
-        names = list(_files(path))
-        if not names:
-            message = "There is no Turtle file (*.ttl) in this folder: nothing to validate."
-            found.append(Diagnostic(path, 1, 1, "SC-S04", message, Severity.WARNING))
-        for name in names:
-            try:
-                if name != "-" and Path(name).stat().st_size > LARGEST:
-                    message = f"This file is larger than {LARGEST >> 20} MiB: that cannot be meant."
-                    found.append(Diagnostic(name, 1, 1, "SC-S05", message))
-                else:
-                    sources.setdefault(Path(name).resolve(), _read(name))
-            except OSError as error:
-                message = f"This file cannot be read: {error.strerror or error}."
-                found.append(Diagnostic(name, 1, 1, "SC-S03", message))
-    shapes = [_load(path) for path in library.shapes()]
-    known = [*map(_load, library.ontologies()), *_ontologies(ontologies)]
-    result = validate(sources.values(), shapes, known, each)
-    concerned = {*result.files, *(problem.file for problem in found if problem.code in UNREADABLE)}
-    return report(sorted(concerned), (*result.diagnostics, *found))
-
-
 def explanation(code: str) -> str:
     """What a code means, as text; raises AuthorError if there is no such code."""
+    from selfconf.model.codes import BY_CODE, CODES
+
     entry = BY_CODE.get(code.upper())
     if entry is None:
         raise AuthorError(f"there is no code {code}; the codes are {', '.join(known.code for known in CODES)}")
@@ -113,8 +87,8 @@ def explanation(code: str) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def reference(codes: Iterable[Code] = CODES) -> str:
-    """The page of the manual that lists all codes, in Markdown."""
+def reference(codes: Iterable[Code]) -> str:
+    """The page of the manual that lists codes, in Markdown."""
     sections = ["# Codes of `selfconf validate`\n\nGenerated from `selfconf/model/codes.py`.\n"]
     for entry in codes:
         lines = [f"## {entry.code}: {entry.title}\n", f"*{entry.severity.value}* · {entry.why}\n"]
@@ -129,38 +103,5 @@ def reference(codes: Iterable[Code] = CODES) -> str:
     return "\n".join(sections)
 
 
-def _remembered(paths: Iterable[str]) -> CheckEach:
-    from selfconf.entailment import cache_folder  # loads rdflib, which a run without a memory may not need
-
-    return Remembered(cache_folder(), paths)
-
-
 def _indented(snippet: str) -> str:
     return "\n".join(f"    {line}" for line in snippet.splitlines())
-
-
-def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
-    for name in (name for path in given for name in _files(path)):
-        try:
-            yield _read(name)
-        except OSError as error:
-            raise AuthorError(f"the ontology cannot be read: {error.strerror or error}", file=name) from None
-
-
-def _files(given: str) -> Iterator[str]:
-    """The files that a path stands for: those of a folder by name, or itself."""
-    path = Path(given)
-    if given == "-" or not path.is_dir():
-        yield given
-    else:
-        yield from map(str, files.within(path))
-
-
-def _read(name: str) -> SourceText:
-    if name == "-":
-        return SourceText("<stdin>", sys.stdin.buffer.read())
-    return _load(Path(name))
-
-
-def _load(path: Path) -> SourceText:
-    return SourceText(str(path), path.read_bytes(), path.resolve().as_uri())

@@ -1,7 +1,7 @@
 """The calls that a configurator makes to components: activate and connect, set, turn off, wake, stand by.
 
-A time-out is not an outcome: after one the component is asked for its actual state, and then it is decided. A call
-whose answer shows that it never arrived is made again.
+A time-out is not an outcome: after one the component is asked for its actual state, and that decides. A call is made
+again if the state shows that it never arrived.
 """
 
 from __future__ import annotations
@@ -13,31 +13,44 @@ from selfconf.bus.port import Replies, Undo
 from selfconf.configurator import machine
 from selfconf.configurator.effects import ApplyTo, ReleaseFrom, SetOn
 from selfconf.configurator.events import Answered, Call, Event
-from selfconf.configurator.machine import State
-from selfconf.deployment.request import Standby, Tell
+from selfconf.configurator.state import State
+from selfconf.deployment.request import Report, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.run_event import (
+    ActivationSent,
+    CallDeclined,
+    ComponentActivated,
+    ComponentReleased,
+    ComponentUnreachable,
+    ComponentWoken,
+    InputConnected,
+    ParametersSet,
+)
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Apply, CallAnswer, Release, SetParameters, Verdict, Wake, Wire
 
 log = logging.getLogger(__name__)
 
+_DONE = {Call.APPLY: ComponentActivated, Call.SET: ParametersSet, Call.RELEASE: ComponentReleased}
+"""The event of a call that was obeyed."""
+
 CALL = 2.0
-"""How long a component may take to answer a call, before it is asked for its state."""
+"""Seconds that a component may take to answer a call before it is asked for its state."""
 STARTING = 8.0
-"""How long a component that lives, but says nothing, may take over what it was told: it may be in `started`."""
+"""Seconds that a component that lives, but does not answer, may take to obey a call: it may be in `started`."""
 PAUSE = 0.1
-"""How long after a question for its state that nobody has answered a component is asked again."""
+"""Seconds after which a component that has not answered a question for its state is asked again."""
 CALL_ATTEMPTS = 3
-"""How often a call is made to a component that answers, but has not obeyed: a message may have been lost."""
+"""How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
 WAKING = 15.0
-"""How long a component that a site starts may take to live."""
+"""Seconds that a component that a site starts may take to live."""
 
 
 class Calls:
-    """Makes the calls of one configurator, and tells its machine what becomes of them."""
+    """Makes the calls of one configurator, and feeds its machine with what becomes of them."""
 
     def __init__(
         self,
@@ -45,16 +58,16 @@ class Calls:
         supervisor: str,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        tell: Tell,
+        report: Report,
     ) -> None:
         self.bus, self.ecology, self.keys = ecology.bus, ecology, ecology.keys
-        self.supervisor, self._state, self._step, self._tell = supervisor, state, step, tell
+        self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
         self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
-        """The connections that each component was told to have, in which life, so that only new ones are told of."""
+        """The connections that each component was given, in which life, so that only new ones are reported."""
 
     def woken(self, component: IRI) -> None:
-        """A component lives; if it was waited for, it hears what it was woken for."""
+        """A component lives; if it was started for an apply, the apply goes out now."""
         waiting = self._waking.pop(component, None)
         if waiting is not None:
             waiting[1]()
@@ -81,19 +94,19 @@ class Calls:
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         known, before = self._connections.get(effect.component, (life, frozenset()))
         for c in sorted(connections - before if known == life else connections):
-            self._tell("connecting", source=c.source, output=c.output, sink=c.sink, input=c.input)
+            self._report(InputConnected(c.source, c.output, c.sink, c.input))
         self._connections[effect.component] = life, frozenset(connections)
-        self._tell("activating", component=effect.component)
+        self._report(ActivationSent(effect.component))
 
     def forget_connections(self) -> None:
-        """Components may have turned themselves off: whoever is applied to is connected anew."""
+        """Components may have turned themselves off: all that is applied to from now on is connected anew."""
         self._connections.clear()
 
     def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
         return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}
 
     def stand_by(self, configuration: Configuration, standby: Standby) -> None:
-        """Tell the inputs what may come next, now that there is time for it; nobody waits for the answers."""
+        """Let the inputs listen to what may come next, now that there is time; the answers are not waited for."""
         wires = machine.wiring(configuration)
         for component, outputs in standby.items():
             inputs, spare = self._with_promises(wires[component]), self._with_promises(outputs)
@@ -101,13 +114,13 @@ class Calls:
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
 
     def _promised(self, wire: Wire) -> Wire:
-        """The wire with the longest pause that the output's advertisement promises."""
+        """A wire with the longest pause that the output's advertisement promises."""
         found = self.ecology.discovery.found.get(wire.component)
         output = found.advertisement.profile.output(wire.output) if found else None
         return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
 
     def release(self, effect: ReleaseFrom) -> None:
-        """Turn a component off; one that lives but does not answer is told again as long as it is owed that."""
+        """Turn a component off; one that lives but does not obey is called again as long as it is owed the release."""
         self._connections.pop(effect.component, None)
         if self.ecology.life(effect.component) is None:
             off = Answered(effect.component, Call.RELEASE, effect.epoch, None)
@@ -123,19 +136,20 @@ class Calls:
 
     def _later_answer(self, effect: ApplyTo, detail: str) -> None:
         answer = Answered(effect.component, Call.APPLY, effect.epoch, None, detail=detail)
-        self._tell("unreachable", component=effect.component, call=Call.APPLY.value, detail=detail)
+        self._report(ComponentUnreachable(effect.component, Call.APPLY.value, detail))
         self.bus.wake_up(lambda: self._step(answer))
 
     def _wake(self, effect: ApplyTo, found: FoundAdvertisement) -> None:
         """Have the site start the process; the apply goes out when the component lives."""
-        self._tell("waking", component=effect.component, site=found.site)
+        self._report(ComponentWoken(effect.component, found.site))
 
         def give_up(detail: str) -> None:
             waiting = self._waking.get(effect.component)
             if waiting is not None and waiting[0] is effect:
                 del self._waking[effect.component]
                 waiting[1]()
-                self._later_answer(effect, detail)
+                if effect.epoch == self._state().epoch:
+                    self._later_answer(effect, detail)
 
         def answered(replies: Replies) -> None:
             if not replies.samples:
@@ -153,7 +167,7 @@ class Calls:
         def answered(replies: Replies) -> None:
             answer = _answer_in(replies)
             if answer is not None:
-                self._heard_answer(component, call, message.epoch, answer)
+                self._answered(component, call, message.epoch, answer)
             elif replies.errors:
                 detail = replies.errors[0]
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
@@ -161,7 +175,7 @@ class Calls:
                 inspect()
 
         def inspect() -> None:
-            """A time-out is not an outcome: look at the actual state, then decide."""
+            """A time-out is not an outcome: ask for the actual state, then decide."""
             self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
 
         def seen(replies: Replies) -> None:
@@ -170,19 +184,19 @@ class Calls:
             obeyed = answer is not None and answer.epoch == message.epoch
             silent = not replies.samples and not replies.errors
             if obeyed and answer is not None and call is not Call.SET and answer.active == (call is Call.APPLY):
-                self._heard_answer(component, call, message.epoch, answer)
+                self._answered(component, call, message.epoch, answer)
             elif attempts > 1 and answer is not None and current:
                 self._call(component, call, message, attempts - 1)
             elif silent and current and call is not Call.RELEASE and self.bus.now() - began < STARTING:
                 self.bus.later(PAUSE, inspect)  # it may be in `started`; if its life ends, it is lost at once
             elif current or call is Call.RELEASE:
-                self._tell("unreachable", component=component, call=call.value, detail="it does not answer")
+                self._report(ComponentUnreachable(component, call.value, "it does not answer"))
                 self._step(Answered(component, call, message.epoch, None))
 
         self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
 
     def look(self, component: IRI, seen: Callable[[CallAnswer | None], None], attempts: int = CALL_ATTEMPTS) -> None:
-        """Ask a component for its actual state; `seen` hears None if it does not say."""
+        """Ask a component for its actual state; `seen` receives None if it does not answer."""
 
         def answered(replies: Replies) -> None:
             answer = _answer_in(replies)
@@ -193,11 +207,11 @@ class Calls:
 
         self.bus.ask(self.keys.call(component, "state"), b"", CALL, answered)
 
-    def _heard_answer(self, component: IRI, call: Call, epoch: int, answer: CallAnswer) -> None:
-        word = {Call.APPLY: "activated", Call.SET: "set", Call.RELEASE: "released"}[call]
+    def _answered(self, component: IRI, call: Call, epoch: int, answer: CallAnswer) -> None:
         done = answer.verdict is Verdict.DONE
-        if done or call is not Call.RELEASE:  # who is not ours and stays so is told to turn off again and again
-            self._tell(word if done else "declined", component=component, detail=answer.detail or answer.verdict.value)
+        if done or call is not Call.RELEASE:  # a component that another configurator holds is released again and again
+            event = _DONE[call] if done else CallDeclined
+            self._report(event(component, answer.detail or answer.verdict.value))
         self._step(Answered(component, call, epoch, answer.verdict, answer.life, answer.epoch, answer.detail))
 
 

@@ -1,4 +1,4 @@
-"""What a configurator has deployed and lost, and whoever wants to know: `status`, `stop`, and the configuration."""
+"""What a configurator has deployed and lost, and the questions it answers: `status`, `stop`, and the configuration."""
 
 from __future__ import annotations
 
@@ -16,48 +16,59 @@ from selfconf.rdf.turtle import to_turtle
 
 
 class DeploymentRecord:
-    """Keeps the record of one task and answers questions about it."""
+    """Keeps the record of one task, and serves it on the bus."""
 
     def __init__(
-        self, bus: Bus, keys: Keys, name: str, order: RunRequest, status: Callable[[], Status], stop: Callable[[], None]
+        self,
+        bus: Bus,
+        keys: Keys,
+        name: str,
+        request: RunRequest,
+        status: Callable[[], Status],
+        stop: Callable[[], None],
     ) -> None:
-        self.bus, self._keys, self._name, self._order = bus, keys, name, order
+        self.bus, self._keys, self._name, self._request = bus, keys, name, request
         self._status, self._stop = status, stop
-        self._deployed: list[tuple[IRI, Configuration, int, float]] = []
-        self._failures: list[tuple[IRI, str, str, float]] = []
+        self._deployed: tuple[IRI, Configuration, int, float] | None = None
+        self._revises: tuple[IRI, Configuration] | None = None
+        """The configuration before the deployed one; earlier ones are not kept."""
+        self._failures: dict[IRI, tuple[IRI, str, str, float]] = {}
+        """The newest failure of each component, the newest last: a task that runs for months has many of each."""
         bus.serve(keys.configuration(name), self._serve_configuration)
         bus.serve(keys.configurator_call(name), self._serve_call)
 
     def deployed(self, configuration: Configuration, epoch: int, time: float) -> None:
         """Note a configuration that is complete."""
-        name = configuration_iri(configuration, epoch)
-        self._deployed.append((name, configuration, epoch, time))
+        if self._deployed is not None:
+            self._revises = self._deployed[:2]
+        self._deployed = configuration_iri(configuration, epoch), configuration, epoch, time
 
     def lost(self, component: IRI, cause: str, detail: str, time: float) -> None:
         """Note a component that was lost."""
-        self._failures.append((component, cause, detail, time))
+        self._failures.pop(component, None)
+        self._failures[component] = component, cause, detail, time
 
     def _serve_configuration(self, request: Request) -> None:
         try:
-            if self._deployed:
+            if self._deployed is not None:
                 request.reply(self._keys.configuration(self._name), self.turtle().encode())
         finally:
             request.finish()
 
     def turtle(self) -> str:
         """What is deployed, as Turtle with its provenance."""
-        name, configuration, epoch, generated = self._deployed[-1]
-        revises = self._deployed[-2][:2] if len(self._deployed) > 1 else None
+        assert self._deployed is not None
+        name, configuration, epoch, generated = self._deployed
         triples = configuration_triples(
             configuration,
             name,
-            self._order.task,
+            self._request.task,
             epoch=epoch,
             generated=generated,
-            revises=revises,
+            revises=self._revises,
             configurator=self._name,
-            failures=self._failures,
-            passed_over=self._order.passed_over(configuration),
+            failures=self._failures.values(),
+            passed_over=self._request.passed_over(configuration),
         )
         return to_turtle(triples)
 

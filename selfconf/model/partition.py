@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from selfconf.model.obstacle import Obstacle
-from selfconf.model.profile import Profile, candidate_order
+from selfconf.model.profile import Place, Profile, candidate_order
 from selfconf.model.term import IRI, Term
 
 ANY_VALUE = -1
@@ -51,6 +51,8 @@ class NearMiss:
     obstacle: Obstacle
     allows: Mapping[IRI, frozenset[Term]] = field(default_factory=dict, compare=False, repr=False)
     """For each free parameter that it constrains, the values that it would allow."""
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the component is described, if that is known."""
 
     def __str__(self) -> str:
         return self.obstacle.clause

@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import NearMiss
+from selfconf.model.profile import Place
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.term import IRI
@@ -25,6 +26,8 @@ class Contradiction:
     role: IRI
     minimum: int
     maximum: int
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def requirements(self) -> tuple[Requirement, ...]:
@@ -45,6 +48,8 @@ class ValueUnknown:
     code: ClassVar[str] = "value-unknown"
     role: IRI
     parameter: str
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def requirements(self) -> tuple[Requirement, ...]:
@@ -66,6 +71,8 @@ class TooFewEligible:
     role: IRI
     wanted: int
     found: int
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def requirements(self) -> tuple[Requirement, ...]:
@@ -122,6 +129,8 @@ class InputUnfed:
     """What follows from it, up to the role that nobody is left to play."""
     optional: tuple[IRI, ...] = ()
     """Those of the sources that ask for nobody (`sc:minCount 0`), so that their candidates do not count."""
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component that it speaks of is described, if that is known."""
 
     def __str__(self) -> str:
         name = f"the input {self.input!r} ({self.signal.short}) of {self.component.short}"
@@ -138,6 +147,8 @@ class TooFewDistinct:
     roles: tuple[IRI, ...]
     wanted: int
     found: int
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def role(self) -> IRI:
@@ -164,6 +175,8 @@ class Conflict:
     roles: tuple[IRI, ...]
     parameters: tuple[str, ...] = ()
     requirements: tuple[Requirement, ...] = ()
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def role(self) -> IRI:
@@ -200,6 +213,9 @@ class Refusal:
     irreducible: bool = True
     """Whether each reason was proved to need all of its requirements; not when the steps for that were used up."""
 
+    def __bool__(self) -> bool:
+        return False
+
 
 @dataclass(frozen=True, slots=True)
 class Undecided:
@@ -211,6 +227,9 @@ class Undecided:
     """The time that was allowed, if it was time that ended the search."""
     unaided: bool = False
     """Whether there was no clause-learning solver at hand."""
+
+    def __bool__(self) -> bool:
+        return False
 
     def __str__(self) -> str:
         if self.seconds is not None:

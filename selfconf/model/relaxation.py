@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from selfconf.model.partition import Candidate, NearMiss
-from selfconf.model.profile import Output
+from selfconf.model.profile import Output, Place
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 
@@ -35,6 +35,8 @@ class AddComponents:
 
     code: ClassVar[str] = "add-components"
     additions: tuple[Addition, ...]
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component to be changed is described, if that is known."""
 
     @property
     def role(self) -> IRI:
@@ -52,6 +54,8 @@ class AskForFewer:
     code: ClassVar[str] = "ask-for-fewer"
     role: IRI
     minimum: int
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component to be changed is described, if that is known."""
 
     def __str__(self) -> str:
         if not self.minimum:
@@ -66,6 +70,8 @@ class AskForOne:
     code: ClassVar[str] = "ask-for-one"
     role: IRI
     minimum: ClassVar[int] = 1
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component to be changed is described, if that is known."""
 
     def __str__(self) -> str:
         return f"let the role {self.role.short} ask for one (sc:minCount 1)"
@@ -79,6 +85,8 @@ class AddInteraction:
     role: IRI
     """The role that feeds."""
     sink: IRI
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component to be changed is described, if that is known."""
 
     def __str__(self) -> str:
         return f"let the role {self.role.short} feed the role {self.sink.short} (sc:feeds)"
@@ -91,6 +99,8 @@ class AcceptNearMiss:
     code: ClassVar[str] = "accept-near-miss"
     near: NearMiss
     candidate: Candidate = field(repr=False)
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component to be changed is described, if that is known."""
 
     @property
     def role(self) -> IRI:

@@ -1,1 +1,5 @@
-"""What travels between sites, components and configurators: keys, messages, their encoding, and a component's life."""
+"""What travels between sites, components and configurators, with no network in it.
+
+`keys` are the keys of an ecology, `messages` are values, `codec` is their encoding as JSON, and `activation` is the
+table by which a component obeys.
+"""

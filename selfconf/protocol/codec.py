@@ -1,9 +1,9 @@
 """Messages as JSON, self-describing, so that a component in another language can join from the documentation alone.
 
 A message is an object with a member `kind` and one member for each field. A term is an object: `{"iri": ...}`,
-`{"blank": ...}`, or `{"literal": ..., "datatype": ..., "language": ...}`. What arrives is untrusted: whatever is not
-exactly a message of the expected kind raises PeerError, and nothing else. Members that are not known are passed over,
-so that a newer peer can say more.
+`{"blank": ...}`, or `{"literal": ..., "datatype": ..., "language": ...}`. What arrives is untrusted: anything that
+is not a message of the expected kind raises PeerError, and nothing else. Members that are not known are passed over, so
+that a newer peer can add some.
 """
 
 from __future__ import annotations
@@ -32,13 +32,25 @@ from selfconf.protocol.messages import (
 )
 
 M = TypeVar("M", bound=Message)
+KINDS: dict[type, str] = {
+    Apply: "apply",
+    SetParameters: "setparameters",
+    Release: "release",
+    CallAnswer: "answer",
+    Fail: "fail",
+    Wake: "wake",
+    Page: "page",
+    Stamp: "stamp",
+    Status: "status",
+}
+"""What each message is called on the wire; programs in other languages rely on it, whatever a class is called here."""
 LARGEST = 1 << 20
 """A control message of more bytes than this is refused unread."""
 
 
 def encode(message: Message) -> bytes:
     """The bytes of a message."""
-    body: dict[str, Any] = {"kind": _kind(type(message))}
+    body: dict[str, Any] = {"kind": KINDS[type(message)]}
     for name, _, _ in _FIELDS[type(message)]:
         body[name] = getattr(message, name)
     if isinstance(message, SetParameters):
@@ -54,14 +66,14 @@ def decode(payload: bytes, expected: type[M]) -> M:
         body = json.loads(payload.decode())  # of bytes it would guess the encoding
     except (ValueError, RecursionError) as error:
         raise PeerError(f"not a message: {error}") from None
-    if not isinstance(body, dict) or body.get("kind") != _kind(expected):
-        raise PeerError(f"not a message of kind {_kind(expected)!r}")
+    if not isinstance(body, dict) or body.get("kind") != KINDS[expected]:
+        raise PeerError(f"not a message of kind {KINDS[expected]!r}")
     values: dict[str, Any] = {}
     for name, reader, required in _FIELDS[expected]:
         if name in body:
             values[name] = reader(body[name])
         elif required:
-            raise PeerError(f"a message of kind {_kind(expected)!r} lacks {name!r}")
+            raise PeerError(f"a message of kind {KINDS[expected]!r} lacks {name!r}")
     return expected(**values)
 
 
@@ -90,12 +102,8 @@ def decode_term(body: object) -> Term:
     raise PeerError("not a term")
 
 
-def _kind(message: type) -> str:
-    return message.__name__.lower()
-
-
 def _plain(value: object) -> object:
-    """What JSON has no word for."""
+    """A value that JSON has no notation for, as one that it has."""
     if isinstance(value, Wire):
         return value.component, value.output, value.period
     raise TypeError(f"no message holds a {type(value).__name__}")

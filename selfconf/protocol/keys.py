@@ -13,9 +13,9 @@
     selfconf/{ecology}/conf/{name}/@ctl/{call}              status, stop (call)
 
 `{component}` is the base-32 of the ten-byte BLAKE2s of the component's IRI, `{shard}` the first byte of the same hash
-in hexadecimal: siblings under one chunk cost quadratically, so that no chunk has thousands. `{life}` is the
-incarnation: which life of which component. A chunk that starts with `@` is matched by no wildcard, so that a broad
-query can never activate anything.
+in hexadecimal: the cost of siblings under one chunk grows with the square of their number, so no chunk has thousands.
+`{life}` is a random text, new for each incarnation. A chunk that starts with `@` is matched by no wildcard, so that a
+broad query can never activate anything.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import hashlib
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from urllib.parse import quote, unquote
+from urllib.parse import quote
 
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
@@ -179,8 +179,3 @@ def site_of(key: str) -> str:
 def call_of(key: str) -> str:
     """The name of the call at the end of a control key."""
     return key.rsplit("/", 1)[-1]
-
-
-def port_of(key: str) -> str:
-    """The port at the end of an output's key."""
-    return unquote(key.rsplit("/", 1)[-1])

@@ -1,7 +1,7 @@
 """The messages of the control plane, as values.
 
 Everything that can be stale carries a *life* (which incarnation of a component) or an *epoch* (which deployment). A
-component obeys the newest epoch it has heard of and refuses an older one.
+component obeys the newest epoch that it knows of and refuses an older one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Cause(str, Enum):
     SILENCE = "silence"
     """An output that promised a rate has stopped."""
     REFUSED = "refused"
-    """It would not, or could not, be activated."""
+    """It refused to be activated, or could not be."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Apply:
 
     epoch: int
     supervisor: str
-    """The liveliness key of the configurator that answers for this configuration."""
+    """The liveliness key of the configurator that supervises this configuration."""
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     standby: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
 
@@ -77,7 +77,7 @@ class Verdict(str, Enum):
     BUSY = "busy"
     """Another configurator that is alive holds the component."""
     REFUSED = "refused"
-    """The component itself says no, or its code broke; `detail` says why."""
+    """The component itself refuses, or its code broke; `detail` says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ class CallAnswer:
     active: bool = False
     detail: str = ""
     supervisor: str = ""
-    """The liveliness key of the configurator that holds the component; empty if none does, or if it does not say."""
+    """The liveliness key of the configurator that holds the component; empty if none does, or if it is left out."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -104,6 +104,11 @@ class Positions:
         offset = self.offset(node)
         return None if offset is None else self.place(offset)
 
+    def line_of(self, iri: str) -> int | None:
+        """The line in which a named node is first described."""
+        place = self.of_node(URIRef(iri))
+        return None if place is None else place.line
+
     def at_the_end_of(self, subject: str | None, steps: Sequence[tuple[str, int]]) -> TextPosition | None:
         """Where the steps of a TemplateError end, or the last place to which they can be followed."""
         node: Node | None = None if subject is None else URIRef(subject)

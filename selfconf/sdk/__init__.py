@@ -11,9 +11,9 @@
     if __name__ == "__main__":
         main(Thermostat)
 
-Threads. Everything that selfconf tells a component (`started`, `stopped`, `received`, `parameter_set`, timers) is
-told on one thread, one call after the other; return soon, for control calls wait in the same queue. `emit` and `fail`
-may be called from any thread. Work that takes long belongs in a thread of your own, which emits when it is done.
+Threads. All methods of a component that selfconf calls (`started`, `stopped`, `received`, `parameter_set`, timers) are
+called on one thread, one after the other; return soon, for control calls wait in the same queue. `emit` and `fail` may
+be called from any thread. Work that takes long belongs on a thread of its own, which emits when it is done.
 """
 
 from selfconf.sdk.component import Component, Refused, Signal

@@ -12,7 +12,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.term import IRI
 
 if TYPE_CHECKING:
-    from selfconf.sdk.body import Body
+    from selfconf.sdk.runtime import ComponentRuntime
 
 
 class Refused(Exception):
@@ -41,13 +41,14 @@ class Component:
     component: ClassVar[str] = ""
     """The IRI of the component, needed only where the file advertises several."""
 
-    _body: Body | None = None
+    _runtime: ComponentRuntime | None = None
 
     def started(self) -> None:
         """The component has been activated. Raise Refused if it cannot act.
 
-        It should return soon, for nothing else is heard meanwhile: after 8 seconds without an answer the configurator
-        looks for another component. What takes longer goes on a thread of its own; call `fail` if it comes to nothing.
+        It should return soon, for nothing else reaches the component meanwhile: after 8 seconds without an answer the
+        configurator looks for another component. What takes longer belongs on a thread of its own, which calls `fail`
+        if it comes to nothing.
         """
 
     def stopped(self) -> None:
@@ -60,14 +61,14 @@ class Component:
         """An operational parameter has been set: text for strings and IRIs, else a number or a truth value."""
 
     def emit(self, port: str, value: Any, time: float | None = None) -> None:
-        """Issue a signal on an output: anything that JSON can say, or bytes. Nothing happens while not active.
+        """Issue a signal on an output: any value that JSON has, or bytes. Nothing happens while not active.
 
         `time` is its time in seconds, now by default. Raises ProgrammerError for an output that is not advertised.
         """
         self._attached().emit(port, value, time)
 
     def fail(self, reason: str) -> None:
-        """Raise FAIL: the component cannot go on with its part. The configurator will turn it off."""
+        """Raise FAIL: the component cannot act in its role any more. The configurator will turn it off."""
         self._attached().fail(reason)
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
@@ -77,12 +78,12 @@ class Component:
     @property
     def active(self) -> bool:
         """Whether the component is part of a configuration and has not failed."""
-        return self._body is not None and self._body.active
+        return self._runtime is not None and self._runtime.active
 
-    def _attached(self) -> Body:
-        if self._body is None:
+    def _attached(self) -> ComponentRuntime:
+        if self._runtime is None:
             raise ProgrammerError(f"{type(self).__name__} is not part of an ecology yet; hand it to `main` or a Host")
-        return self._body
+        return self._runtime
 
     @classmethod
     def advertisement_path(cls) -> Path:

@@ -1,4 +1,4 @@
-"""Several components in one process, sharing one session: what a world or a robot's computer is."""
+"""Several components in one process with one session, as a simulated world or a robot's computer has them."""
 
 from __future__ import annotations
 
@@ -9,35 +9,35 @@ from selfconf.bus.port import Bus
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.protocol.keys import Keys
-from selfconf.sdk.body import Body
 from selfconf.sdk.component import Component
+from selfconf.sdk.runtime import ComponentRuntime
 
 
 class Host:
-    """Components that live together. Whoever calls `run` or `poll` lends them its thread."""
+    """Components that share one session and one thread: the thread that calls `run` or `poll`."""
 
     def __init__(self, bus: Bus, ecology: str) -> None:
         self.bus, self.keys = bus, Keys(ecology)
-        self.bodies: list[Body] = []
+        self.runtimes: list[ComponentRuntime] = []
 
     def add(self, component: Component, life: str = "") -> Component:
         """Let a component join the ecology. Raises AuthorError for an advertisement that cannot be read."""
-        self.bodies.append(Body(self.bus, self.keys, profile_of(type(component)), component, life))
+        self.runtimes.append(ComponentRuntime(self.bus, self.keys, profile_of(type(component)), component, life))
         return component
 
     def poll(self, seconds: float = 0.0) -> None:
-        """Tell the components everything there is to tell; wait up to that long if there is nothing."""
+        """Let the components hear everything there is to hear; wait up to that long if there is nothing."""
         self.bus.poll(seconds)
 
     def run(self, until: Callable[[], bool]) -> None:
-        """Tell the components everything, until `until` holds."""
+        """Let the components hear everything, until `until` holds."""
         self.bus.run(until)
 
     def close(self) -> None:
         """Turn every component off and leave the ecology."""
-        for body in self.bodies:
-            body.close()
-        self.bodies.clear()
+        for runtime in self.runtimes:
+            runtime.close()
+        self.runtimes.clear()
         self.bus.close()
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
@@ -18,7 +17,7 @@ from selfconf.termination import Termination
 
 
 def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run components as one program until it is told to end (SIGINT, SIGTERM); then exit, with 2 if it cannot run.
+    """Run components as one program until SIGINT or SIGTERM; then exit, with 2 if it cannot run.
 
     Arguments that are not options of selfconf are the program's own. The ecology is taken from `--ecology` and
     `--connect`, else from `SELFCONF_ECOLOGY` and `SELFCONF_CONNECT` (as set by a site that starts a dormant
@@ -29,10 +28,10 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     given, _ = parser.parse_known_args(arguments)
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
-        host = join(given.ecology, given.connect)
+        host = open_host(given.ecology, given.connect)
         for kind in kinds:
             host.add(kind())
-        run_until_told(host)
+        run_until_ended(host)
     except SelfconfError as error:
         print(error, file=sys.stderr)
         raise SystemExit(2) from None
@@ -51,15 +50,13 @@ def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def join(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
-    """A host for components in an ecology. Raises NetworkError if it cannot be reached."""
-    ecology = ecology or os.environ.get("SELFCONF_ECOLOGY")
-    endpoints = list(connect) or os.environ.get("SELFCONF_CONNECT", "").split()
-    name, endpoints = rendezvous.find(ecology, endpoints)
+def open_host(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
+    """A host for components, in the ecology that `selfconf.rendezvous.find` finds. Raises NetworkError."""
+    name, endpoints = rendezvous.find(ecology, connect)
     return Host(client(endpoints), name)
 
 
-def run_until_told(host: Host) -> None:
+def run_until_ended(host: Host) -> None:
     """Run a host until SIGINT or SIGTERM, or until the site that started this program is gone; then close it."""
     ending = Termination(host.bus)
     try:

@@ -1,22 +1,23 @@
-"""Repair: the next configuration changes as little as possible of the one that runs.
+"""Reconfiguration: after a failure, the configuration that changes the least of the one that runs.
 
-*What is least change.* Every solution is extended as usual, except that what runs and plays the same role is tried
-before all others. Of the configurations that come out, the answer keeps the most running components in their roles,
-among those the most running connections, and among those it belongs to the lexicographically first solution. So it
-is determined, and it does not depend on how it was found.
+*Which configuration is nearest.* Every solution is extended as usual, except that a component that runs is tried for
+the role that it plays before all other candidates. Of the configurations that come out, the answer keeps the most
+running components in their roles, among those the most running connections, and among those it belongs to the
+lexicographically first solution. So the answer is determined, and does not depend on how it was found.
 
-*How.* By the number of running components given up: none, then one, and so on. With a number given, depth-first
-search in lexicographic order leaves out every candidate that would push out more running ones than that: a role with
-room for m that has taken k newcomers keeps at most m - k. The first number with a solution is the least; among its
-solutions, one that keeps every connection that could be kept ends the search. In the usual case, one component lost
-and the rest can stay, the first descent is the answer: a few microseconds for each role.
+*How it is found.* By the number of losses, that is of running components that have to give up their roles: none, then
+one, and so on. For each number, depth-first search in lexicographic order leaves out every candidate that would
+displace more running components than that: a role with room for m that has taken k newcomers keeps at most m - k. The
+first number with a solution is the least; among its solutions, one that keeps every connection that could be kept ends
+the search. In the usual case, one component lost and the rest can stay, the first descent is the answer: a few
+microseconds for each role.
 
 When that takes long and every role asks for a fixed number, so that nothing is added to a solution, clause learning
 takes over: maximise the running components, then the running connections, then minimise the solution. The answer is
-the same.
+the one that depth-first search would find.
 
-The steps are limited. When they are used up the answer is the best that was met, or else what `first` answers: a
-configuration all the same, and `proved` says that it may not be the nearest.
+*Budget.* The steps are limited. When they are used up, the answer is the incumbent: the nearest configuration that any
+engine has met, the strategy `first` included. Then `proved` says that a nearer one may exist.
 """
 
 from __future__ import annotations
@@ -27,29 +28,33 @@ from operator import attrgetter
 
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.partition import Candidate
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.search import explain
 from selfconf.search.budget import Budget
 from selfconf.search.engines import CandidateSearch, ClauseSolver, solver_available
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, pruned, reduced
+from selfconf.search.reduction import LazyReduction, assigned, pruned, reduced
 from selfconf.search.strategies import solution
 
-SPARING_STEPS = 2_000
+DEPTH_FIRST_STEPS = 2_000
 """Steps of depth-first search before clauses are written."""
 LEAST_STEPS = 20_000
-"""Steps at least until the search for the nearest configuration is content with a near one."""
+"""Steps at least until the search for the nearest configuration answers with the incumbent."""
 WORK = 2_000_000
-"""So many, divided by the number of slots, if that is more: a step costs in proportion to them."""
+"""The steps are this number divided by the number of slots, if that is more: a step costs in proportion to them."""
 
+Score = tuple[int, int]
+"""Running components that stay in their roles, and running connections that stay: more is nearer."""
+Numbered = list[tuple[int, Candidate]]
+"""Candidates of a role with their places in the order of the role."""
 
 _COMPONENT: Callable[[Candidate], IRI] = attrgetter("profile.component")
 
 
 @dataclass(frozen=True, slots=True)
 class Reconfiguration:
-    """The next configuration, what it keeps of the one that ran, and whether nothing nearer exists for sure."""
+    """The next configuration, what it keeps of the one that ran, and whether it is proved to be the nearest."""
 
     configuration: Configuration
     kept: int
@@ -60,70 +65,181 @@ class Reconfiguration:
 
 
 def nearest_configuration(problem: Problem, running: Configuration) -> Configuration | Refusal:
-    """The configuration nearest to the one that runs, or why there is none."""
+    """Return the configuration nearest to the one that runs, or why there is none."""
     outcome = nearest(problem, running)
     return outcome.configuration if isinstance(outcome, Reconfiguration) else outcome
 
 
 def nearest(problem: Problem, running: Configuration, steps: int | None = None) -> Reconfiguration | Refusal:
-    """The same, with what is kept and whether that is proved to be the most."""
+    """Return the nearest configuration that is met within a number of steps, what it keeps, and whether it is proved.
+
+    The steps limit the search for the nearest configuration, not the decision whether there is one at all.
+    """
     if steps is None:
         steps = max(LEAST_STEPS, WORK // (1 + sum(role.minimum for role in problem.roles)))
-    alive = _alive(problem, running)
     fixed = all(role.minimum == role.maximum for role in problem.roles) and solver_available()
-    budget = Budget(min(steps, SPARING_STEPS) if fixed else steps)
-    near = None if problem.valueless else _best(problem, running, alive, 0, budget)
-    if near is None:
+    search = _NearestSearch(problem, running)
+    budget = Budget(min(steps, DEPTH_FIRST_STEPS) if fixed else steps)
+    found = None if problem.valueless else search.with_losses(0, budget)
+    if found is None:
         given = LazyReduction(problem)
         playing = solution(given, Budget())
         if not isinstance(playing, list):
             return explain.refusal(given)
-        near = _wider(problem, running, alive, budget)
+        found = search.with_fewest_losses(budget)
         if not budget.steps and fixed:
+            search.meet(found)
             budget = Budget(steps)
-            near = _by_clauses(problem, running, alive, budget)
-        if near is None:
-            near = problem.solved(playing, running)
-    return Reconfiguration(near, *kept(near, running), proved=bool(budget.steps))
+            found = search.by_clauses(budget)
+        if found is None or not budget.steps:
+            found = search.nearest_of(found, problem.solved(playing, running), search.incumbent)
+    return Reconfiguration(found, *preserved(found, running), proved=bool(budget.steps))
 
 
-def _wider(
-    problem: Problem, running: Configuration, alive: list[list[tuple[int, Candidate]]], budget: Budget
-) -> Configuration | None:
-    for lost in range(1, 1 + sum(map(len, alive))):
-        best = _best(problem, running, alive, lost, budget)
-        if best is not None or not budget.steps:
-            return best
-    return None
-
-
-def kept(after: Configuration, before: Configuration) -> tuple[int, int]:
-    """How many components stay in their roles, and how many connections stay."""
+def preserved(after: Configuration, before: Configuration) -> Score:
+    """Count the components that stay in their roles, and the connections that stay."""
     played = {(a.role, component) for a in before.assignments for component in a.components}
     stays = sum((a.role, component) in played for a in after.assignments for component in a.components)
     return stays, len(set(after.connections) & set(before.connections))
 
 
-def _alive(problem: Problem, running: Configuration) -> list[list[tuple[int, Candidate]]]:
-    """For each role what runs in it and is still eligible, with its number."""
-    played = {a.role: set(a.components) for a in running.assignments}
-    return [
-        _numbered(candidates, played.get(role.iri, set()))
-        for role, candidates in zip(problem.roles, problem.candidates, strict=True)
-    ]
+class _NearestSearch:
+    """The engines on one problem and one running configuration, and the incumbent that they share."""
+
+    def __init__(self, problem: Problem, running: Configuration) -> None:
+        self.problem, self.running = problem, running
+        played = {a.role: set(a.components) for a in running.assignments}
+        self.eligible: list[Numbered] = [
+            _among(candidates, played.get(role.iri, set()))
+            for role, candidates in zip(problem.roles, problem.candidates, strict=True)
+        ]
+        """For each role the components that run in it and are still eligible for it."""
+        self.whole = sum(map(len, self.eligible))
+        self.available = self._available()
+        self.possible = sum(c.source in self.available and c.sink in self.available for c in running.connections)
+        """How many running connections could stay, at most."""
+        self.incumbent: Configuration | None = None
+        self._score: Score = (-1, -1)
+
+    def _available(self) -> set[IRI]:
+        """Return the components that run and are still eligible for some role, if not for their own."""
+        available = {candidate.profile.component for role in self.eligible for _, candidate in role}
+        others = {component for component in self.running.components if component not in available}
+        for candidates in self.problem.candidates if others else ():
+            available |= others.intersection(map(_COMPONENT, candidates))
+        return available
+
+    def meet(self, configuration: Configuration | None) -> Score:
+        """Make a configuration the incumbent if it is nearer than the last one; of equals the first one stays."""
+        if configuration is None:
+            return -1, -1
+        score = preserved(configuration, self.running)
+        if score > self._score:
+            self._score, self.incumbent = score, configuration
+        return score
+
+    def nearest_of(self, *configurations: Configuration | None) -> Configuration:
+        """Return the nearest of some configurations, at least one of which is there; of equals the first one."""
+        met = [configuration for configuration in configurations if configuration is not None]
+        return max(met, key=lambda configuration: preserved(configuration, self.running))
+
+    def with_fewest_losses(self, budget: Budget) -> Configuration | None:
+        """Return the best configuration with the fewest losses, one at least; None if the budget ends before."""
+        for losses in range(1, 1 + self.whole):
+            best = self.with_losses(losses, budget)
+            if best is not None or not budget.steps:
+                return best
+        return None
+
+    def with_losses(self, losses: int, budget: Budget) -> Configuration | None:
+        """Return the best configuration with this number of losses, or None if none is met within the budget."""
+        best: tuple[Score, Configuration] | None = None
+        for playing in _LossBoundedSearch(self.problem, self.eligible, losses, budget).solutions():
+            configuration = self.problem.solved(playing, self.running)
+            score = self.meet(configuration)
+            # The bound of the search assumes that a role can be filled up again by the extension. Where it cannot, the
+            # configuration has more losses than that: it is an incumbent only, and its turn comes with that number.
+            if score[0] >= self.whole - losses and (best is None or score > best[0]):
+                best = score, configuration
+                if score[1] == self.possible:
+                    break
+        return best[1] if best is not None else None
+
+    def by_clauses(self, budget: Budget) -> Configuration | None:
+        """Return the nearest configuration of a problem whose roles ask for fixed numbers; None if none is met.
+
+        When the budget ends before the proof, the answer is the best that the solver has met.
+        """
+        # A component that runs may be the only one to keep a connection: it is distinguished from those of its class.
+        with ClauseSolver(pruned(reduced(self.problem, self.available))) as clauses:
+            plays = {
+                (role, option.number): literal
+                for role, options in enumerate(clauses.reduced.options)
+                for option, literal in zip(options, clauses.plays[role], strict=True)
+            }
+            stays = {(role, number) for role, some in enumerate(self.eligible) for number, _ in some}
+            keeping = [literal for place, literal in plays.items() if place in stays]
+            clauses.prefer(keeping)
+            if clauses.solve((), budget) is not True:
+                return None
+            proved = self._maximised(clauses, plays, keeping, budget)
+            # With a budget of its own: what was maximised is not thrown away for want of the steps to name the first.
+            chosen = clauses.least(Budget(max(LEAST_STEPS, budget.steps or 0)))
+            if isinstance(chosen, Undecided):
+                chosen, proved = clauses.chosen(), False
+            if not proved:
+                budget.steps = 0
+            return self.problem.solved(assigned(self.problem, chosen), self.running)
+
+    def _maximised(
+        self, clauses: ClauseSolver, plays: dict[tuple[int, int], int], keeping: list[int], budget: Budget
+    ) -> bool:
+        """Keep the most components, and then the most connections; return whether that is proved."""
+        literals = [self._connection_literal(clauses, plays, connection) for connection in self.running.connections]
+        connecting = [literal for literal in literals if literal]
+        return (
+            clauses.maximise(keeping, budget)
+            # A model of the connections' literals is needed before they can be counted: hence the call in between.
+            and clauses.solve((), budget) is True
+            and clauses.maximise(connecting, budget)
+        )
+
+    def _connection_literal(
+        self, clauses: ClauseSolver, plays: dict[tuple[int, int], int], connection: Connection
+    ) -> int | None:
+        """Return a literal that can hold only if a running connection stays; None if the connection cannot stay."""
+        ways: list[int] = []
+        for sink, source in self._ends(plays, connection):
+            way = clauses.literal()
+            clauses.add([-way, source])
+            clauses.add([-way, sink])
+            ways.append(way)
+        if not ways:
+            return None
+        stays = clauses.literal()
+        clauses.add([-stays, *ways])
+        return stays
+
+    def _ends(self, plays: dict[tuple[int, int], int], connection: Connection) -> Iterator[tuple[int, int]]:
+        """Yield the pairs of a sink's and a source's literal that make a connection if both hold."""
+        problem = self.problem
+        for (sink, number), sink_literal in plays.items():
+            profile = problem.candidates[sink][number].profile
+            wanted = next((port for port in profile.inputs if port.name == connection.input), None)
+            if profile.component != connection.sink or wanted is None:
+                continue
+            for (source, other), source_literal in plays.items():
+                feeder = problem.candidates[source][other].profile
+                output = feeder.output(connection.output)
+                if feeder.component != connection.source or output is None:
+                    continue
+                if any(link.source == source and problem.matches(output, link, wanted) for link in problem.links[sink]):
+                    yield sink_literal, source_literal
 
 
-def _living(problem: Problem, running: Configuration, alive: list[list[tuple[int, Candidate]]]) -> set[IRI]:
-    """What runs and is still eligible for some role, if not for its own."""
-    living = {candidate.profile.component for role in alive for _, candidate in role}
-    others = {component for component in running.components if component not in living}
-    for candidates in problem.candidates if others else ():
-        living |= others.intersection(map(_COMPONENT, candidates))
-    return living
-
-
-def _numbered(candidates: tuple[Candidate, ...], wanted: set[IRI]) -> list[tuple[int, Candidate]]:
-    found: list[tuple[int, Candidate]] = []
+def _among(candidates: tuple[Candidate, ...], wanted: set[IRI]) -> Numbered:
+    """Return the candidates that are wanted, and look no further than the last of them."""
+    found: Numbered = []
     for number, candidate in enumerate(candidates):
         if len(found) == len(wanted):
             break
@@ -132,105 +248,28 @@ def _numbered(candidates: tuple[Candidate, ...], wanted: set[IRI]) -> list[tuple
     return found
 
 
-def _best(
-    problem: Problem, running: Configuration, alive: list[list[tuple[int, Candidate]]], lost: int, budget: Budget
-) -> Configuration | None:
-    """The best configuration that gives up so many running components, if there is one."""
-    whole = sum(map(len, alive))
-    living = _living(problem, running, alive)
-    possible = sum(c.source in living and c.sink in living for c in running.connections)
-    best: tuple[int, int] | None = None
-    answer: Configuration | None = None
-    for playing in _Sparing(problem, alive, lost, budget).solutions():
-        configuration = problem.solved(playing, running)
-        score = kept(configuration, running)
-        if score[0] >= whole - lost and (best is None or score > best):
-            best, answer = score, configuration
-            if score[1] == possible:
-                break
-    return answer
+class _LossBoundedSearch(CandidateSearch):
+    """Depth-first search that leaves out candidates by which too many running components would lose their roles."""
 
-
-def _by_clauses(
-    problem: Problem, running: Configuration, alive: list[list[tuple[int, Candidate]]], budget: Budget
-) -> Configuration | None:
-    """The nearest configuration of a problem that has one and whose roles ask for fixed numbers."""
-    part = pruned(reduced(problem, _living(problem, running, alive)))
-    stays = {(role, number) for role, some in enumerate(alive) for number, _ in some}
-    with ClauseSolver(part) as clauses:
-        plays = {
-            (role, option.number): literal
-            for role, options in enumerate(part.options)
-            for option, literal in zip(options, clauses.plays[role], strict=True)
-        }
-        keeping = [plays[one] for one in plays if one in stays]
-        clauses.prefer(keeping)
-        if clauses.solve((), budget) is not True:
-            return None
-        connections = [_lasting(problem, clauses, plays, connection) for connection in running.connections]
-        lasting = [literal for literal in connections if literal]
-        # A model of the connections' literals is needed before they can be counted: hence the call in between.
-        if not (
-            clauses.maximise(keeping, budget)
-            and clauses.solve((), budget) is True
-            and clauses.maximise(lasting, budget)
-        ):
-            budget.steps = 0
-        chosen = clauses.least(Budget())
-        playing: list[list[Candidate]] = [[] for _ in problem.roles]
-        for option in chosen if isinstance(chosen, list) else ():
-            playing[option.kind.role].append(problem.candidates[option.kind.role][option.number])
-        return problem.solved(playing, running)
-
-
-def _lasting(
-    problem: Problem, clauses: ClauseSolver, plays: dict[tuple[int, int], int], connection: Connection
-) -> int | None:
-    """A literal that can hold only if a running connection stays; None if it cannot stay."""
-    ways: list[int] = []
-    for (sink, number), second in plays.items():
-        profile = problem.candidates[sink][number].profile
-        wanted = next((port for port in profile.inputs if port.name == connection.input), None)
-        if profile.component != connection.sink or wanted is None:
-            continue
-        for (source, other), first in plays.items():
-            feeder = problem.candidates[source][other].profile
-            output = feeder.output(connection.output)
-            if feeder.component != connection.source or output is None:
-                continue
-            if any(link.source == source and problem.matches(output, link, wanted) for link in problem.links[sink]):
-                way = clauses.literal()
-                clauses.add([-way, first])
-                clauses.add([-way, second])
-                ways.append(way)
-    if not ways:
-        return None
-    lasting = clauses.literal()
-    clauses.add([-lasting, *ways])
-    return lasting
-
-
-class _Sparing(CandidateSearch):
-    """Fills the slots without pushing out more than so many running components."""
-
-    def __init__(self, problem: Problem, alive: list[list[tuple[int, Candidate]]], lost: int, budget: Budget) -> None:
+    def __init__(self, problem: Problem, eligible: list[Numbered], losses: int, budget: Budget) -> None:
         super().__init__(problem, budget)
-        self.alive, self.lost = alive, lost
-        self.home = {c.profile.component: role for role, some in enumerate(alive) for _, c in some}
+        self.eligible, self.losses = eligible, losses
+        self.home = {c.profile.component: role for role, some in enumerate(eligible) for _, c in some}
+        """For each running component the role that it plays."""
 
     def candidates(self, role: int, start: int) -> Iterator[tuple[int, Candidate]]:
-        if self._pushed_out(role) > self.lost:
-            yield from ((number, c) for number, c in self.alive[role] if number >= start)
+        if self._displaced(role) > self.losses:
+            yield from ((number, c) for number, c in self.eligible[role] if number >= start)
             return
         for number, candidate in super().candidates(role, start):
             home = self.home.get(candidate.profile.component)
-            if home in (None, role) or self._pushed_out(role, candidate.profile.component) <= self.lost:
+            if home in (None, role) or self._displaced(role, candidate.profile.component) <= self.losses:
                 yield number, candidate
 
-    def _pushed_out(self, newcomer: int, moved: str | None = None) -> int:
-        """How many running components have no place any more once a role takes a newcomer, who may be a moved one."""
+    def _displaced(self, newcomer: int, moved: str | None = None) -> int:
+        """Count the running components that lose their roles once a role takes a newcomer, perhaps one that moves."""
         total = 0
-        for role, some in enumerate(self.alive):
+        for role, some in enumerate(self.eligible):
             maximum = self.problem.roles[role].maximum
             playing = [c.profile.component for c in self.playing[role]]
             here = {c.profile.component for _, c in some}

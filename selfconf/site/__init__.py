@@ -1,5 +1,10 @@
-"""A site: the init-component of a host (section 2.1 of the paper)."""
+"""A site: the init-component of a host (section 2.1 of the paper).
 
-from selfconf.site.site import Shelf, Site
+`Shelf` reads the advertisements of the host from their files; `Site` serves them to an ecology, and starts and ends the
+processes of the host's dormant components.
+"""
+
+from selfconf.site.shelf import Shelf
+from selfconf.site.site import Site
 
 __all__ = ["Shelf", "Site"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from functools import partial
 
 import pytest
 
@@ -16,7 +17,7 @@ def test_polling_with_nothing_to_say_returns_at_once() -> None:
     assert loop.now() - began < 0.5
 
 
-def test_polling_waits_no_longer_than_it_is_told() -> None:
+def test_polling_waits_no_longer_than_asked() -> None:
     loop = Loop()
     began = loop.now()
     loop.poll(0.03)
@@ -47,7 +48,7 @@ def test_polling_waits_for_a_timer_that_is_due_before_the_deadline() -> None:
     assert said == ["timer"]
 
 
-def test_a_timer_that_was_undone_is_not_waited_for_longer_than_told() -> None:
+def test_a_timer_that_was_undone_is_not_waited_for() -> None:
     loop = Loop()
     loop.later(0.01, lambda: None)()
     began = loop.now()
@@ -113,3 +114,45 @@ def test_the_end_in_the_middle_of_a_round_is_the_end() -> None:
     loop.wake_up(lambda: said.append(1))
     loop.poll()
     assert not said
+
+
+def test_timers_that_were_undone_are_not_kept_until_their_time() -> None:
+    loop = Loop()
+    said: list[int] = []
+    kept = [loop.later(60.0, lambda: said.append(1)) for _ in range(10)]
+    for _ in range(20_000):
+        loop.later(60.0, lambda: said.append(2))()
+    assert len(loop._timers) <= 2 * Loop.FEW_TIMERS
+    assert sum(timer.action is not None for _, _, timer in loop._timers) == len(kept)
+
+
+def test_timers_go_off_in_order_though_others_between_them_were_undone() -> None:
+    class TurnedByHand(Loop):
+        time = 0.0
+
+        def now(self) -> float:
+            return self.time
+
+    loop = TurnedByHand()
+    said: list[int] = []
+    undone = []
+    for number in range(500):
+        undo = loop.later(number % 7, partial(said.append, number))
+        if number % 5:
+            undone.append(undo)
+    for undo in undone:
+        undo()
+        undo()
+    loop.time = 7.0
+    loop.poll()
+    assert said == sorted(range(0, 500, 5), key=lambda number: number % 7)
+    assert not loop._timers
+
+
+def test_undoing_a_timer_that_has_gone_off_does_nothing() -> None:
+    loop = Loop()
+    said: list[int] = []
+    undo = loop.later(0.0, lambda: said.append(1))
+    loop.poll()
+    undo()
+    assert (said, loop._taken_back) == ([1], 0)

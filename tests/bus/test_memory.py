@@ -115,7 +115,7 @@ def test_nodes_that_are_cut_off_hear_nothing_of_each_other_and_see_each_other_di
     assert matches == [True, False]
     assert one.link
     assert two.link
-    network.mend(one, two)
+    network.reconnect(one, two)
     publisher.put(b"again")
     network.run(lambda: False, 1.0)
     assert [sample.payload for sample in heard] == [b"again"]
@@ -123,19 +123,19 @@ def test_nodes_that_are_cut_off_hear_nothing_of_each_other_and_see_each_other_di
     assert matches == [True, False, True]
 
 
-def test_a_node_that_reaches_nobody_knows_that_it_is_cut_off() -> None:
+def test_a_node_that_reaches_no_other_knows_that_it_is_cut_off() -> None:
     network = Network()
     one, two = network.node(), network.node()
     assert one.link
     network.cut(one, two)
     assert not one.link
-    network.mend(one, two)
+    network.reconnect(one, two)
     assert one.link
     two.close()
     assert one.link  # it is alone, not cut off
 
 
-def test_who_dies_in_the_middle_of_an_answer_is_waited_for_until_the_time_is_over() -> None:
+def test_a_node_that_dies_in_the_middle_of_its_answer_is_waited_for_until_the_time_is_over() -> None:
     network = Network()
     one, two = network.node(), network.node()
 

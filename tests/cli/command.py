@@ -35,6 +35,11 @@ class Outcome:
         return True
 
 
+def each(option: str, *values: object) -> list[str]:
+    """An option with several values: it takes one, and is repeated."""
+    return [word for value in values for word in (option, str(value))]
+
+
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> Outcome:
     """Run a command."""
     capsys.readouterr()

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.budget import Clock, composed
-from selfconf.cli.inputs import read_advertisements
+from selfconf.api.reading import read
+from selfconf.composition import TimeLimit, composed
 from selfconf.composition.composer import Composer, Strategy
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
@@ -83,7 +83,7 @@ def test_a_budget_that_is_none_is_misuse(
 
 
 def test_with_a_budget_a_running_configuration_is_still_repaired(team: Path) -> None:
-    ecology = read_advertisements([team / "ads"])
+    ecology = read(team / "ads").advertisements()
     text = PREFIXES + ":duo a sc:Template ; sc:roles ( :a :b ) . :a a sc:Role . :b a sc:Role ."
     task = templates.read_task(turtle.parse(text, "duo"))
     composer = Composer(task, steps=10_000)
@@ -105,12 +105,12 @@ def test_a_run_that_is_not_decided_deploys_nothing_and_says_so(inhabited: Home) 
 
 
 def test_when_the_time_is_up_the_best_answer_so_far_remains(team: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    ecology = read_advertisements([team / "ads"])
+    ecology = read(team / "ads").advertisements()
     cost = "sc:cost ( [ sc:term [ sc:property :p ] ] )"
     text = PREFIXES + f":solo a sc:Template ; sc:roles ( :a ) ; {cost} .\n:a a sc:Role ."
     composer = Composer(templates.read_task(turtle.parse(text, "solo")), strategy=Strategy.BEST)
     (proved,) = composer.answers(ecology, frozenset(), None)
-    clock = Clock(0.2)
+    clock = TimeLimit(0.2)
 
     def endless(*_: object) -> object:
         yield proved

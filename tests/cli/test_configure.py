@@ -21,7 +21,7 @@ from selfconf.model.relaxation import AcceptNearMiss
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
-from tests.cli.command import Outcome, run
+from tests.cli.command import Outcome, each, run
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
 BOUND = ("--bind", "robot=:Astrid", "--bind", "goal=(AT BEDROOM)")
@@ -137,7 +137,7 @@ def test_the_order_of_files_on_the_command_line_changes_nothing(desk: Desk) -> N
     files = [str(path) for path in sorted(desk.ads.iterdir())]
     bodies = []
     for order in (files, files[::-1]):
-        outcome = desk.configure(*BOUND, "--format", "json", "--ads", *order, ads=False)
+        outcome = desk.configure(*BOUND, "--format", "json", *each("--ads", *order), ads=False)
         assert outcome.code == 0
         bodies.append({**outcome.body, "seconds": None})
     assert bodies[0] == bodies[1]
@@ -466,7 +466,7 @@ def test_files_that_are_not_there_or_are_not_turtle_are_one_sentence(desk: Desk)
 def test_without_a_peer_there_is_a_sentence_that_says_what_to_start(
     desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in ("selfconf.cli.live", "selfconf.rendezvous"):
+    for module in ("selfconf.api.living", "selfconf.rendezvous"):
         monkeypatch.setattr(f"{module}.client", partial(client, seconds=0.1))
     assert desk.configure(*BOUND, ads=False).is_one_sentence("selfconf site")
     assert desk.configure(*BOUND, "--connect", "tcp/127.0.0.1:1", ads=False).is_one_sentence("nobody answers")
@@ -523,7 +523,7 @@ def test_of_two_descriptions_the_first_by_path_counts_in_whatever_order_they_are
     desk.template.write_text(PREFIXES + ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :A .")
     files = [str(desk.folder / f"{name}.ttl") for name in "ab"]
     for order in (files, files[::-1]):
-        outcome = desk.configure("--ads", *order, ads=False)
+        outcome = desk.configure(*each("--ads", *order), ads=False)
         assert outcome.code == 0
         assert outcome.err == f"{files[1]}: left out {iri('lamp')}: it is advertised in {files[0]} already\n"
 

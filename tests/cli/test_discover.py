@@ -10,6 +10,8 @@ from tests.cli.command import run
 from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
+pytestmark = pytest.mark.process
+
 
 def test_everything_that_is_advertised_is_shown_with_its_site_and_whether_it_lives(
     inhabited: Home, capsys: pytest.CaptureFixture[str]
@@ -69,3 +71,12 @@ def test_a_name_that_is_none_is_one_sentence(inhabited: Home, capsys: pytest.Cap
 def test_without_any_site_there_is_a_sentence_that_says_what_to_start(capsys: pytest.CaptureFixture[str]) -> None:
     for command in ("discover", "status", "stop"):
         assert run(capsys, command).is_one_sentence("selfconf site")
+
+
+def test_the_ecology_may_be_named_by_the_environment(
+    inhabited: Home, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_CONNECT", inhabited.endpoint())
+    assert run(capsys, "discover", "--format", "json").body["ecology"] == inhabited.ecology
+    monkeypatch.setenv("SELFCONF_ECOLOGY", inhabited.ecology)
+    assert run(capsys, "discover", "--format", "json").body["ecology"] == inhabited.ecology

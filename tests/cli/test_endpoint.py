@@ -10,12 +10,14 @@ from pathlib import Path
 import pyoxigraph as ox
 import pytest
 
-from selfconf.cli.endpoint import asked
 from selfconf.errors import NetworkError
+from selfconf.query.endpoint import asked
 from selfconf.rdf.eligibility.remote import ANYBODY
 from tests.cli.command import Outcome, run
 from tests.cli.endpoints import Scripted, http, oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, write_advertisements
+
+pytestmark = pytest.mark.process
 
 SENSORS = "SELECT ?c WHERE { ?c a rob:PositionSensor } ORDER BY ?c"
 TASK = ("--bind", "robot=:Astrid", "--bind", "goal=x")

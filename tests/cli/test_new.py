@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.api.validation import check
 from selfconf.cli.main import main
 from selfconf.cli.scaffolds import SCAFFOLDS
-from selfconf.cli.validate import check
 
 PATIENCE = 40.0
 
@@ -71,6 +71,7 @@ def test_a_scaffolded_template_finds_the_scaffolded_component(home: Path, place:
     assert main(arguments) == code
 
 
+@pytest.mark.process
 def test_a_scaffolded_component_runs_until_it_is_interrupted(home: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "selfconf", "run", "watch.ttl", "--ads", "."],

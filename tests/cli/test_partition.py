@@ -15,6 +15,7 @@ from rdflib import Graph, URIRef
 from selfconf.cli.main import main
 from selfconf.rdf.advertisements import loader as stream
 from selfconf.rdf.sparql.dataset import Dataset
+from tests.cli.command import each
 from tests.cli.endpoints import oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
@@ -165,7 +166,7 @@ def test_an_ecology_behind_an_endpoint_gives_the_same_partition(
 ) -> None:
     for given in (home, rich):
         task = given[: given.index("--ads")]
-        expected = candidates(told(capsys, *task, "--ads", home[-1], rich[-1], "--format", "json"))
+        expected = candidates(told(capsys, *task, *each("--ads", home[-1], rich[-1]), "--format", "json"))
         assert candidates(told(capsys, *task, "--endpoint", endpoint, "--format", "json")) == expected
 
 
@@ -173,7 +174,7 @@ def test_configure_asks_an_endpoint_too(
     endpoint: str, home: tuple[str, ...], rich: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
     answers = []
-    for source in (("--endpoint", endpoint), ("--ads", home[-1], rich[-1])):
+    for source in (("--endpoint", endpoint), each("--ads", home[-1], rich[-1])):
         assert main(["configure", *home[: home.index("--ads")], *source]) == 0
         answers.append(capsys.readouterr().out)
     assert answers[0] == answers[1]

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.inputs import read_advertisements
-from selfconf.cli.places import LARGEST, Places
+from selfconf.api.places import LARGEST_REREAD, Places
+from selfconf.api.reading import read
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Template
 from selfconf.model.term import IRI
@@ -106,16 +106,16 @@ def test_a_type_that_is_unlike_or_one_flaw_of_two_is_no_near_miss(
 def test_what_comes_from_elsewhere_has_no_place_and_what_cannot_be_read_again_no_line(tmp_path: Path) -> None:
     role, component = IRI("urn:r"), IRI("urn:c")
     template = Template(IRI("urn:t"), (Role(role, place=Place("somewhere/else.ttl")),))
-    assert Places(template, {})(role) is None
-    assert Places(template, {})(component) is None
+    assert Places(template, {}).of(role) is None
+    assert Places(template, {}).of(component) is None
     file = tmp_path / "ads.ttl"
     text = PREFIXES + "<urn:c> a sc:Component, :T .\n"
     file.write_text(text)
-    ecology = read_advertisements([file])
-    assert Places(template, ecology)(component) == Place(str(file), text.count("\n"))
-    for later in (text + "#" * LARGEST, "no Turtle"):
+    ecology = read(file).advertisements()
+    assert Places(template, ecology).of(component) == Place(str(file), text.count("\n"))
+    for later in (text + "#" * LARGEST_REREAD, "no Turtle"):
         file.write_text(later)
-        assert Places(template, ecology)(component) == Place(str(file))
+        assert Places(template, ecology).of(component) == Place(str(file))
 
 
 def test_an_answer_that_is_not_certified_is_never_printed(

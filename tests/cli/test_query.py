@@ -10,12 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.asking import Question, answer
 from selfconf.cli.main import main
 from selfconf.errors import AuthorError, ProgrammerError, QueryError
 from selfconf.model.term import IRI
+from selfconf.query import Question, answer
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.turtle import document as turtle
+
+pytestmark = pytest.mark.process
 
 TEXT = '<urn:a> <urn:p> 1 , "x\\ty, \\"z\\""@en , "plain" , <urn:b> , [ <urn:q> 2.5 ] .'
 EVERYTHING = "SELECT ?o ?x WHERE { <urn:a> <urn:p> ?o OPTIONAL { ?o <urn:nothing> ?x } }"

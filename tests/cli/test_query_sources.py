@@ -11,6 +11,8 @@ from tests.cli.command import Outcome, run
 from tests.cli.processes import Home
 from tests.lab import PREFIXES, iri, write_advertisements
 
+pytestmark = pytest.mark.process
+
 SENSORS = "SELECT ?c WHERE { ?c a rob:PositionSensor } ORDER BY ?c"
 
 

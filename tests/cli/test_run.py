@@ -5,9 +5,13 @@ from __future__ import annotations
 import signal
 from pathlib import Path
 
-from selfconf.sdk.body import GRACE
+import pytest
+
+from selfconf.sdk.supervision import GRACE
 from tests.cli.processes import Home, component_of, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
+
+pytestmark = pytest.mark.process
 
 REST = ("sonar", "encoder", "odometry", "control", "drive")
 EVERYBODY = ("tracker", *REST)

@@ -5,8 +5,12 @@ from __future__ import annotations
 import os
 import signal
 
+import pytest
+
 from selfconf.termination import alive
 from tests.cli.processes import Home, component_of, dormant
+
+pytestmark = pytest.mark.process
 
 EVERYBODY = ("tracker", "sonar", "encoder", "odometry", "control", "drive")
 TASK = {"sonar", "encoder", "control", "drive"}

@@ -14,6 +14,8 @@ from tests.cli.command import run
 from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
+pytestmark = pytest.mark.process
+
 
 def test_it_says_what_it_serves_and_where_and_leaves_nothing_behind(home: Home) -> None:
     site = home.site("peis-home", "ads")

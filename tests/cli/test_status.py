@@ -8,6 +8,8 @@ from tests.cli.command import run
 from tests.cli.processes import Home
 from tests.lab import iri
 
+pytestmark = pytest.mark.process
+
 EVERYBODY = ("sonar", "encoder", "tracker", "odometry", "control", "drive")
 
 

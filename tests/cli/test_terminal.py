@@ -13,6 +13,8 @@ import pytest
 from selfconf.cli.terminal import Terminal, guard, plain, show
 from tests.lab import PREFIXES
 
+pytestmark = pytest.mark.process
+
 
 def test_what_steers_is_spelt_out_and_what_does_not_stays() -> None:
     assert plain("a\tb\nä 日本 ✓") == "a\tb\nä 日本 ✓"

@@ -17,6 +17,8 @@ from tests.cli.processes import PATIENCE, Home
 from tests.cli.strangers import GUILTY, Strangers, Trap
 from tests.lab import PREFIXES, iri
 
+pytestmark = pytest.mark.process
+
 OWN = PREFIXES + (
     "@prefix owl: <http://www.w3.org/2002/07/owl#> .\n@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .\n"
 )

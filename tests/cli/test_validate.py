@@ -13,10 +13,11 @@ from xml.etree import ElementTree
 
 import pytest
 
+from selfconf.api.validation import check
 from selfconf.cli.main import main
-from selfconf.cli.reports import FORMATS
+from selfconf.cli.reports import RENDERERS
 from selfconf.cli.reports.text import illustrate
-from selfconf.cli.validate import check, reference
+from selfconf.cli.validate import reference
 from selfconf.model.codes import CODES, PREAMBLE
 from selfconf.model.diagnostic import Diagnostic, Severity, report
 
@@ -138,18 +139,20 @@ NASTY = report(
 
 
 def test_workflow_commands_are_escaped() -> None:
-    assert FORMATS["github"](NASTY) == (
+    assert RENDERERS["github"](NASTY) == (
         "::error file=a%2Cb%3Ac%25.ttl,line=3,endLine=3,col=7,endColumn=9,title=SC-A01::"
         "100 %25%0D%0Aof <this> & \x1b[31m that,: so Try.\n"
     )
 
 
 def test_warnings_are_workflow_warnings(folder: Path) -> None:
-    assert FORMATS["github"](check(["strange.ttl"])).startswith("::warning file=strange.ttl,line=10,endLine=10,col=23,")
+    assert RENDERERS["github"](check(["strange.ttl"])).startswith(
+        "::warning file=strange.ttl,line=10,endLine=10,col=23,"
+    )
 
 
 def test_sarif_refers_to_rules_and_places(folder: Path) -> None:
-    content = json.loads(FORMATS["sarif"](check(["wrong.ttl", "strange.ttl"])))
+    content = json.loads(RENDERERS["sarif"](check(["wrong.ttl", "strange.ttl"])))
     assert content["version"] == "2.1.0"
     (run,) = content["runs"]
     rules = [rule["id"] for rule in run["tool"]["driver"]["rules"]]
@@ -165,27 +168,27 @@ def test_sarif_refers_to_rules_and_places(folder: Path) -> None:
 
 
 def test_sarif_writes_paths_as_uris() -> None:
-    content = json.loads(FORMATS["sarif"](report(["/a b.ttl"], [Diagnostic("/a b.ttl", 1, 1, "SC-A01", "x")])))
+    content = json.loads(RENDERERS["sarif"](report(["/a b.ttl"], [Diagnostic("/a b.ttl", 1, 1, "SC-A01", "x")])))
     location = content["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
     assert location["artifactLocation"]["uri"] == "file:///a%20b.ttl"
-    relative = json.loads(FORMATS["sarif"](NASTY))["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
+    relative = json.loads(RENDERERS["sarif"](NASTY))["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
     assert relative["artifactLocation"]["uri"] == "a%2Cb%3Ac%25.ttl"
 
 
 def test_junit_has_a_case_for_each_file(folder: Path) -> None:
-    suites = ElementTree.fromstring(FORMATS["junit"](check(["."])).encode())
+    suites = ElementTree.fromstring(RENDERERS["junit"](check(["."])).encode())
     assert (suites.get("tests"), suites.get("failures"), suites.get("errors")) == ("4", "1", "1")
     cases = {case.get("name"): [part.tag for part in case] for case in suites.iter("testcase")}
     assert cases == {"broken.ttl": ["error"], "good.ttl": [], "strange.ttl": ["system-out"], "wrong.ttl": ["failure"]}
 
 
 def test_junit_holds_no_character_that_xml_forbids() -> None:
-    assert "[31m" in (ElementTree.fromstring(FORMATS["junit"](NASTY).encode()).findtext(".//failure") or "")
+    assert "[31m" in (ElementTree.fromstring(RENDERERS["junit"](NASTY).encode()).findtext(".//failure") or "")
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", RENDERERS)
 def test_every_form_can_say_that_all_is_well(name: str) -> None:
-    assert FORMATS[name](report(["a.ttl"], [])).endswith("\n" if name in ("json", "sarif", "junit") else "")
+    assert RENDERERS[name](report(["a.ttl"], [])).endswith("\n" if name in ("json", "sarif", "junit") else "")
 
 
 def test_on_a_terminal_the_place_is_underlined() -> None:
@@ -195,7 +198,7 @@ def test_on_a_terminal_the_place_is_underlined() -> None:
 
 
 def test_a_file_cannot_steer_the_terminal() -> None:
-    assert "\x1b" not in FORMATS["text"](NASTY)
+    assert "\x1b" not in RENDERERS["text"](NASTY)
 
 
 @pytest.mark.parametrize("code", [code.code for code in CODES])
@@ -210,7 +213,7 @@ def test_an_unknown_code_is_answered_with_the_known_ones(capsys: pytest.CaptureF
 
 
 def test_the_manual_lists_every_code() -> None:
-    assert all(f"## {code.code}: " in reference() for code in CODES)
+    assert all(f"## {code.code}: " in reference(CODES) for code in CODES)
 
 
 def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
@@ -228,7 +231,7 @@ def test_an_unknown_format_is_misuse(capsys: pytest.CaptureFixture[str]) -> None
 
 def test_good_advertisements_pass_without_rdflib(folder: Path) -> None:
     program = (
-        "import sys\nfrom selfconf.cli.validate import check\n"
+        "import sys\nfrom selfconf.api.validation import check\n"
         "assert check(['good.ttl']).conforms\nassert 'rdflib' not in sys.modules"
     )
     environment = {"PYTHONPATH": str(Path(__file__).parents[2])}
@@ -239,7 +242,7 @@ def test_severities_are_words() -> None:
     assert [severity.value for severity in Severity] == ["error", "warning"]
 
 
-@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("form", RENDERERS)
 def test_a_file_name_that_is_not_utf8_is_escaped(folder: Path, form: str) -> None:
     (folder / "latin").mkdir()
     (folder / "latin" / os.fsdecode(b"\xff.ttl")).write_text("bad")

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from rdflib import Graph
 
 from selfconf import library
+from tests.effort import examples
 
 SHAPES = Graph().parse(next(path for path in library.shapes() if path.stem == "configuration"))
 PREFIXES = """\
@@ -136,7 +137,7 @@ def worlds(draw: st.DrawFn) -> World:
     return replace(world, connections=frozenset(connections))
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(40), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(worlds())
 def test_the_shape_holds_for_configurations_and_for_nothing_else(world: World) -> None:
     conforms, _, text = pyshacl.validate(Graph().parse(data=world.turtle(), format="turtle"), shacl_graph=SHAPES)

@@ -12,13 +12,13 @@ from types import ModuleType
 import pytest
 
 from selfconf import entailment, library
-from selfconf.cli import asking
-from selfconf.cli.endpoint import PATIENCE
-from selfconf.cli.validate import LARGEST
+from selfconf.api.validation import LARGEST_FILE
 from selfconf.discovery import LARGEST_ADVERTISEMENT
 from selfconf.errors import AuthorError, QueryError, TemplateError
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Report
+from selfconf.query import process as asking
+from selfconf.query.endpoint import ENDPOINT_PATIENCE
 from selfconf.rdf import conformance as shacl
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.eligibility.partitioner import Partitioner
@@ -225,17 +225,17 @@ def test_a_query_that_would_hold_up_the_engine_is_not_handed_to_it(query: str) -
 def test_the_page_on_limits_names_the_limits_there_are() -> None:
     page = (Path(__file__).parents[2] / "docs" / "untrusted.md").read_text()
     for words in (
-        f"{LARGEST >> 20} MiB | SC-S05",
+        f"{LARGEST_FILE >> 20} MiB | SC-S05",
         f"{checking.MOST_STATEMENTS:,} | SC-S05",
         f"{scrutiny.FILE_SECONDS:g} s | SC-S05",
         f"{queries.LONGEST_QUERY:,} characters, brackets {queries.DEEPEST_QUERY} deep",
         f"{values.PATTERN_SECONDS:g} s | `configure` says which pattern",
         f"{shacl.SHAPE_SECONDS:g} s | `configure` says which shape",
         f"{entailment.LIMIT:g} s, `SELFCONF_OWL_RL_SECONDS`",
-        f"{asking.SECONDS:g} s, `--seconds`",
-        f"{asking.ROWS:,}, `--rows`",
+        f"{asking.ANSWER_SECONDS:g} s, `--seconds`",
+        f"{asking.MOST_ROWS:,}, `--rows`",
         f"{asking.MEMORY >> 30} GiB",
-        f"`configure` or `partition` | {PATIENCE:g} s",
+        f"`configure` or `partition` | {ENDPOINT_PATIENCE:g} s",
         f"{LARGEST_ADVERTISEMENT >> 20} MiB | it is left out",
     ):
         assert words in page

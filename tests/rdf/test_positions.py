@@ -109,6 +109,7 @@ class Reader:
         return start
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", [*OURS, *PACKAGED, *MORE], ids=lambda path: path.name)
 def test_every_term_of_real_files_stands_where_an_independent_reader_finds_it(path: Path) -> None:
     text = path.read_text("utf-8")

@@ -1,7 +1,8 @@
-"""What random worlds are worth: most questions of the search only arise where there are solutions and connections."""
+"""The random problems are worth testing with: most have solutions, and many of these have connections."""
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given, settings
 
 from selfconf.model.configuration import Configuration
@@ -12,6 +13,7 @@ from tests.search.worlds import agreement, problems
 WORLDS = settings(agreement(), max_examples=250, derandomize=True, database=None)
 
 
+@pytest.mark.slow
 def test_half_of_the_worlds_have_a_solution_and_two_in_five_of_these_have_connections() -> None:
     answers: list[Configuration | None] = []
 

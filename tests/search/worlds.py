@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from itertools import islice
@@ -17,17 +16,17 @@ from selfconf.model.profile import Input, OperationalParameter, Output, Ports, P
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
-
-NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
+from tests.effort import NIGHTLY, examples
 
 
 def agreement(share: float = 1.0) -> settings:
-    """How many worlds a test sees: 500 where every push runs, 10,000 at night (HYPOTHESIS_PROFILE=nightly)."""
+    """How many problems a test draws: 500 for every push, 50 in a quick run, 10,000 at night."""
     return settings(
-        max_examples=max(1, int((10_000 if NIGHTLY else 500) * share)),
+        max_examples=examples(int(500 * share)),
         deadline=None,
         derandomize=not NIGHTLY,
         database=None,
+        print_blob=True,  # a failure then says how to replay it
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
 
@@ -242,7 +241,10 @@ def _candidates(
     players: Sequence[int],
     common: Sequence[int],
 ) -> tuple[Candidate, ...]:
-    """The candidates of a role in an order of its own; whoever is meant to play it is one and allows what is common."""
+    """Return the candidates of a role in an order of its own.
+
+    Components that are meant to play it are among them, and admit the common value of each variable.
+    """
     order = draw(st.permutations(range(len(profiles)))) if draw(st.booleans()) else range(len(profiles))
     left_out = draw(st.sets(st.sampled_from(NUMBERS), max_size=1)) - set(players)
     return tuple(

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("pybullet", reason="the demo needs PyBullet")
-pytestmark = pytest.mark.sim
+pytestmark = [pytest.mark.sim, pytest.mark.process]
 PATIENCE = 120.0
 
 

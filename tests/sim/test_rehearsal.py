@@ -12,7 +12,7 @@ from sim.apartment import Apartment
 from sim.floor_plan import Block
 from sim.rehearsal import Log, rehearse
 
-pytestmark = pytest.mark.sim
+pytestmark = [pytest.mark.sim, pytest.mark.slow]
 
 ORANGE = (1.0, 0.5, 0.0)
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from selfconf.cli.reports import github, json, junit, sarif, text
 from selfconf.model.diagnostic import Report
 
-FORMATS: Mapping[str, Callable[[Report], str]] = {
+RENDERERS: Mapping[str, Callable[[Report], str]] = {
     "text": text.render,
     "json": json.render,
     "github": github.render,

@@ -11,7 +11,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import BindingError
 from selfconf.model.template import Parameter, Task, Template
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import LITERAL
 from selfconf.rdf.tasks.parameter_values import misfits
@@ -55,19 +55,24 @@ def _turtle_term(words: str, prefixes: Mapping[str, str]) -> Term:
     return turtle.term(quads[0].object)
 
 
-def bind(given: TaskDocument, assignments: Iterable[tuple[str, str]]) -> TaskDocument:
-    """The task with values for its parameters by name, as text; raises BindingError for what cannot be bound."""
+def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> TaskDocument:
+    """The task with values for its parameters by name, as text or as terms.
+
+    Raises BindingError for what cannot be bound.
+    """
     task, document = given.task, given.document
     by_name = {parameter.name: parameter for parameter in task.template.parameters}
     bindings = dict(task.bindings)
-    for name, text in assignments:
+    for name, value in assignments:
         parameter = by_name.get(name)
         if parameter is None:
             known = ", ".join(sorted(by_name)) or "none"
             raise BindingError(f"the template has no parameter {name!r}; it has: {known}")
         if parameter.iri in bindings:
             raise BindingError(f"the parameter {name!r} is bound twice")
-        bindings[parameter.iri] = read_term(text, document.prefixes)
+        bindings[parameter.iri] = (
+            value if isinstance(value, IRI | Literal | BlankNode) else read_term(value, document.prefixes)
+        )
     return TaskDocument(Task(task.template, bindings, task.iri), document)
 
 

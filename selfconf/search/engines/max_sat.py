@@ -1,30 +1,41 @@
-"""Least weight under clauses, guided by cores: the algorithm OLL (Andres et al., ICLP 2012; RC2, JSAT 2019).
+"""Weighted MaxSAT guided by unsatisfiable cores: the algorithm OLL (Andres et al., ICLP 2012; RC2, JSAT 2019).
 
 Assume that no literal with a weight holds. As long as that cannot be, the solver names a *core*: some of the literals,
 of which one at least must hold. The least weight in it is then unavoidable: it is added to the bound and taken off
 each; that a second one of the core holds becomes a literal with that weight of its own (an output of a totalizer),
 and so on. When all can be assumed, the bound is the least weight, and the assumptions describe exactly the solutions
-that have it. Heavy literals are assumed before light ones, so that models come early and cores with much weight first.
+that have it. Heavy literals are assumed before light ones (stratification), so that models come early and cores with
+much weight first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, NamedTuple
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import ClauseSolver
+from selfconf.search.reduction import Option
 
 TRIMS = 3
-"""How often a core is asked again for a smaller one."""
+"""How often a smaller core is asked for."""
 
 
-def minimise(clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget) -> tuple[int, bool]:
-    """The least weight of a model and True, or a lower bound of it and False when the budget ends.
+class Minimum(NamedTuple):
+    """A lower bound of the weight of all models, whether a model has it, and the lightest solution that was met."""
 
-    When it is the least, the clauses are narrowed to the models that have it, and the last model is one of them.
+    bound: int
+    proved: bool
+    lightest: list[Option] | None
+
+
+def minimise(clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget) -> Minimum:
+    """Return the least weight of a model, or what is known of it when the budget ends.
+
+    Once the least weight is proved, the clauses are narrowed to the models that have it, and the last model is one of
+    them.
     """
     with ExitStack() as stack:
         return _Cores(clauses, weights, budget, stack).run()
@@ -33,28 +44,38 @@ def minimise(clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget) 
 class _Cores:
     def __init__(self, clauses: ClauseSolver, weights: Mapping[int, int], budget: Budget, stack: ExitStack) -> None:
         self.clauses, self.budget, self.stack = clauses, budget, stack
-        self.weights = {literal: weight for literal, weight in weights.items() if weight > 0}
+        self.stated = {literal: weight for literal, weight in weights.items() if weight > 0}
+        self.weights = dict(self.stated)
+        """What is left of the weights, with those of the totalizers."""
+        self.lightest: tuple[int, list[Option]] | None = None
         self.counters: dict[int, tuple[Any, int]] = {}
-        """For an output of a totalizer: which one, and how many must hold for it."""
+        """For each output of a totalizer: of which one it is, and how many literals must hold for it."""
         self.bound = 0
 
-    def run(self) -> tuple[int, bool]:
-        """Cores until there are none, stratum by stratum."""
+    def run(self) -> Minimum:
+        """Relax cores until there are none, stratum by stratum."""
         for heavy in self._strata():
             while True:
                 active = [literal for literal, weight in self.weights.items() if weight >= heavy]
                 answer = self.clauses.solve([-literal for literal in active], self.budget)
                 if isinstance(answer, Undecided):
-                    return self.bound, False
+                    return Minimum(self.bound, False, self.lightest[1] if self.lightest else None)
                 if answer:
+                    self._meet()
                     break
-                self._relax(self._trimmed())
+                self._process(self._trimmed())
         for literal in self.weights:
             self.clauses.add([-literal])
-        return self.bound, True
+        return Minimum(self.bound, True, self.clauses.chosen())
+
+    def _meet(self) -> None:
+        """Remember the last model if none before it is lighter: a lower stratum may have heavier models than this."""
+        weight = sum(weight for literal, weight in self.stated.items() if self.clauses.holds(literal))
+        if self.lightest is None or weight < self.lightest[0]:
+            self.lightest = weight, self.clauses.chosen()
 
     def _strata(self) -> Iterator[int]:
-        """Falling limits of weight, each about half of the one before, down to all that is left."""
+        """Yield falling limits of weight, each about half of the one before, down to all that is left."""
         heavy = max(self.weights.values(), default=1)
         while True:
             yield heavy
@@ -63,6 +84,7 @@ class _Cores:
             heavy = max(1, min(heavy // 2, max(w for w in self.weights.values() if w < heavy)))
 
     def _trimmed(self) -> list[int]:
+        """Return the last core, made smaller by asking for a core of it again: a small one raises the bound more."""
         core = self.clauses.core()
         for _ in range(TRIMS):
             if len(core) < 3 or self.clauses.solve(sorted(core), self.budget) is not False:
@@ -73,7 +95,8 @@ class _Cores:
             core = smaller
         return sorted(-literal for literal in core)
 
-    def _relax(self, core: list[int]) -> None:
+    def _process(self, core: list[int]) -> None:
+        """Move the least weight of a core from its literals to the bound, and count how many of them hold."""
         least = min(self.weights[literal] for literal in core)
         self.bound += least
         for literal in core:
@@ -94,7 +117,7 @@ class _Cores:
             self._soft(counter, number + 1, weight)
 
     def _soft(self, counter: Any, number: int, weight: int) -> None:
-        """It costs this weight that so many literals of a totalizer hold."""
+        """Give this weight to the output of a totalizer that a number of its literals hold."""
         output = self.clauses.at_least(counter, number)
         self.counters[output] = counter, number
         self.weights[output] = self.weights.get(output, 0) + weight

@@ -19,6 +19,7 @@ from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
+from tests.effort import examples
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 CLASSES = ("rob:MotorDrive", "rob:Encoder", ":Other")
@@ -236,14 +237,14 @@ def conforming(texts: list[str], role: str, value: str = ":par") -> set[str]:
     return found
 
 
-@settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(100), suppress_health_check=[HealthCheck.too_slow])
 @given(components(), roles())
 def test_a_compiled_role_takes_whom_pyshacl_takes(texts: list[str], role: str) -> None:
     (eligible,) = names(partitioner(f":t a sc:Template ; sc:roles ( :r ) . :r {role} .").partition(read(texts)))
     assert set(eligible) == conforming(texts, role)
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(60), suppress_health_check=[HealthCheck.too_slow])
 @given(components(), roles(free=True), st.sampled_from((*VALUES, ":somebody")))
 def test_a_role_with_a_free_parameter_takes_whom_pyshacl_takes_for_each_value(
     texts: list[str], role: str, value: str

@@ -15,6 +15,7 @@ from selfconf.rdf.reasoning import closure
 from selfconf.rdf.reasoning import fast_owl as quick_owl
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle.document import Document, Triple
+from tests.effort import examples
 
 pytest.importorskip("reasonable")
 
@@ -71,7 +72,7 @@ def hierarchy_of(documents: list[Document], entail: Callable[[list[Triple]], Ite
     return classes | {(name, above) for name in names for above in found.superproperties(name)}
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(st.lists(AXIOMS, min_size=1, max_size=8))
 def test_of_any_ontology_that_suits_both_reasoners_infer_one_hierarchy(axioms: list[str]) -> None:
     document = turtle.parse(PREFIXES + "\n".join(axioms), "o.ttl")

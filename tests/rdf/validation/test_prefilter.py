@@ -12,6 +12,7 @@ from rdflib import Graph
 from selfconf import library
 from selfconf.rdf.validation.prefilter import prefilter
 from selfconf.rdf.validation.shape_violations import Shapes, reported_violations
+from tests.effort import examples
 
 HEAD = """\
 @prefix : <https://example.org/home#> .
@@ -79,7 +80,7 @@ def advertisements(draw: st.DrawFn) -> str:
     return f"{HEAD}{subject} {' ; '.join(said)} .{''.join(others)}"
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(advertisements())
 def test_no_bad_file_is_cleared_and_no_query_is_missed(text: str) -> None:
     graph = Graph().parse(data=text, format="turtle")

@@ -20,7 +20,7 @@ from rdflib.term import Node
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
 from selfconf.rdf.rdflib_terms import from_rdflib
-from selfconf.rdf.shacl.value_tests import compiled
+from selfconf.rdf.shacl import compiled
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
 
 _KINDS: dict[Node, frozenset[type]] = {

@@ -16,6 +16,7 @@ from selfconf.rdf.turtle.document import parse
 from selfconf.rdf.validation.lints.contradictions import contradictions
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeSource
 from selfconf.rdf.vocabulary import SC
+from tests.effort import examples
 from tests.lab import PREFIXES, iri
 from tests.rdf.eligibility.test_compiler import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
 
@@ -66,7 +67,7 @@ PARTS = st.one_of(
 ROLES = st.lists(PARTS, min_size=2, max_size=5, unique=True).map(" ; ".join)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(ROLES, COMPONENTS)
 @example(
     "sh:property [ sh:path :p ; sh:hasValue 1 , 2 ] , [ sh:path :p ; sh:maxCount 1 ]", [(":A", [(":p", "1")], False)]

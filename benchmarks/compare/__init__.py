@@ -1,0 +1,1 @@
+"""The tree as it is beside the tree at a git revision, in one run."""

@@ -1,0 +1,227 @@
+"""`configure`: the answer to a task in an ecology, explained where there is none."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from selfconf.api.ecology import Ecology
+from selfconf.api.ontologies import hierarchy_of
+from selfconf.api.places import Places
+from selfconf.api.task import TaskSpecification
+from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained
+from selfconf.model.configuration import Configuration
+from selfconf.model.consequence import Consequence
+from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.number import number
+from selfconf.model.optimum import Optimum
+from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.provenance import configuration_iri, configuration_triples
+from selfconf.rdf.tasks import TaskDocument
+from selfconf.rdf.turtle import to_turtle
+from selfconf.render import (
+    Names,
+    configuration_text,
+    consequences_text,
+    cost_text,
+    diagram,
+    html_sections,
+    html_text,
+    mermaid,
+)
+
+
+@dataclass(frozen=True)
+class Method:
+    """How a task is composed: the strategy, what the roles see, and how long the search may take."""
+
+    strategy: Strategy = Strategy.FIRST
+    reasoning: Reasoning = Reasoning.SYNTACTIC
+    ontologies: tuple[Path, ...] = ()
+    steps: int | None = None
+    seconds: float | None = None
+
+    @classmethod
+    def of(
+        cls,
+        strategy: str = "first",
+        reasoning: str = "syntactic",
+        ontologies: Sequence[str | Path] = (),
+        steps: int | None = None,
+        seconds: float | None = None,
+    ) -> Method:
+        """A method by the words of the command line. Raises ValueError for a word that is none of them."""
+        return cls(Strategy(strategy), Reasoning(reasoning), tuple(map(Path, ontologies)), steps, seconds)
+
+    def composer(self, task: TaskSpecification) -> Composer:
+        """The composer of a task, which has to be complete."""
+        hierarchy = hierarchy_of(self.reasoning, self.ontologies)
+        return Composer(task.document, hierarchy, self.strategy, self.steps)
+
+    def wider(self) -> Hierarchy | None:
+        """The hierarchy of the mode `subclass`, for explanations, where the method sees none; else None."""
+        return hierarchy_of(Reasoning.SUBCLASS, self.ontologies) if self.reasoning is Reasoning.SYNTACTIC else None
+
+
+@dataclass(frozen=True)
+class Answer(Configuration):
+    """A configuration as the library answers with it: also what it costs, and what would replace what.
+
+    `answer["position"]` are the components of a role, by its local name, CURIE or IRI.
+    """
+
+    task: TaskDocument = field(kw_only=True, repr=False, compare=False)
+    optimum: Optimum | None = field(default=None, kw_only=True, repr=False, compare=False)
+    """The cost with its proof, where the strategy is `best` and the template states a cost."""
+    unknown: tuple[IRI, ...] = field(default=(), kw_only=True, repr=False, compare=False)
+    """The properties of the cost for which no component of the ecology has a number."""
+    what_if: tuple[Consequence, ...] | None = field(default=None, kw_only=True, repr=False, compare=False)
+    """What would replace each component if it failed, where that was asked for and there was time."""
+
+    @property
+    def names(self) -> Names:
+        """Shortens IRIs by the prefixes of the template's document."""
+        return Names(self.task.document.prefixes)
+
+    def __getitem__(self, role: str) -> tuple[IRI, ...]:
+        for assignment in self.assignments:
+            if role in (assignment.role, assignment.role.short, self.names(assignment.role)):
+                return assignment.components
+        known = ", ".join(assignment.role.short for assignment in self.assignments)
+        raise KeyError(f"there is no role {role!r}; the roles are {known}")
+
+    @property
+    def plain(self) -> Configuration:
+        """The configuration by itself."""
+        return Configuration(self.template, self.assignments, self.connections, self.settings, self.bindings)
+
+    def to_turtle(self) -> str:
+        """The configuration in RDF, as Turtle."""
+        plain = self.plain
+        triples = configuration_triples(plain, configuration_iri(plain, 0), self.task.task)
+        return to_turtle(triples, self.task.document.prefixes).rstrip()
+
+    def to_mermaid(self) -> str:
+        """The configuration as a Mermaid flow chart."""
+        return mermaid(self, self.names)
+
+    def __str__(self) -> str:
+        parts = [configuration_text(self, self.names)]
+        if self.optimum is not None:
+            parts.append(cost_text(self.optimum, self.unknown, self.names))
+        if self.what_if is not None:
+            parts.append(consequences_text(self.what_if, self.names))
+        return "\n".join(parts)
+
+    def __repr__(self) -> str:
+        return f"<{self}>"
+
+    def _repr_html_(self) -> str:
+        sections = {f"configured {self.names(self.template)}": diagram(self, self.names)}
+        return html_sections(sections) + html_text(str(self))
+
+
+class Inquiry:
+    """One question, answered: a task in an ecology by a method, with the figures of how it was answered."""
+
+    def __init__(self, task: TaskSpecification, ecology: Ecology, method: Method) -> None:
+        """Reads what the task may want of the ecology. Raises AuthorError and NetworkError."""
+        self.task, self.method = task.complete(), method
+        self.seconds: dict[str, float] = {}
+        """How long each part took: load, partition, search."""
+        began = time.perf_counter()
+        self.composer = method.composer(self.task)
+        partitioner = self.composer.partitioner
+        wider = (method.wider() if ecology.remote else None) or partitioner.hierarchy
+        self.ecology = ecology.for_task(partitioner, wider)
+        self.seconds["load"] = time.perf_counter() - began
+        began = time.perf_counter()
+        partition = self.composer.partition(self.ecology)
+        self.seconds["partition"] = time.perf_counter() - began
+        self.eligible: Mapping[str, int] = {
+            str(role.iri): len(candidates)
+            for role, candidates in zip(self.task.roles, partition.candidates, strict=True)
+        }
+        """How many components are eligible for each role."""
+
+    def answer(self, what_if: bool = False) -> Answer | Refusal | Undecided:
+        """The configuration, or why there is none, within the time of the method."""
+        limit = TimeLimit(self.method.seconds)
+        began = time.perf_counter()
+        found = composed(self.composer, self.ecology, frozenset(), None, limit)
+        self.seconds["search"] = time.perf_counter() - began
+        if isinstance(found, Undecided):
+            return found
+        if isinstance(found, Refusal):
+            return refusal_with_places(self.composer, self.ecology, found, self.method, limit)
+        optimum = found if isinstance(found, Optimum) else None
+        plain = found.configuration if isinstance(found, Optimum) else found
+        consequences = limit.within(lambda: self.composer.what_if(self.ecology, plain), None) if what_if else None
+        return Answer(
+            plain.template,
+            plain.assignments,
+            plain.connections,
+            plain.settings,
+            plain.bindings,
+            task=self.task.document,
+            optimum=optimum,
+            unknown=() if optimum is None else self._unknown(optimum),
+            what_if=None if consequences is None else tuple(consequences),
+        )
+
+    def _unknown(self, optimum: Optimum) -> tuple[IRI, ...]:
+        """The properties of unknown terms that no component in the ecology has a number for."""
+        wanted = {one for _, one in optimum.missing}
+        for advertisement in self.ecology.values():
+            for predicate, value in advertisement.profile.properties:
+                if number(value) is not None:
+                    wanted -= self.composer.hierarchy.superproperties(predicate)
+            if not wanted:
+                break
+        return tuple(sorted(wanted))
+
+
+def refusal_with_places(
+    composer: Composer,
+    ecology: Mapping[IRI, Advertisement],
+    refusal: Refusal,
+    method: Method,
+    limit: TimeLimit,
+    described: Mapping[IRI, Advertisement] | None = None,
+) -> Refusal:
+    """A refusal with all that the time allows to find out, and the place of each of its facts.
+
+    `described` are the advertisements as files of this machine have them, where the ecology's come from elsewhere.
+    """
+    refusal = explained(composer, ecology, refusal, method.wider(), limit)
+    return Places(composer.task.task.template, ecology if described is None else described).placed(refusal)
+
+
+def configure(
+    task: TaskSpecification,
+    ecology: Ecology,
+    *,
+    strategy: str = "first",
+    reasoning: str = "syntactic",
+    ontologies: Sequence[str | Path] = (),
+    steps: int | None = None,
+    seconds: float | None = None,
+    what_if: bool = False,
+) -> Answer | Refusal | Undecided:
+    """The configuration of a task in an ecology, which is true; or a refusal, or that it is not decided: both false.
+
+    `strategy` is `first`, `best` or `paper`, `reasoning` is `syntactic`, `subclass` or `owl-rl`, as on the command
+    line. `steps` and `seconds` limit the search; `seconds` holds in the main thread. `what_if` also tells what would
+    replace each component.
+
+    Raises BindingError where a parameter needs a value, TemplateError for a shape that cannot be judged, NetworkError.
+
+    >>> answer = configure(template("examples/clock/tell-the-time.ttl"), read("examples/clock"))
+    >>> answer["screen"]
+    (<https://example.org/my-home#display>,)
+    """
+    return Inquiry(task, ecology, Method.of(strategy, reasoning, ontologies, steps, seconds)).answer(what_if)

@@ -1,0 +1,215 @@
+"""An ecology: what it holds, and the questions that can be put to it, wherever its advertisements are."""
+
+from __future__ import annotations
+
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from selfconf.errors import ProgrammerError
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.left_out import LeftOut
+from selfconf.model.profile import Profile
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner
+from selfconf.rdf.sparql import Dataset
+from selfconf.rdf.vocabulary import RDF, SC
+from selfconf.render import html_table, short, table
+
+if TYPE_CHECKING:
+    from selfconf.query import Question, Shown
+
+
+class Components(Mapping[IRI, Profile]):
+    """The components of an ecology by IRI, each with its profile; prints as a table."""
+
+    def __init__(self, advertisements: Mapping[IRI, Advertisement]) -> None:
+        self._advertisements = advertisements
+
+    def __getitem__(self, component: IRI) -> Profile:
+        return self._advertisements[component].profile
+
+    def __iter__(self) -> Iterator[IRI]:
+        return iter(self._advertisements)
+
+    def __len__(self) -> int:
+        return len(self._advertisements)
+
+    def _rows(self) -> tuple[list[str], list[list[str]]]:
+        rows = [
+            [
+                short(profile.component),
+                ", ".join(sorted(short(kind) for kind in profile.types - {SC.Component})),
+                ", ".join(port.name for port in profile.inputs),
+                ", ".join(port.name for port in profile.outputs),
+            ]
+            for profile in (self[component] for component in sorted(self))
+        ]
+        return ["component", "types", "inputs", "outputs"], rows
+
+    def __repr__(self) -> str:
+        return table(*self._rows())
+
+    def _repr_html_(self) -> str:
+        return html_table(*self._rows())
+
+
+class Solutions(Sequence[Mapping[str, Term]]):
+    """The solutions of a SELECT query, each the values of its variables by name; prints as a table."""
+
+    def __init__(self, variables: Sequence[str], rows: Sequence[Mapping[str, Term]], cut: bool = False) -> None:
+        self.variables, self._rows, self.cut = tuple(variables), rows, cut
+        """`cut` tells that there are more solutions than were asked for."""
+
+    def __getitem__(self, number: Any) -> Any:
+        return self._rows[number]
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def _cells(self) -> list[list[str]]:
+        return [[short(row[name]) if name in row else "" for name in self.variables] for row in self._rows]
+
+    def __repr__(self) -> str:
+        return table(self.variables, self._cells()) if self.variables else f"{len(self)} solutions"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.variables, self._cells())
+
+
+class Ecology(ABC):
+    """Components that can play in a configuration, wherever their advertisements are: loaded, remote or living."""
+
+    left_out: tuple[LeftOut, ...] = ()
+    """The advertisements that do not count, and why."""
+    complaints: tuple[str, ...] = ()
+    """What else was left out of the answers of a living ecology, a sentence each."""
+    remote = False
+    """Whether only what a task may want is fetched."""
+
+    def close(self) -> None:
+        """Leave the ecology, where that means something."""
+        return
+
+    @property
+    def components(self) -> Components:
+        """The components, each with its profile."""
+        return Components(self.advertisements())
+
+    @abstractmethod
+    def advertisements(self) -> Mapping[IRI, Advertisement]:
+        """All advertisements by component."""
+
+    def for_task(self, partitioner: Partitioner, wider: Hierarchy) -> Mapping[IRI, Advertisement]:
+        """The advertisements among which a task looks for components; `wider` is the widest hierarchy it may see."""
+        return self.advertisements()
+
+    def dataset(self) -> Dataset:
+        """The ecology as RDF, one named graph for each advertisement."""
+        dataset = Dataset()
+        dataset.add_advertisements(self.advertisements().values())
+        return dataset
+
+    def query(self, sparql: str, *, seconds: float = 60.0, rows: int = 100_000) -> Solutions | bool | str:
+        """The answer to a SPARQL 1.1 query: solutions, a truth value, or for CONSTRUCT and DESCRIBE Turtle.
+
+        Runs in a process of its own, which is ended after `seconds`. Raises QueryError.
+
+        >>> home.query("ASK { ?c a rob:Display }")
+        True
+        """
+        from selfconf.query import Question  # loads what a configuration does not need
+
+        question = Question(sparql, "json", rows, seconds=seconds)
+        shown = self.asked(question)
+        body = json.loads(shown.text)
+        if not isinstance(body, dict) or "head" not in body:  # the JSON-LD of triples
+            return self.asked(replace(question, form="turtle")).text
+        if "boolean" in body:
+            return bool(body["boolean"])
+        found = [{name: _term(cell) for name, cell in row.items()} for row in body["results"]["bindings"]]
+        return Solutions(body["head"]["vars"], found, shown.cut)
+
+    def asked(self, question: Question) -> Shown:
+        """The answer to a question as text, in the format that it asks for."""
+        from selfconf.query import answer
+
+        return answer(self.dataset(), question)
+
+    def __len__(self) -> int:
+        return len(self.advertisements())
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __repr__(self) -> str:
+        return f"<ecology of {len(self)} components>"
+
+    def _repr_html_(self) -> str:
+        return self.components._repr_html_()
+
+
+class LoadedEcology(Ecology):
+    """An ecology whose advertisements were read from files, text or graphs."""
+
+    def __init__(
+        self, index: AdvertisementIndex, left_out: tuple[LeftOut, ...] = (), names: Iterable[str] = ()
+    ) -> None:
+        self._index, self.left_out, self.names = index, left_out, tuple(names)
+
+    def advertisements(self) -> AdvertisementIndex:
+        """All advertisements by component, and by the types of the components."""
+        return self._index
+
+    def __repr__(self) -> str:
+        return f"<ecology of {len(self)} components from {', '.join(self.names)}>"
+
+
+class EndpointEcology(Ecology):
+    """An ecology behind a SPARQL endpoint: it is asked for what a task may want, and for nothing else."""
+
+    remote = True
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+
+    def advertisements(self) -> Mapping[IRI, Advertisement]:
+        """Raises ProgrammerError: an endpoint may hold a million of them; ask it by `query`."""
+        raise ProgrammerError(f"the ecology at {self.url} is not loaded as a whole; ask it by query()")
+
+    def for_task(self, partitioner: Partitioner, wider: Hierarchy) -> Mapping[IRI, Advertisement]:
+        """The advertisements of the components that some role of a task may want. Raises NetworkError."""
+        from selfconf.query import read_endpoint
+
+        found, left_out = read_endpoint(self.url, partitioner.roles, wider)
+        self.left_out = tuple(left_out)
+        return found
+
+    def asked(self, question: Question) -> Shown:
+        """The answer of the endpoint as text."""
+        from selfconf.query import answer
+
+        return answer(Dataset(), replace(question, endpoint=self.url))
+
+    def __len__(self) -> int:
+        raise TypeError(f"how many components there are at {self.url} is a question for query()")
+
+    def __repr__(self) -> str:
+        return f"<ecology at {self.url}>"
+
+    def _repr_html_(self) -> str:
+        return html_table(["endpoint"], [[self.url]])
+
+
+def _term(cell: Mapping[str, str]) -> Term:
+    """A term of SPARQL 1.1 Query Results JSON."""
+    if cell["type"] == "uri":
+        return IRI(cell["value"])
+    if cell["type"] == "bnode":
+        return BlankNode(f"_:{cell['value']}")
+    if "xml:lang" in cell:
+        return Literal(cell["value"], RDF.langString, cell["xml:lang"])
+    return Literal(cell["value"], IRI(cell["datatype"])) if "datatype" in cell else Literal(cell["value"])

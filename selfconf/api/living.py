@@ -1,0 +1,214 @@
+"""`join`: the living ecology, over Zenoh: what is alive, which tasks run, and tasks of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from types import TracebackType
+from typing import TypeVar
+
+from selfconf import rendezvous
+from selfconf.api.answer import Answer, Method, configure
+from selfconf.api.ecology import Ecology
+from selfconf.api.run import Run
+from selfconf.api.task import TaskSpecification
+from selfconf.bus.port import Replies
+from selfconf.bus.zenoh_bus import client
+from selfconf.configurator.state import Policy
+from selfconf.discovery import Discovery, EcologyView
+from selfconf.errors import NetworkError, PeerError, TurtleError
+from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import owner_of
+from selfconf.protocol.messages import Status
+from selfconf.rdf import turtle
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.sparql import Dataset
+
+ROLL_CALL = 3.0
+"""How long, in seconds, a roll-call may take."""
+ANSWER_PATIENCE = 20.0
+"""How long, in seconds, an answer is waited for that the bus itself should end earlier."""
+TAKING_DOWN = 15.0
+"""How long, in seconds, a configurator may take to release everything."""
+Result = TypeVar("Result")
+
+
+class LivingEcology(Ecology):
+    """Everything that is alive under one name, as seen over the network; use it in a `with` statement."""
+
+    def __init__(self, name: str, endpoints: Sequence[str]) -> None:
+        """Connects; raises NetworkError if no site of the ecology answers."""
+        self.name, self.endpoints = name, tuple(endpoints)
+        self._bus = client(list(endpoints))
+        self._view = EcologyView(self._bus, name)
+        self.discovery = Discovery()
+        """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
+        try:
+            if not self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL)):
+                raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> LivingEcology:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Leave the ecology; nothing that runs in it is touched."""
+        self._bus.close()
+
+    def discover(self) -> Discovery:
+        """Acts 1 and 2 of the paper: ask everything that is alive what it advertises. Raises NetworkError."""
+        self.discovery = self._wait(self._view.discover)
+        missing = (
+            f"site {site} lives, but did not answer in full; what it advertises may be missing"
+            for site in self.discovery.missing
+        )
+        self.complaints = (*self.discovery.complaints, *missing)
+        return self.discovery
+
+    def advertisements(self) -> Mapping[IRI, Advertisement]:
+        """All advertisements by component, as they are now."""
+        return {component: found.advertisement for component, found in self.discover().found.items()}
+
+    def state(self, component: IRI) -> str:
+        """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.
+
+        As of the last discovery.
+        """
+        if self._view.life(component) is not None:
+            return "alive"
+        found = self.discovery.found.get(component)
+        return "dormant" if found is not None and found.startable else "absent"
+
+    @property
+    def sites(self) -> tuple[str, ...]:
+        """The sites that were found by the last discovery, sorted."""
+        return self.discovery.sites
+
+    @property
+    def tasks(self) -> tuple[Status, ...]:
+        """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
+        found: list[Status] = []
+        rejected: list[str] = []
+        keys = self._view.keys
+        for sample in self._ask(keys.configurator_call("*", "status")).samples:
+            try:
+                status = decode(sample.payload, Status)
+            except PeerError as error:
+                rejected.append(f"left out an answer: {error}")
+                continue
+            if sample.key == keys.configurator_call(status.configurator, "status"):
+                found.append(status)
+            else:
+                rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
+        self.complaints = tuple(rejected)
+        return tuple(sorted(found, key=lambda status: status.configurator))
+
+    def dataset(self) -> Dataset:
+        """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
+        dataset = super().dataset()
+        complaints = list(self.complaints)
+        for sample in self._ask(self._view.keys.configuration()).samples:
+            try:
+                document = turtle.parse(sample.payload, sample.key)
+            except TurtleError as error:
+                complaints.append(f"left out a configuration: {error}")
+                continue
+            dataset.add(IRI(f"urn:selfconf:{sample.key}"), document.triples())
+        self.complaints = tuple(complaints)
+        return dataset
+
+    def configure(
+        self,
+        task: TaskSpecification,
+        *,
+        strategy: str = "first",
+        reasoning: str = "syntactic",
+        ontologies: Sequence[str | Path] = (),
+        steps: int | None = None,
+        seconds: float | None = None,
+    ) -> Answer | Refusal | Undecided:
+        """What `selfconf.configure` answers for this ecology, as it is now. Changes nothing."""
+        return configure(
+            task, self, strategy=strategy, reasoning=reasoning, ontologies=ontologies, steps=steps, seconds=seconds
+        )
+
+    def run(
+        self,
+        task: TaskSpecification,
+        *,
+        policy: str = "repair",
+        wait: bool = False,
+        strategy: str = "first",
+        reasoning: str = "syntactic",
+        ontologies: Sequence[str | Path] = (),
+        steps: int | None = None,
+        seconds: float | None = None,
+    ) -> Run:
+        """A run of a task: configured, deployed, watched and configured again until it is left; use it in a `with`.
+
+        `policy` says what to do with the rest when a component is lost, `repair` or `dismantle`; `wait` waits for the
+        ecology to change where there is no configuration.
+        """
+        method = Method.of(strategy, reasoning, ontologies, steps, seconds)
+        return Run(task, method, self.name, self.endpoints, Policy(policy), wait)
+
+    def stop(self, configurator: str | None = None) -> tuple[str, ...]:
+        """Take down what one configurator has deployed, or all of them; the names of those that were stopped.
+
+        Raises NetworkError if the one that is named does not answer, or if one does not end in time.
+        """
+        found = [s.configurator for s in self.tasks if configurator in (None, s.configurator)]
+        if configurator is not None and not found:
+            raise NetworkError(f"no configurator {configurator!r} answers; `selfconf status` shows those that do")
+        for name in found:
+            self._ask(self._view.keys.configurator_call(name, "stop"))
+        self._await_end(set(found))
+        return tuple(found)
+
+    def _await_end(self, names: set[str]) -> None:
+        """Wait until configurators have released everything and left."""
+        deadline = self._bus.now() + TAKING_DOWN
+        lives = partial(self._bus.roll_call, self._view.keys.any_configurator_life(), ROLL_CALL)
+        while names:
+            names &= {owner_of(key) for key in self._wait(lives)}
+            if names and self._bus.now() > deadline:
+                raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")
+            self._bus.poll(0.02)
+
+    def _ask(self, key: str, payload: bytes = b"", seconds: float = ROLL_CALL) -> Replies:
+        def begin(done: Callable[[Replies], None]) -> None:
+            self._bus.ask(key, payload, seconds, done)
+
+        return self._wait(begin)
+
+    def _wait(self, begin: Callable[[Callable[[Result], None]], None]) -> Result:
+        """Begin something that says when it is done, and let the bus run until then."""
+        results: list[Result] = []
+        begin(results.append)
+        deadline = self._bus.now() + ANSWER_PATIENCE
+        self._bus.run(lambda: bool(results) or self._bus.now() > deadline)
+        if not results:
+            raise NetworkError("the ecology does not answer")
+        return results[0]
+
+    def __repr__(self) -> str:
+        return f"<living ecology {self.name}>"
+
+
+def join(ecology: str | None = None, *, connect: Sequence[str] = ()) -> LivingEcology:
+    """The living ecology of a name; without one, the only one on this machine, or the one behind the endpoints.
+
+    `connect` are endpoints of sites, such as `tcp/127.0.0.1:7447`; without them the sites on this machine. Joining
+    reads; nothing changes before `run`. Raises NetworkError, saying what to try, if there is no such ecology.
+    """
+    return LivingEcology(*rendezvous.find(ecology, list(connect)))

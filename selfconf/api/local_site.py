@@ -1,0 +1,106 @@
+"""A site of one's own on this machine: a process that serves advertisements for as long as it is needed."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+
+from selfconf import rendezvous
+from selfconf.api.reading import STDIN, existing
+from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
+from selfconf.rendezvous import LocalSite
+from selfconf.termination import parent_environment
+
+SITE_STARTS = 20.0
+"""How long, in seconds, a site may take to listen."""
+MISUSE = 2
+"""The exit code of a program that has said in one sentence why it cannot run."""
+
+
+class SiteProcess:
+    """A site as a process of its own: it listens once the `with` block begins, and is ended with it.
+
+    What the site and the components that it starts print goes to stderr.
+    """
+
+    def __init__(self, paths: Sequence[str | Path], ecology: str | None = None, connect: Sequence[str] = ()) -> None:
+        """Raises AuthorError for paths that cannot be watched."""
+        self.paths = [Path(path) for path in paths]
+        if STDIN in self.paths:
+            raise AuthorError("a site watches the files of its advertisements, so give files to --ads, not -")
+        for path in self.paths:
+            existing(path)
+        self.ecology = ecology or f"run-{secrets.token_hex(3)}"
+        self.name = f"s{secrets.token_hex(3)}"
+        self._connect = tuple(connect)
+        self._process: subprocess.Popen[bytes] | None = None
+        self.endpoint = ""
+        """Where it listens."""
+        self.exit_code_before_end: int | None = None
+        """The exit code of a process that has ended before it was told to."""
+
+    def __enter__(self) -> SiteProcess:
+        """Raises NetworkError if it does not listen in time, SiteMisusedError if it has said why it cannot."""
+        where = [part for endpoint in self._connect for part in ("--connect", endpoint)]
+        names = ["--ecology", self.ecology, "--name", self.name]
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "selfconf", "site", *map(str, self.paths), *names, *where],
+            stdin=subprocess.DEVNULL,
+            stdout=sys.stderr,
+            start_new_session=True,  # Ctrl-C is for the program that owns the site, which ends it in its own time
+            env={**os.environ, **parent_environment()},
+        )
+        try:
+            self.endpoint = self._listening(self._process)
+        except BaseException:
+            self._end()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._end()
+
+    @property
+    def endpoints(self) -> list[str]:
+        """Where to connect: to the site itself, and to those that it is connected to."""
+        return [self.endpoint, *self._connect]
+
+    def running(self) -> bool:
+        """Whether the process runs; once it has ended by itself, `exit_code_before_end` says how."""
+        if self._process is not None and self.exit_code_before_end is None:
+            self.exit_code_before_end = self._process.poll()
+        return self.exit_code_before_end is None
+
+    def _end(self) -> None:
+        if self._process is not None:
+            self.running()
+            self._process.terminate()
+            self._process.wait()
+
+    def _listening(self, process: subprocess.Popen[bytes]) -> str:
+        deadline = time.monotonic() + SITE_STARTS
+        while time.monotonic() < deadline:
+            for site in rendezvous.local_sites(self.ecology):
+                if site.site == self.name:
+                    return site.endpoint
+            try:
+                process.wait(0.02)
+            except subprocess.TimeoutExpired:
+                continue
+            if process.returncode == MISUSE:
+                raise SiteMisusedError("the site for the advertisements cannot run, and has said why")
+            raise NetworkError(f"the site for the advertisements ended with code {process.returncode}")
+        raise NetworkError(f"the site for the advertisements does not listen after {SITE_STARTS:.0f} s")
+
+
+def sites(ecology: str | None = None) -> tuple[LocalSite, ...]:
+    """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each."""
+    return tuple(rendezvous.local_sites(ecology))

@@ -1,0 +1,45 @@
+"""The ontologies of selfconf and of a user, and the hierarchy that a reasoning mode takes from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from selfconf import entailment, files, library
+from selfconf.api.reading import file_text, listed_files
+from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.term import IRI
+from selfconf.rdf import turtle
+from selfconf.rdf.reasoning import HIERARCHY, hierarchy
+from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset
+
+if TYPE_CHECKING:
+    from selfconf.query import Question
+
+
+def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hierarchy:
+    """The hierarchy that a reasoning mode lets the roles see; a folder stands for all ontologies below it.
+
+    Raises AuthorError for what is not there or cannot be read, also in the mode `syntactic`, which uses none of it.
+    """
+    own = listed_files(ontologies, files.ONTOLOGY)
+    if reasoning is Reasoning.SYNTACTIC:
+        return hierarchy([], reasoning)
+    relevant = HIERARCHY if reasoning is Reasoning.SUBCLASS else None
+    texts = map(file_text, (*library.ontologies(), *own))
+    return hierarchy(
+        [turtle.read_ontology(*text, relevant) for text in texts], reasoning, entailment.entailed_hierarchy
+    )
+
+
+def with_ontologies(dataset: Dataset, question: Question, ontologies: Sequence[Path]) -> tuple[Dataset, Question]:
+    """A dataset with ontologies, each a named graph, and a question that may use their prefixes."""
+    prefixes: dict[str, str] = {}
+    for path in listed_files(ontologies, files.ONTOLOGY):
+        document = turtle.read_ontology(*file_text(path))
+        prefixes |= document.prefixes
+        dataset.add(IRI(path.resolve().as_uri()), document.triples())
+    lent = {name: base for name, base in prefixes.items() if name and name not in QUERY_PREFIXES}
+    return dataset, replace(question, prefixes=lent)

@@ -1,0 +1,109 @@
+"""`partition`: which components are eligible for each role of a task, and what keeps the others out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+
+from selfconf.api.answer import Inquiry, Method
+from selfconf.api.ecology import Ecology
+from selfconf.api.task import TaskSpecification
+from selfconf.model.obstacle import Obstacle
+from selfconf.model.partition import Candidate
+from selfconf.model.template import Role
+from selfconf.model.term import IRI
+from selfconf.rdf.eligibility import CompiledRole, Exclusion, exclusions
+from selfconf.render import Names, html_table, table
+
+
+class RolePartition:
+    """The candidates of one role, and what keeps the other components out."""
+
+    def __init__(self, inquiry: Inquiry, role: Role, compiled: CompiledRole, candidates: Sequence[Candidate]) -> None:
+        self._inquiry, self._compiled = inquiry, compiled
+        self.role = role
+        self.candidates = tuple(candidates)
+        """The eligible components with what they allow the free parameters to be, in the order of trying."""
+
+    @property
+    def eligible(self) -> tuple[IRI, ...]:
+        """The eligible components, in the order in which they are tried."""
+        return tuple(candidate.profile.component for candidate in self.candidates)
+
+    @cached_property
+    def excluded(self) -> tuple[Exclusion, ...]:
+        """The components that are not eligible, each with its obstacles; the nearest ones first."""
+        partitioner = self._inquiry.composer.partitioner
+        return tuple(exclusions(partitioner, self._compiled, frozenset(self.eligible), self._inquiry.ecology))
+
+    def obstacles(self, component: IRI) -> tuple[Obstacle, ...]:
+        """What keeps a component out of the role; nothing if it is eligible."""
+        return next((one.obstacles for one in self.excluded if one.component == component), ())
+
+    def __repr__(self) -> str:
+        names = ", ".join(component.short for component in self.eligible) or "no component"
+        return f"<role {self.role.iri.short}: {names}>"
+
+
+class PartitionTable(Mapping[str, RolePartition]):
+    """F1 ... Fn by the local name, CURIE or IRI of the role, in the order of the roles; prints as a table."""
+
+    def __init__(self, inquiry: Inquiry) -> None:
+        partition = inquiry.composer.partition(inquiry.ecology)
+        roles = zip(inquiry.task.roles, inquiry.composer.partitioner.roles, partition.candidates, strict=True)
+        self.inquiry = inquiry
+        self.roles = tuple(RolePartition(inquiry, *row) for row in roles)
+
+    @property
+    def names(self) -> Names:
+        """Shortens IRIs by the prefixes of the template's document."""
+        return self.inquiry.task.names
+
+    @property
+    def sufficient(self) -> bool:
+        """Whether every role has as many candidates as it asks for."""
+        return all(len(one.candidates) >= one.role.minimum for one in self.roles)
+
+    def __getitem__(self, role: str) -> RolePartition:
+        for one in self.roles:
+            if role in (one.role.iri, one.role.iri.short, self.names(one.role.iri)):
+                return one
+        raise KeyError(f"there is no role {role!r}; the roles are {', '.join(self)}")
+
+    def __iter__(self) -> Iterator[str]:
+        return (one.role.iri.short for one in self.roles)
+
+    def __len__(self) -> int:
+        return len(self.roles)
+
+    def _rows(self) -> tuple[list[str], list[list[str]]]:
+        rows = [
+            [self.names(one.role.iri), str(number), self.names(component)]
+            for one in self.roles
+            for number, component in enumerate(one.eligible or (IRI(""),), 1 if one.eligible else 0)
+        ]
+        return ["role", "", "eligible, in the order of trying"], rows
+
+    def __repr__(self) -> str:
+        return table(*self._rows())
+
+    def _repr_html_(self) -> str:
+        return html_table(*self._rows())
+
+
+def partition(
+    task: TaskSpecification,
+    ecology: Ecology,
+    *,
+    reasoning: str = "syntactic",
+    ontologies: Sequence[str | Path] = (),
+) -> PartitionTable:
+    """The partition of an ecology by the roles of a task: which components are eligible, and why the others are not.
+
+    Raises TemplateError for a shape that cannot be judged, BindingError, NetworkError.
+
+    >>> partition(template("examples/clock/tell-the-time.ttl"), read("examples/clock"))["source"].eligible
+    (<https://example.org/my-home#clock>,)
+    """
+    return PartitionTable(Inquiry(task, ecology, Method.of(reasoning=reasoning, ontologies=ontologies)))

@@ -1,0 +1,162 @@
+"""A run: a task that is configured, deployed, watched and configured again, and what happens meanwhile as events."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from types import TracebackType
+
+from selfconf.api.answer import Method, refusal_with_places
+from selfconf.api.places import Places
+from selfconf.api.task import TaskSpecification
+from selfconf.bus.zenoh_bus import client
+from selfconf.composition import TimeLimit, composed
+from selfconf.configurator.state import Loss, Policy
+from selfconf.deployment import RunRequest, TaskRunner
+from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
+from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.run_event import RunEvent, TaskRefused, TaskWaiting
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.termination import Termination
+
+TAKING_DOWN = 15.0
+"""How long, in seconds, leaving a run waits for its components to be turned off."""
+CHECK = 0.5
+"""How often, in seconds, it is checked whether what a run rests on is still there."""
+
+
+class Run:
+    """A task that runs in a living ecology; use it in a `with` statement, which takes it down at its end.
+
+    The run is driven by `events`, in the thread that reads them: read on for as long as it should be watched.
+    """
+
+    def __init__(
+        self,
+        task: TaskSpecification,
+        method: Method,
+        ecology: str,
+        endpoints: Sequence[str],
+        policy: Policy = Policy.REPAIR,
+        wait: bool = False,
+        rests_on: Callable[[], bool] = lambda: True,
+        described: Callable[[], Mapping[IRI, Advertisement]] = dict,
+    ) -> None:
+        """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
+
+        Raises BindingError and NetworkError.
+        """
+        self.task, self.method = task.complete(), method
+        self.refusal: Refusal | Undecided | None = None
+        """Why the task has ended, where there is no configuration (any more)."""
+        self._composer = method.composer(self.task)
+        self._rests_on, self._described = rests_on, described
+        self._found: Mapping[IRI, Advertisement] = {}
+        self._events: deque[RunEvent] = deque()
+        self._ended = False
+        self._bus = client(list(endpoints))
+        self._runner = TaskRunner(
+            self._bus,
+            ecology,
+            RunRequest(
+                task=self.task.document.task,
+                compose=self._compose,
+                standby=self._composer.standby,
+                passed_over=self._composer.passed_over,
+                policy=policy,
+                patient=wait,
+                report=self._events.append,
+                ended=self._settle,
+            ),
+        )
+
+    def __enter__(self) -> Run:
+        self._runner.start()
+        self._check()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Turn every component off and leave, whatever has happened in the block."""
+        try:
+            self.stop()
+            deadline = self._bus.now() + TAKING_DOWN
+            self._bus.run(lambda: self._ended or self._bus.now() > deadline)
+        finally:
+            self._bus.close()
+
+    def events(self) -> Iterator[RunEvent]:
+        """What happens, in order, until the task has ended; drives the run while it waits for the next event.
+
+        Raises SelfconfError where the shapes of the task cannot be judged, once everything is taken down.
+        """
+        while not (self._ended and not self._events):
+            self._bus.run(lambda: bool(self._events) or self._ended)
+            while self._events:
+                yield self._placed(self._events.popleft())
+        if self._runner.trouble is not None:
+            raise self._runner.trouble
+
+    def stop(self) -> None:
+        """Take the configuration down; `events` ends when that is done. May be called from any thread."""
+        self._bus.wake_up(self._runner.stop)
+
+    def stop_on_signals(self) -> None:
+        """From now on SIGINT and SIGTERM stop the run, instead of ending the program in the middle of it."""
+        Termination(self._bus, self._runner.stop)
+
+    @property
+    def name(self) -> str:
+        """The name under which the configurator of this run is known in the ecology."""
+        return self._runner.name
+
+    @property
+    def configuration(self) -> Configuration | None:
+        """What is deployed, or being deployed."""
+        return self._runner.configuration
+
+    @property
+    def losses(self) -> Mapping[IRI, Loss]:
+        """The components that were lost and have not come back, each with the cause."""
+        return self._runner.state.lost
+
+    @property
+    def lost(self) -> Mapping[IRI, str]:
+        """Why each component that was lost was lost, in words."""
+        return self._runner.losses
+
+    def explained(self) -> Refusal | Undecided | None:
+        """The refusal by which the task has ended, with all that can be found out now that nothing runs any more."""
+        if not isinstance(self.refusal, Refusal):
+            return self.refusal
+        limit = TimeLimit(self.method.seconds)
+        described = self._described()
+        return refusal_with_places(self._composer, self._found, self.refusal, self.method, limit, described)
+
+    def _compose(
+        self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Outcome:
+        answer = composed(self._composer, found, lost, running, TimeLimit(self.method.seconds))
+        if isinstance(answer, Refusal):
+            self._found = {component: one for component, one in found.items() if component not in lost}
+        return answer.configuration if isinstance(answer, Optimum) else answer
+
+    def _settle(self, refusal: Refusal | Undecided | None) -> None:
+        self.refusal, self._ended = refusal, True
+
+    def _placed(self, event: RunEvent) -> RunEvent:
+        """An event with the places of what its refusal speaks of; looked up now, when nothing waits for act 4."""
+        if isinstance(event, TaskWaiting | TaskRefused) and isinstance(event.refusal, Refusal):
+            places = Places(self.task.document.task.template, self._described())
+            return replace(event, refusal=places.placed(event.refusal))
+        return event
+
+    def _check(self) -> None:
+        if self._rests_on():
+            self._bus.later(CHECK, self._check)
+        else:
+            self._runner.stop()

@@ -1,0 +1,61 @@
+"""A site as a program: it listens, announces itself on this machine, and serves until it is told to end."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from selfconf import rendezvous
+from selfconf.api.reading import existing
+from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, ZenohBus, router
+from selfconf.errors import NetworkError
+from selfconf.protocol.keys import checked_name
+from selfconf.render import count
+from selfconf.rendezvous import LocalSite
+from selfconf.site import Shelf, Site
+from selfconf.termination import Termination
+
+
+def serve(
+    paths: Sequence[Path],
+    ecology: str,
+    name: str | None,
+    listen: str | None,
+    connect: Sequence[str],
+    complain: Callable[[str], None],
+) -> None:
+    """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
+
+    Without a name it gets one of its own; without an endpoint it listens where a site of the ecology usually does.
+    `complain` hears what is left out, and where it listens. Raises AuthorError and NetworkError.
+    """
+    for path in paths:
+        existing(path)
+    checked_name(ecology, "an ecology")
+    name = checked_name(name or f"s{secrets.token_hex(3)}", "a site")
+    shelf = Shelf(paths, complain)
+    # One site at a time looks which others there are and announces itself, or two would miss each other.
+    with rendezvous.turn():
+        others = [site.endpoint for site in rendezvous.local_sites(ecology)]
+        bus = _router(listen, ecology, list(dict.fromkeys([*connect, *others])))
+        ended = Termination(bus)
+        site = Site(bus, ecology, name, shelf, rendezvous.environment(ecology, bus.endpoint))
+        announced = rendezvous.announce(LocalSite(ecology, name, bus.endpoint, os.getpid()))
+    served = count(len(site.shelf.advertisements), "advertisement")
+    complain(f"site {name} of ecology {ecology} serves {served} on {bus.endpoint}")
+    try:
+        bus.run(ended)
+    finally:
+        rendezvous.leave(announced)
+        site.close()
+
+
+def _router(listen: str | None, ecology: str, connect: list[str]) -> ZenohBus:
+    if listen is not None:
+        return router(listen, connect)
+    try:
+        return router(rendezvous.usual_endpoint(ecology), connect)
+    except NetworkError:  # another program has that port
+        return router(ANYWHERE_ON_LOOPBACK, connect)

@@ -1,0 +1,152 @@
+"""`template`: a task specification, to be bound and configured (section 3.1 of the paper)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from selfconf.api.reading import Text, text_of
+from selfconf.errors import BindingError, TemplateError
+from selfconf.model.template import Parameter, Role
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf import tasks, turtle
+from selfconf.rdf.tasks import TaskDocument
+from selfconf.rdf.vocabulary import XSD
+from selfconf.render import Names, html_table, table
+
+if TYPE_CHECKING:
+    import rdflib
+
+Value = str | int | float | Decimal | IRI | Literal
+"""What a parameter can be bound to: a string is a CURIE in the template's prefixes, an `<IRI>`, a Turtle literal or
+plain words; a number or truth value stands for the literal of its kind."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class TaskSpecification:
+    """A template with values for some of its parameters. Immutable: `bind` returns another one."""
+
+    document: TaskDocument
+
+    @property
+    def iri(self) -> IRI:
+        """The name of the template."""
+        return self.document.task.template.iri
+
+    @property
+    def roles(self) -> tuple[Role, ...]:
+        """The roles of the template, in its order."""
+        return self.document.task.template.roles
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters of the template, by name."""
+        return self.document.task.template.parameters
+
+    @property
+    def bindings(self) -> dict[str, Term]:
+        """The values that parameters are bound to, by name."""
+        return self.document.task.by_name()
+
+    @property
+    def names(self) -> Names:
+        """Shortens IRIs by the prefixes of the template's document."""
+        return Names(self.document.document.prefixes)
+
+    def bind(self, **values: Value) -> TaskSpecification:
+        """The task with values for its parameters by name. Raises BindingError for what cannot be bound.
+
+        >>> template("examples/clock/tell-the-time.ttl").bind(room=":kitchen").bindings
+        {'room': <https://example.org/my-home#kitchen>}
+        """
+        return TaskSpecification(tasks.bind(self.document, [(n, _text(n, v)) for n, v in values.items()]))
+
+    def complete(self) -> TaskSpecification:
+        """The task with defaults filled in and every value checked. Raises BindingError."""
+        return TaskSpecification(tasks.complete(self.document))
+
+    def _rows(self) -> tuple[list[str], list[list[str]]]:
+        names = self.names
+        rows = [["role", names(role.iri), ", ".join(map(names, role.types))] for role in self.roles]
+        bound = self.bindings
+        rows += [["parameter", p.name, names(bound[p.name]) if p.name in bound else "(free)"] for p in self.parameters]
+        return ["", "name", "asks for, or is"], rows
+
+    def __repr__(self) -> str:
+        return f"<task {self.names(self.iri)}>\n{table(*self._rows())}"
+
+    def _repr_html_(self) -> str:
+        return html_table(*self._rows())
+
+
+def template(source: str | Path | rdflib.Graph, name: str | None = None) -> TaskSpecification:
+    """The template or task in a file, in Turtle text, or in an rdflib graph; `name` says which, where it holds several.
+
+    Raises TemplateError with file, line and column for what is Turtle but no template, TurtleError and AuthorError for
+    what cannot be read.
+
+    >>> [role.iri.short for role in template("examples/clock/tell-the-time.ttl").roles]
+    ['source', 'screen']
+    """
+    text, source_name, base = text_of(source)
+    document = turtle.parse(text, source_name, base)
+    wanted = None
+    if name is not None:
+        term = tasks.read_term(name, document.prefixes)
+        if not isinstance(term, IRI):
+            raise BindingError(f"a template is named by a CURIE or an <IRI>, not by {name!r}")
+        wanted = term
+    try:
+        return TaskSpecification(tasks.read_task(document, wanted))
+    except TemplateError as error:
+        raise _located((text, source_name, base), error) from None
+
+
+def pairs(bound: Iterable[str]) -> dict[str, str]:
+    """NAME=TERM taken apart, as on a command line. Raises BindingError."""
+    found: dict[str, str] = {}
+    for text in bound:
+        name, equals, term = text.partition("=")
+        if not equals or not name:
+            raise BindingError(f"--bind takes NAME=TERM, not {text!r}; for example --bind robot=:Astrid")
+        if name.strip() in found:
+            raise BindingError(f"the parameter {name.strip()!r} is bound twice")
+        found[name.strip()] = term
+    return found
+
+
+def _text(name: str, value: Value) -> str | Term:
+    """A value as the reader of terms takes it: text, or a term."""
+    if isinstance(value, bool):
+        return Literal(str(value).lower(), XSD.boolean)
+    if isinstance(value, int):
+        return Literal(str(value), XSD.integer)
+    if isinstance(value, float):
+        return Literal(repr(value), XSD.double)
+    if isinstance(value, Decimal):
+        return Literal(str(value), XSD.decimal)
+    if isinstance(value, IRI | Literal):
+        return value
+    if hasattr(value, "n3"):  # one of rdflib's terms; they are strings too
+        from selfconf.rdf.rdflib_terms import from_rdflib
+
+        return from_rdflib(value)  # type: ignore[arg-type]  # told by the line above
+    if isinstance(value, BlankNode) or value.startswith("_:"):
+        raise BindingError(f"{value} is a blank node, which has a name in its own file alone; bind {name} to an IRI")
+    return value
+
+
+def _located(source: Text, error: TemplateError) -> TemplateError:
+    """The error with the line and column of the statement that it is about."""
+    from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # rdflib, for mistakes alone
+
+    text, name, base = source
+    try:
+        _, positions = parse_with_positions(text.decode(), name, base or "file:///")
+    except (NotTurtleError, RecursionError):  # rdflib's grammar and Oxigraph's differ in corners
+        return error
+    place = positions.at_the_end_of(error.subject, error.steps)
+    return error if place is None else TemplateError(error.message, file=name, line=place.line, column=place.column)

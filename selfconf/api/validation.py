@@ -1,0 +1,100 @@
+"""`validate`: every problem of some files with file, line, column and code, before a task meets them."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from selfconf import files, library
+from selfconf.api.file_checks import Remembered, shared
+from selfconf.errors import AuthorError
+from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
+from selfconf.rdf import validation
+from selfconf.rdf.validation import CheckEach, SourceText
+
+LARGEST_FILE = 64 << 20
+"""A file of more bytes is not read."""
+
+
+def validate(paths: Iterable[str | Path], *, ontologies: Iterable[str | Path] = (), cache: bool = False) -> Report:
+    """The problems of files and folders, as the command `validate` reports them; `-` is standard input.
+
+    `cache` remembers what was found, and checks only what has changed since the last run over the same paths.
+    Raises AuthorError for an ontology that cannot be read; a file that cannot be read is a diagnostic.
+
+    >>> validate(["examples/clock"]).conforms
+    True
+    """
+    names = [str(path) for path in paths]
+    each = _remembered(names) if cache else shared
+    return check(names, map(str, ontologies), each)
+
+
+def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach = map) -> Report:
+    """The problems of files and folders by the shapes that ship with selfconf; `each` spreads or remembers the work."""
+    sources: dict[Path, SourceText] = {}
+    found: list[Diagnostic] = []
+    for path in paths:
+        names = list(_files(path))
+        if not names:
+            message = "There is no Turtle file (*.ttl) in this folder: nothing to validate."
+            found.append(Diagnostic(path, 1, 1, "SC-S04", message, Severity.WARNING))
+        for name in names:
+            try:
+                if name != "-" and Path(name).stat().st_size > LARGEST_FILE:
+                    message = f"This file is larger than {LARGEST_FILE >> 20} MiB: that cannot be meant."
+                    found.append(Diagnostic(name, 1, 1, "SC-S05", message))
+                else:
+                    sources.setdefault(Path(name).resolve(), _read(name))
+            except OSError as error:
+                message = f"This file cannot be read: {error.strerror or error}."
+                found.append(Diagnostic(name, 1, 1, "SC-S03", message))
+    result = _validated(sources.values(), ontologies, each)
+    concerned = {*result.files, *(problem.file for problem in found if problem.code in UNREADABLE)}
+    return report(sorted(concerned), (*result.diagnostics, *found))
+
+
+def check_text(text: tuple[bytes, str, str | None]) -> Report:
+    """The problems of one text with its name and base."""
+    octets, name, base = text
+    return _validated([SourceText(name, octets) if base is None else SourceText(name, octets, base)], (), map)
+
+
+def _validated(sources: Iterable[SourceText], ontologies: Iterable[str], each: CheckEach) -> Report:
+    shapes = [_load(path) for path in library.shapes()]
+    known = [*map(_load, library.ontologies()), *_ontologies(ontologies)]
+    return validation.validate(sources, shapes, known, each)
+
+
+def _remembered(paths: Iterable[str]) -> CheckEach:
+    from selfconf.entailment import cache_folder  # loads a parser, which a run without a memory may not need
+
+    return Remembered(cache_folder(), paths)
+
+
+def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
+    for name in (name for path in given for name in _files(path, files.ONTOLOGY)):
+        try:
+            yield _read(name)
+        except OSError as error:
+            raise AuthorError(f"the ontology cannot be read: {error.strerror or error}", file=name) from None
+
+
+def _files(given: str, endings: tuple[str, ...] = files.TURTLE) -> Iterator[str]:
+    """The files that a path stands for: those of a folder that end so, by name, or itself."""
+    path = Path(given)
+    if given == "-" or not path.is_dir():
+        yield given
+    else:
+        yield from map(str, files.within(path, endings=endings))
+
+
+def _read(name: str) -> SourceText:
+    if name == "-":
+        return SourceText("<stdin>", sys.stdin.buffer.read())
+    return _load(Path(name))
+
+
+def _load(path: Path) -> SourceText:
+    return SourceText(str(path), path.read_bytes(), path.resolve().as_uri())

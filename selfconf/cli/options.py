@@ -1,0 +1,190 @@
+"""The options that several commands share, and the values that they stand for. An option takes one value."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from selfconf.cli.terminal import complain
+from selfconf.errors import AuthorError
+
+if TYPE_CHECKING:
+    from selfconf.api.answer import Method
+    from selfconf.api.ecology import Ecology
+    from selfconf.api.living import LivingEcology
+    from selfconf.api.task import TaskSpecification
+
+STRATEGIES = ("first", "paper", "best")
+REASONING = ("syntactic", "subclass", "owl-rl")
+# Both are enumerations of the library, which is not loaded to parse arguments; a test compares them.
+LONGEST_SECONDS = 1e6
+"""Seconds that an alarm can be set to everywhere."""
+STDIN = Path("-")
+"""What stands for standard input where a file can be given."""
+
+
+def add_task_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options by which a task is given: template, bindings, reasoning, strategy."""
+    parser.add_argument(
+        "template", metavar="TEMPLATE", type=Path, help="a Turtle file with a template or a task, or - for stdin"
+    )
+    parser.add_argument(
+        "--template",
+        dest="wanted",
+        metavar="TERM",
+        help="which template or task, where the file holds several: a CURIE or an <IRI>",
+    )
+    parser.add_argument(
+        "--bind",
+        metavar="NAME=TERM",
+        action="append",
+        default=[],
+        help="a value for a parameter: a CURIE, an <IRI>, a Turtle literal; plain words are a string; repeatable",
+    )
+    add_ads_argument(parser)
+    parser.add_argument(
+        "--reasoning",
+        choices=REASONING,
+        default=REASONING[0],
+        help="which triples the shape of a role sees (default: %(default)s)",
+    )
+    add_ontology_argument(parser)
+    parser.add_argument(
+        "--strategy", choices=STRATEGIES, default=STRATEGIES[0], help="how to search (default: %(default)s)"
+    )
+
+
+def add_ads_argument(parser: argparse.ArgumentParser) -> None:
+    """The option for advertisements in files; without it a command asks the living ecology."""
+    parser.add_argument(
+        "--ads",
+        metavar="PATH",
+        type=Path,
+        action="append",
+        help="advertisements: a file, a folder with all *.ttl below it, or - for stdin; repeatable",
+    )
+
+
+def add_ontology_argument(parser: argparse.ArgumentParser) -> None:
+    """The option for ontologies besides those that ship with selfconf."""
+    parser.add_argument(
+        "--ontology",
+        metavar="PATH",
+        type=Path,
+        action="append",
+        default=[],
+        help="an ontology besides those of selfconf, or a folder of them; repeatable",
+    )
+
+
+def add_endpoint_argument(parser: argparse.ArgumentParser) -> None:
+    """The option for an ecology behind a SPARQL endpoint."""
+    parser.add_argument(
+        "--endpoint",
+        metavar="URL",
+        help="a SPARQL 1.1 endpoint that holds the advertisements, in its default graph or in named ones",
+    )
+
+
+def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options that limit a search."""
+    parser.add_argument(
+        "--steps", metavar="N", type=_steps, help="give up a search after so many steps, which all machines count alike"
+    )
+    parser.add_argument("--seconds", metavar="S", type=_seconds, help="give up a search after so many seconds")
+
+
+def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options by which a command finds the living ecology."""
+    parser.add_argument("--ecology", metavar="NAME", help="the ecology; by default the only one on this machine")
+    parser.add_argument(
+        "--connect",
+        metavar="ENDPOINT",
+        action="append",
+        default=[],
+        help="where a site listens, such as tcp/127.0.0.1:7447; repeatable; by default the sites on this machine",
+    )
+
+
+def _steps(text: str) -> int:
+    if not text.isdecimal() or not int(text):
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of steps; it takes a whole number above zero")
+    return int(text)
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not 0 < seconds <= LONGEST_SECONDS:
+        raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes a number of seconds above zero")
+    return seconds
+
+
+def task_of(given: argparse.Namespace) -> TaskSpecification:
+    """The task that the arguments describe, complete and checked. Raises AuthorError."""
+    from selfconf.api.task import pairs, template
+
+    one_stdin(given.template, *(given.ads or ()), *given.ontology)
+    return template(given.template, given.wanted).bind(**pairs(given.bind)).complete()
+
+
+def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
+    """How the arguments ask a task to be composed."""
+    from selfconf.api.answer import Method
+
+    if given.strategy == "best" and not task.document.task.template.cost:
+        complain(
+            f"the template {task.iri!r} states no sc:cost: every configuration costs the same, "
+            "and best is the one that first finds"
+        )
+    steps, seconds = getattr(given, "steps", None), getattr(given, "seconds", None)
+    return Method.of(given.strategy, given.reasoning, given.ontology, steps, seconds)
+
+
+def ecology_of(given: argparse.Namespace) -> Ecology:
+    """The ecology that the arguments name: files, an endpoint, or else the living one, to be closed by `close`."""
+    if given.ads is not None and given.endpoint is not None:
+        raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
+    if given.ads is not None:
+        return read_files(given.ads)
+    if given.endpoint is not None:
+        from selfconf.api.ecology import EndpointEcology
+
+        return EndpointEcology(given.endpoint)
+    return joined(given)
+
+
+def read_files(paths: Iterable[Path]) -> Ecology:
+    """The ecology in some files; what was left out of it is named on stderr."""
+    from selfconf.api.reading import read
+
+    paths = list(paths)
+    ecology = read(*paths)
+    complain_of(ecology)
+    if not len(ecology):
+        complain(f"there is no advertisement in {', '.join(map(str, paths))}")
+    return ecology
+
+
+def joined(given: argparse.Namespace) -> LivingEcology:
+    """The living ecology that the arguments name. Raises NetworkError if there is none."""
+    from selfconf.api.living import join
+
+    return join(given.ecology, connect=given.connect)
+
+
+def complain_of(ecology: Ecology) -> None:
+    """Name on stderr what was left out of an ecology when it was last asked."""
+    for one in (*ecology.left_out, *ecology.complaints):
+        complain(str(one))
+
+
+def one_stdin(*paths: Path) -> None:
+    """Raises AuthorError where standard input, which can be read once, is to be more than one thing."""
+    if paths.count(STDIN) > 1:
+        raise AuthorError("- is standard input, which can be only one of these; give files for the others")

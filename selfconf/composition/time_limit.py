@@ -1,0 +1,65 @@
+"""How long a search may take in seconds, and the best answer that a search has given when they are over.
+
+The core has no clock. A budget of steps is its own; seconds are kept here, by an alarm in the main thread
+(`selfconf.rdf.deadline`). It ends whatever is going on, and the last answer that the search has given remains.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+from selfconf.composition.composer import Composer
+from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
+from selfconf.model.refusal import Outcome, Undecided
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.deadline import TimeUp, deadline
+
+Result = TypeVar("Result")
+
+
+class TimeLimit:
+    """The time for one question, if it is limited: what is asked later has less of it."""
+
+    def __init__(self, seconds: float | None) -> None:
+        self.seconds = seconds
+        self._ends = math.inf if seconds is None else time.monotonic() + seconds
+
+    def within(self, ask: Callable[[], Result], otherwise: Result) -> Result:
+        """The answer to a question, or what holds without one when the time is up."""
+        if self.seconds is None:
+            return ask()
+        left = self._ends - time.monotonic()
+        try:
+            if left > 0:
+                with deadline(left):
+                    return ask()
+        except TimeUp:
+            return otherwise
+        return otherwise
+
+
+def composed(
+    composer: Composer,
+    ecology: Mapping[IRI, Advertisement],
+    lost: frozenset[IRI],
+    running: Configuration | None,
+    limit: TimeLimit,
+) -> Optimum | Outcome:
+    """The best answer that the time allows. The partition is made first, and is not part of the search."""
+    composer.partition(ecology)
+    answers: list[Optimum | Outcome] = []
+
+    def gather() -> bool:
+        for answer in composer.answers(ecology, lost, running):
+            answers.append(answer)
+        return True
+
+    whole = limit.within(gather, False)
+    if not whole and (not answers or isinstance(answers[-1], Undecided)):
+        return Undecided(seconds=limit.seconds)
+    return answers[-1]

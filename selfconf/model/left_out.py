@@ -1,0 +1,19 @@
+"""What was left out of an ecology when it was read, and why: nothing is dropped in silence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from selfconf.model.term import IRI, BlankNode
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """An advertisement that does not count: it does not conform, or its component is advertised already."""
+
+    source: str
+    component: IRI | BlankNode
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.source}: left out {self.component}: {self.reason}"

@@ -1,0 +1,199 @@
+"""What happens while a task runs, as values: what `run` reports, line by line or as JSON, and `Run.events` yields.
+
+Each event has an `act`, a name that is stable for programs, and a time in seconds of the Unix epoch.
+`selfconf.render` words them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.term import IRI
+
+
+@dataclass(frozen=True, slots=True)
+class RunEvent:
+    """Something that the configurator did or noticed; its subclasses say what."""
+
+    act: ClassVar[str] = ""
+    time: float = field(default=0.0, kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class EcologyAsked(RunEvent):
+    """Act 1: the ecology was asked what it has."""
+
+    act: ClassVar[str] = "query"
+
+
+@dataclass(frozen=True, slots=True)
+class EcologyDiscovered(RunEvent):
+    """Act 2: the ecology has answered; `missing` are the sites that live and did not answer in full."""
+
+    act: ClassVar[str] = "discovered"
+    components: int
+    sites: tuple[str, ...]
+    missing: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerRejected(RunEvent):
+    """Something in an answer of the ecology was left out, and why."""
+
+    act: ClassVar[str] = "complaint"
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class SearchEnded(RunEvent):
+    """Act 3: the search has ended, after so many seconds."""
+
+    act: ClassVar[str] = "composed"
+    outcome: Outcome
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class FailWatched(RunEvent):
+    """Act 4: the configurator listens to the FAIL of a component."""
+
+    act: ClassVar[str] = "watching"
+    component: IRI
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentWoken(RunEvent):
+    """Act 4: a site was asked to start a dormant component."""
+
+    act: ClassVar[str] = "waking"
+    component: IRI
+    site: str
+
+
+@dataclass(frozen=True, slots=True)
+class InputConnected(RunEvent):
+    """Act 4: an input of a component was told to follow an output of another."""
+
+    act: ClassVar[str] = "connecting"
+    source: IRI
+    output: str
+    sink: IRI
+    input: str
+
+
+@dataclass(frozen=True, slots=True)
+class ActivationSent(RunEvent):
+    """Act 4: a component was told to act."""
+
+    act: ClassVar[str] = "activating"
+    component: IRI
+
+
+@dataclass(frozen=True, slots=True)
+class CallAnswered(RunEvent):
+    """A component has answered a call; its subclasses say which one."""
+
+    component: IRI
+    detail: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentActivated(CallAnswered):
+    """Act 4: a component acts."""
+
+    act: ClassVar[str] = "activated"
+
+
+@dataclass(frozen=True, slots=True)
+class ParametersSet(CallAnswered):
+    """Act 4: a component has its operational parameters."""
+
+    act: ClassVar[str] = "set"
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentReleased(CallAnswered):
+    """A component was turned off."""
+
+    act: ClassVar[str] = "released"
+
+
+@dataclass(frozen=True, slots=True)
+class CallDeclined(CallAnswered):
+    """A component does not do what it was told, and why."""
+
+    act: ClassVar[str] = "declined"
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentUnreachable(RunEvent):
+    """A component did not answer a call."""
+
+    act: ClassVar[str] = "unreachable"
+    component: IRI
+    call: str
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentLost(RunEvent):
+    """A component was given up: it failed, crashed, went silent, or refused."""
+
+    act: ClassVar[str] = "lost"
+    component: IRI
+    cause: str
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class TaskRunning(RunEvent):
+    """A configuration is complete and runs."""
+
+    act: ClassVar[str] = "running"
+    configuration: Configuration
+    epoch: int
+
+
+@dataclass(frozen=True, slots=True)
+class TaskWaiting(RunEvent):
+    """There is no configuration now, and the task waits for the ecology to change; `lost` by component, and why."""
+
+    act: ClassVar[str] = "waiting"
+    refusal: Refusal | Undecided | None
+    lost: Mapping[IRI, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class TaskRefused(RunEvent):
+    """The task has ended as there is no configuration, or none was found in time."""
+
+    act: ClassVar[str] = "refused"
+    refusal: Refusal | Undecided
+    lost: Mapping[IRI, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class TaskStopped(RunEvent):
+    """The task was taken down as wanted."""
+
+    act: ClassVar[str] = "stopped"
+    refusal: None = None
+    lost: Mapping[IRI, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class EcologyUnreachable(RunEvent):
+    """The configurator has lost its link to the ecology, and believes nothing until it is back."""
+
+    act: ClassVar[str] = "cut off"
+
+
+@dataclass(frozen=True, slots=True)
+class EcologyReachable(RunEvent):
+    """The configurator is linked to the ecology again."""
+
+    act: ClassVar[str] = "connected"

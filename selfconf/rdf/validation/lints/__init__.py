@@ -1,0 +1,1 @@
+"""Lints: what reads well and is probably not what was meant."""

@@ -1,0 +1,52 @@
+"""Values for their readers: as text, as JSON, as HTML and as Mermaid. Nothing here decides anything.
+
+Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`, `count`;
+`Names` shortens IRIs by prefixes, `short` without. JSON: the functions that end in `_body`. Diagrams:
+`mermaid`, and `diagram` for notebooks, whose tables and texts are `html_table`, `html_text`, `html_sections`.
+The events of a run are worded in `selfconf.render.run_events`, which is loaded where a task runs.
+"""
+
+from selfconf.render.bodies import (
+    configuration_body,
+    consequences_body,
+    cost_body,
+    refusal_body,
+    undecided_body,
+    value_body,
+)
+from selfconf.render.html import diagram, html_sections, html_table, html_text
+from selfconf.render.mermaid import mermaid
+from selfconf.render.names import Names, short
+from selfconf.render.tables import count, table
+from selfconf.render.text import (
+    Name,
+    configuration_text,
+    consequences_text,
+    cost_text,
+    refusal_text,
+    undecided_text,
+)
+
+__all__ = [
+    "Name",
+    "Names",
+    "configuration_body",
+    "configuration_text",
+    "consequences_body",
+    "consequences_text",
+    "cost_body",
+    "cost_text",
+    "count",
+    "diagram",
+    "html_sections",
+    "html_table",
+    "html_text",
+    "mermaid",
+    "refusal_body",
+    "refusal_text",
+    "short",
+    "table",
+    "undecided_body",
+    "undecided_text",
+    "value_body",
+]

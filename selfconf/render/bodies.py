@@ -1,0 +1,110 @@
+"""Answers as the JSON that commands print: dictionaries, lists, strings and numbers.
+
+`docs/schemas/` describes each of them as a JSON Schema.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.consequence import Consequence
+from selfconf.model.optimum import Optimum
+from selfconf.model.partition import NearMiss
+from selfconf.model.refusal import Reason, Refusal, Undecided
+from selfconf.model.relaxation import Relaxation
+from selfconf.model.term import IRI, Literal, Term
+
+
+def configuration_body(configuration: Configuration) -> dict[str, Any]:
+    """A configuration: its roles, connections, bindings and parameters."""
+    return {
+        "template": configuration.template,
+        "bindings": {name: value_body(value) for name, value in configuration.bindings.items()},
+        "roles": [{"role": a.role, "components": list(a.components)} for a in configuration.assignments],
+        "connections": [
+            {"from": {"component": c.source, "output": c.output}, "to": {"component": c.sink, "input": c.input}}
+            for c in configuration.connections
+        ],
+        "parameters": [
+            {"component": s.component, "name": s.name, "value": value_body(s.value)} for s in configuration.settings
+        ],
+    }
+
+
+def consequences_body(consequences: Sequence[Consequence]) -> list[dict[str, Any]]:
+    """What would replace each component of a configuration if it failed."""
+    return [
+        {
+            "component": one.component,
+            "role": one.role,
+            "single_point_of_failure": one.fatal,
+            "started": list(one.started),
+            "stopped": list(one.stopped),
+            "moved": [{"component": component, "role": role} for component, role in one.moved],
+        }
+        for one in consequences
+    ]
+
+
+def cost_body(optimum: Optimum, unknown: Iterable[IRI]) -> dict[str, Any]:
+    """What a configuration costs; `unknown` are properties of the cost that no component of the ecology has."""
+    return {
+        "levels": [float(amount) for amount in optimum.cost],
+        "bound": [float(amount) for amount in optimum.bound],
+        "proved": optimum.proved,
+        "unknown": optimum.unknown,
+        "missing": [{"component": component, "property": wanted} for component, wanted in optimum.missing],
+        "nobody_has": sorted(unknown),
+    }
+
+
+def undecided_body(undecided: Undecided) -> dict[str, Any]:
+    """That there is no answer yet: a code and a sentence."""
+    return {"code": undecided.code, "message": str(undecided)}
+
+
+def refusal_body(refusal: Refusal) -> dict[str, Any]:
+    """A refusal; each fact has its `place` where that is known."""
+    repairs: list[dict[str, Any]] = [
+        {"code": repair.code, "role": repair.role, "message": str(repair), **_place(repair)}
+        for repair in refusal.repairs
+    ]
+    if refusal.hint:
+        repairs.append({"code": "reasoning", "message": refusal.hint})
+    return {
+        "template": refusal.template,
+        "reasons": [
+            {"code": reason.code, "role": reason.role, "message": str(reason), **_place(reason)}
+            for reason in refusal.reasons
+        ],
+        "near_misses": [
+            {"role": miss.role, "component": miss.component, "obstacle": str(miss.obstacle), **_place(miss)}
+            for miss in refusal.near_misses
+        ],
+        "repairs": repairs,
+    }
+
+
+def _place(fact: Reason | Relaxation | NearMiss) -> dict[str, Any]:
+    return {} if fact.place is None else {"place": str(fact.place)}
+
+
+def value_body(value: Term) -> Any:
+    """A term: IRIs and strings as text, numbers and truth values as such; JSON has no INF and no NaN."""
+    if isinstance(value, Literal):
+        kind = value.datatype.rpartition("#")[2]
+        try:
+            if kind in ("integer", "int", "long"):
+                return int(value.lexical)
+            if kind in ("decimal", "double", "float"):
+                number = float(value.lexical)
+                return number if math.isfinite(number) else value.lexical
+        except ValueError:
+            return value.lexical
+        if kind == "boolean":
+            return value.lexical in ("true", "1")
+        return value.lexical
+    return str(value)

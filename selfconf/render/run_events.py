@@ -1,0 +1,99 @@
+"""The events of a run in words and as JSON: the one place for both, for `run`, for the demo and for the library."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.run_event import EcologyDiscovered, RunEvent, SearchEnded, TaskRefused, TaskWaiting
+from selfconf.model.term import IRI
+from selfconf.render.bodies import configuration_body, refusal_body, undecided_body
+from selfconf.render.names import short
+from selfconf.render.tables import count
+from selfconf.render.text import Name, refusal_text
+
+SENTENCES: Mapping[str, str] = {
+    "query": "act 1  asking the ecology what it has",
+    "discovered": "act 2  {components} components at {sites}{missing}",
+    "composed": "act 3  {found} in {milliseconds:.1f} ms",
+    "watching": "act 4  listening to FAIL of {component}",
+    "waking": "act 4  {component} is dormant; site {site} starts it",
+    "connecting": "act 4  {source} {output} -> {sink} {input}",
+    "activating": "",
+    "activated": "act 4  {component} is active",
+    "set": "act 4  {component} has its parameters",
+    "declined": "       {component} declines: {detail}",
+    "unreachable": "       {component} cannot be reached: {detail}",
+    "lost": "LOST   {component}: {cause}, {detail}",
+    "released": "       {component} is off",
+    "running": "       running",
+    "waiting": "       waiting for the ecology to change",
+    "refused": "",
+    "stopped": "       taken down",
+    "cut off": "       cut off from the ecology; waiting to be connected again",
+    "connected": "       connected again; looking at what has become of it",
+    "complaint": "       {detail}",
+}
+"""For each act a sentence with the facts of the event; an act with an empty one is not worth a line."""
+
+
+def sentence(event: RunEvent, name: Name) -> str:
+    """An event in one line; empty for an event that is not worth one."""
+    facts: dict[str, Any] = {one.name: _word(getattr(event, one.name), name) for one in fields(event)}
+    if isinstance(event, SearchEnded):
+        facts |= {"found": _outcome(event), "milliseconds": event.seconds * 1000}
+    if isinstance(event, EcologyDiscovered):
+        facts["missing"] = "".join(f"; site {site} did not answer in full" for site in event.missing)
+    return SENTENCES[event.act].format(**facts)
+
+
+def details(event: RunEvent, name: Name) -> Iterator[str]:
+    """What there is to say before an event: why a task waits or is refused, and which components were lost."""
+    if isinstance(event, TaskWaiting | TaskRefused):
+        if isinstance(event.refusal, Undecided):
+            yield f"  {event.refusal}"
+        elif isinstance(event.refusal, Refusal):
+            yield refusal_text(event.refusal, name)
+        yield from lost_sentences(event.lost, name)
+
+
+def lost_sentences(losses: Mapping[IRI, str], name: Name) -> Iterator[str]:
+    """Why each component was lost, a line each."""
+    return (f"  {name(component)} was lost: {why}" for component, why in losses.items())
+
+
+def _outcome(event: SearchEnded) -> str:
+    if isinstance(event.outcome, Configuration):
+        return count(len(event.outcome.components), "component")
+    return "no answer" if isinstance(event.outcome, Undecided) else "no configuration"
+
+
+def _word(value: object, name: Name) -> object:
+    if isinstance(value, IRI):
+        return name(value)
+    if isinstance(value, tuple):
+        return ", ".join(map(str, value)) or "no site"
+    return value
+
+
+def event_body(event: RunEvent) -> dict[str, Any]:
+    """An event of a run, as a line of `run --format json`: its act, time and facts, a sentence, and the process."""
+    facts = {one.name: _fact(getattr(event, one.name)) for one in fields(event) if one.name != "time"}
+    message = sentence(event, short)
+    return {"act": event.act, "time": event.time, **facts, "message": message, "process": os.getpid()}
+
+
+def _fact(value: object) -> Any:
+    if isinstance(value, Configuration):
+        return configuration_body(value)
+    if isinstance(value, Refusal):
+        return refusal_body(value)
+    if isinstance(value, Undecided):
+        return undecided_body(value)
+    if isinstance(value, tuple):
+        return list(value)
+    return dict(value) if isinstance(value, Mapping) else value

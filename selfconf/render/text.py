@@ -1,0 +1,104 @@
+"""Answers as text for people: a configuration, its cost, what would replace what, a refusal on one screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.consequence import Consequence
+from selfconf.model.optimum import Optimum
+from selfconf.model.partition import NearMiss
+from selfconf.model.refusal import Reason, Refusal, Undecided
+from selfconf.model.relaxation import Relaxation
+from selfconf.model.term import IRI, Term
+
+Name = Callable[[Term], str]
+"""How a term is written: `Names` of a document, or `short`."""
+MOST_LINES = 8
+"""How many reasons, and how many near misses, a screen has room for."""
+
+
+def configuration_text(configuration: Configuration, name: Name) -> str:
+    """A configuration: which components play which role, which output feeds which input, what is bound and set."""
+    roles = [name(a.role) for a in configuration.assignments]
+    width = max(map(len, roles), default=0)
+    lines = [f"configured {name(configuration.template)}"]
+    for role, assignment in zip(roles, configuration.assignments, strict=True):
+        lines.append(f"  {role:<{width}}  {', '.join(map(name, assignment.components)) or '(nobody)'}")
+    return "\n".join([*lines, *_connections(configuration, name), *_values(configuration, name)])
+
+
+def _connections(configuration: Configuration, name: Name) -> list[str]:
+    ends = [(f"{name(c.source)} {c.output}", f"{name(c.sink)} {c.input}") for c in configuration.connections]
+    width = max((len(left) for left, _ in ends), default=0)
+    return ["connections", *(f"  {left:<{width}}  ->  {right}" for left, right in ends)] if ends else []
+
+
+def _values(configuration: Configuration, name: Name) -> list[str]:
+    bindings = [f"  {parameter} = {name(value)}" for parameter, value in configuration.bindings.items()]
+    settings = [f"  {name(s.component)} {s.name} = {name(s.value)}" for s in configuration.settings]
+    return [*(["bindings", *bindings] if bindings else []), *(["parameters", *settings] if settings else [])]
+
+
+def consequences_text(consequences: Sequence[Consequence], name: Name) -> str:
+    """What would replace each component if it failed; single points of failure stand out."""
+    width = max((len(name(one.component)) for one in consequences), default=0)
+    lines = [f"  {name(one.component):<{width}}  ->  {one.told(name)}" for one in consequences]
+    return "\n".join(["if it failed", *lines])
+
+
+def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
+    """What a configuration costs; `unknown` are properties of the cost that no component of the ecology has."""
+    lines = ["cost, compared level by level" if len(optimum.cost) > 1 else "cost"]
+    for number, (spent, least) in enumerate(zip(optimum.cost, optimum.bound, strict=True), 1):
+        bound = "" if optimum.proved else f"  (bound {_decimal(least)})"
+        lines.append(f"  level {number}  {_decimal(spent)}{bound}")
+    lines.append("  proved: nothing costs less" if optimum.proved else "  not proved: there may be something better")
+    if optimum.missing:
+        terms = "1 term is" if optimum.unknown == 1 else f"{optimum.unknown} terms are"
+        lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")
+    nobody = set(unknown)
+    lines += [f"    nobody in the ecology has a number for {name(one)}" for one in sorted(nobody)]
+    told = dict.fromkeys(pair for pair in optimum.missing if pair[1] not in nobody)
+    lines += [f"    {name(component)} has no number for {name(wanted)}" for component, wanted in told]
+    return "\n".join(lines)
+
+
+def _decimal(amount: Fraction) -> str:
+    return f"{float(amount):g}"
+
+
+def undecided_text(undecided: Undecided, template: IRI, name: Name) -> str:
+    """That there is no answer yet, in one sentence."""
+    return f"{name(template)} is {undecided}"
+
+
+def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
+    """A refusal on one screen, the most likely cause first, each line with the place that it speaks of."""
+    lines = [f"no configuration for {name(refusal.template)}"]
+    if not refusal.reasons:
+        lines.append("  no time was left to find out why; allow more")
+    lines += [_placed(f"  because {reason}", reason) for reason in refusal.reasons[:most]]
+    if len(refusal.reasons) > most:
+        lines.append(f"  and {len(refusal.reasons) - most} more reasons")
+    if refusal.near_misses:
+        lines.append("near misses")
+        lines += [_placed(f"  {_near_miss(miss, name)}", miss) for miss in refusal.near_misses[:most]]
+        if len(refusal.near_misses) > most:
+            lines.append(f"  and {len(refusal.near_misses) - most} more")
+    if refusal.repairs or refusal.hint:
+        lines.append("what would mend it")
+        lines += [_placed(f"  {repair}", repair) for repair in refusal.repairs]
+    if refusal.hint:
+        lines.append(f"  {refusal.hint}")
+    lines += [f"the site {site} lives and did not answer in full" for site in refusal.missing_sites]
+    return "\n".join(lines)
+
+
+def _placed(sentence: str, fact: Reason | Relaxation | NearMiss) -> str:
+    return sentence if fact.place is None else f"{sentence}  [{fact.place}]"
+
+
+def _near_miss(miss: NearMiss, name: Name) -> str:
+    return f"{miss.role.short}: {name(miss.component)} would fit, but {miss}"

@@ -1,0 +1,88 @@
+"""The outputs of a component: what it emits goes out, and the last signal is kept.
+
+*Outputs are latched.* An output that is followed anew issues its last signal of this activation again, so that a new
+connection carries a signal at once; inputs pass over what they have had already.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import time
+from collections.abc import Callable
+from typing import Any
+
+from selfconf.bus.port import Bus, Publisher, Urgency
+from selfconf.errors import ProgrammerError
+from selfconf.model.profile import Profile
+from selfconf.protocol.codec import encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Stamp
+
+RAW = b"raw"
+"""What stands before the stamp of a signal that is bytes and not JSON."""
+SIGNALS_FIRST = 0.002
+"""Seconds by which everything else that an activation asks of the network is delayed.
+
+An activation makes new connections, and over these the latched signals flow. Others wait for these, while the answer
+to the call and the watch for the supervisor's life may come later; sent at once, they would go first.
+"""
+
+
+class Outputs:
+    """The outputs of one component in one life."""
+
+    def __init__(self, bus: Bus, keys: Keys, profile: Profile, life: str, active: Callable[[], bool]) -> None:
+        """`active` says whether the component is active: what it emits otherwise is dropped."""
+        self._profile, self._life, self._active = profile, life, active
+        self._sequence = itertools.count(1)
+        self._last: dict[str, tuple[bytes, bytes]] = {}
+        """The last signal of each output in the present activation, with its attachment."""
+        self._publishers: dict[str, Publisher] = {
+            port.name: bus.publisher(
+                keys.output(profile.component, port.name), Urgency.SIGNAL, self._matched(port.name)
+            )
+            for port in profile.outputs
+        }
+
+    def emit(self, port: str, value: Any, moment: float | None) -> None:
+        """Issue a signal; may be called from any thread. Raises ProgrammerError for what cannot be issued."""
+        output = self._publishers.get(port)
+        if output is None:
+            raise ProgrammerError(f"{self._profile.component.short} advertises no output {port!r}")
+        if not self._active():
+            return
+        stamp = encode(
+            Stamp(self._profile.component, self._life, next(self._sequence), time.time() if moment is None else moment)
+        )
+        raw = isinstance(value, bytes)
+        payload, attachment = (value, RAW + stamp) if raw else (self._json(port, value), stamp)
+        self._last[port] = payload, attachment
+        output.put(payload, attachment)
+
+    def forget(self) -> None:
+        """Forget the last signals: a new activation begins."""
+        self._last.clear()
+
+    def close(self) -> None:
+        """Take the declarations back."""
+        for output in self._publishers.values():
+            output.undeclare()
+
+    def _json(self, port: str, value: Any) -> bytes:
+        """A signal as JSON, which has neither NaN nor infinity: a component in another language could not read them."""
+        try:
+            return json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
+        except (TypeError, ValueError, RecursionError) as error:
+            name = self._profile.component.short
+            raise ProgrammerError(f"JSON cannot say what {name} emits on {port!r}: {error}") from None
+
+    def _matched(self, port: str) -> Callable[[bool], None]:
+        """Issue the last signal again when an output begins to be followed."""
+
+        def matched(matching: bool) -> None:
+            last = self._last.get(port)
+            if matching and self._active() and last is not None:
+                self._publishers[port].put(*last)
+
+        return matched

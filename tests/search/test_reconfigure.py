@@ -1,0 +1,213 @@
+"""After a failure as much as possible stays as it was."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf.certificate import broken_conditions
+from selfconf.model.configuration import Configuration
+from selfconf.model.partition import Candidate, Partition
+from selfconf.model.profile import Profile
+from selfconf.model.refusal import Refusal
+from selfconf.search import reconfigure
+from selfconf.search.engines import clause_learning
+from selfconf.search.problem import Problem
+from selfconf.search.strategies import first
+from tests.search.oracle import Players, World
+from tests.search.worlds import agreement, component, problem, problems
+
+
+def _running_first(world: World, players: Players, running: Configuration) -> list[list[Candidate]]:
+    """A solution, extended by what runs in the same role, first of all."""
+    grown = [list(role) for role in players]
+    played = {a.role: a.components for a in running.assignments}
+    found = True
+    while found:
+        found = False
+        for number, role in enumerate(world.roles):
+            for candidate in world.candidates[number]:
+                full = role.maximum is not None and len(grown[number]) >= role.maximum
+                more = [[*r, candidate] if k == number else r for k, r in enumerate(grown)]
+                if not found and not full and candidate.profile.component in played[role.iri] and world.valid(more):
+                    grown, found = more, True
+    return grown
+
+
+def _score(after: Configuration, before: Configuration) -> tuple[int, int]:
+    stays = sum(
+        component in was.components
+        for now, was in zip(after.assignments, before.assignments, strict=True)
+        for component in now.components
+    )
+    return stays, len(set(after.connections) & set(before.connections))
+
+
+def _nearest(world: World, running: Configuration) -> Configuration | None:
+    best: Configuration | None = None
+    for players in world.solutions():
+        found = world.configuration(_running_first(world, players, running))
+        if best is None or _score(found, running) > _score(best, running):
+            best = found
+    return best
+
+
+def _after_losses(problem: Problem, running: Configuration, data: st.DataObject) -> Problem:
+    """Return the problem once one or two components are lost, and some others are no longer eligible for a role."""
+    lost = frozenset(data.draw(st.sets(st.sampled_from(running.components), min_size=1, max_size=2)))
+    unfit = [data.draw(st.sets(st.sampled_from(running.components), max_size=1)) for _ in problem.roles]
+    left = problem.partition.without(lost)
+    candidates = tuple(
+        tuple(c for c in role if c.profile.component not in out)
+        for role, out in zip(left.candidates, unfit, strict=True)
+    )
+    return Problem(problem.task, Partition(candidates, left.variables), problem.hierarchy)
+
+
+def _fixed(problem: Problem) -> Problem:
+    """The problem with roles that each ask for a fixed number."""
+    roles = tuple(replace(role, maximum=role.minimum) for role in problem.roles)
+    template = replace(problem.task.template, roles=roles)
+    return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
+
+
+@given(problems(), st.data())
+@agreement(0.5)
+def test_a_reconfiguration_keeps_the_most_and_is_the_first_that_does(problem: Problem, data: st.DataObject) -> None:
+    running = first.search(problem)
+    if not isinstance(running, Configuration) or not running.components:
+        return
+    left = _after_losses(problem, running, data)
+    answer = reconfigure.nearest_configuration(left, running)
+    expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
+    assert (answer if isinstance(answer, Configuration) else None) == expected
+
+
+@given(problems(), st.data())
+@agreement(0.4)
+def test_clause_learning_finds_the_configuration_that_depth_first_search_finds(
+    problem: Problem, data: st.DataObject
+) -> None:
+    pytest.importorskip("pysat")
+    running = first.search(_fixed(problem))
+    if not isinstance(running, Configuration) or not running.components:
+        return
+    left = _after_losses(_fixed(problem), running, data)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reconfigure, "DEPTH_FIRST_STEPS", 0)
+        answer = reconfigure.nearest(left, running)
+    expected = _nearest(World(left.task, left.partition, left.hierarchy), running)
+    assert (answer.configuration if isinstance(answer, reconfigure.Reconfiguration) else None) == expected
+    assert isinstance(answer, Refusal) or answer.proved
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("aided", [False, True])
+def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
+    aided: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if aided:
+        pytest.importorskip("pysat")
+        monkeypatch.setattr(reconfigure, "DEPTH_FIRST_STEPS", 0)
+        monkeypatch.setattr(reconfigure, "LEAST_STEPS", 1)  # too few to name the first of the nearest
+    else:
+        monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+    unproved: list[bool] = []
+    """For each answer without a proof whether there is a nearer one."""
+
+    @given(problems(), st.data())
+    @agreement(0.3)
+    def search(drawn: Problem, data: st.DataObject) -> None:
+        whole = _fixed(drawn) if aided else drawn
+        running = first.search(whole)
+        if not isinstance(running, Configuration) or not running.components:
+            return
+        left = _after_losses(whole, running, data)
+        nearest = _nearest(World(left.task, left.partition, left.hierarchy), running)
+        for steps in range(1, 11):
+            answer = reconfigure.nearest(left, running, steps)
+            if isinstance(answer, reconfigure.Reconfiguration):
+                assert (answer.kept, answer.connections) == _score(answer.configuration, running)
+                assert broken_conditions(left.task, left.partition, answer.configuration, left.hierarchy) == []
+                if answer.proved:
+                    assert answer.configuration == nearest
+                else:
+                    unproved.append(answer.configuration != nearest)
+
+    search()
+    assert len(unproved) >= 10
+    assert aided or any(unproved)
+
+
+def test_a_component_that_has_to_change_roles_may_keep_its_connections() -> None:
+    x, w, v = (component(name, outputs="o:Scan") for name in "xwv")
+    n, cap = component("n"), component("cap", "i:Scan")
+    running = first.search(problem({"first": [x], "second": [w], "control": [cap]}, "first>control second>control"))
+    assert isinstance(running, Configuration)
+    left = problem({"first": [n], "second": [v, x], "control": [cap]}, "first>control second>control")
+    answer = reconfigure.nearest(left, running)
+    assert isinstance(answer, reconfigure.Reconfiguration)
+    assert [one.short for one in answer.configuration.components] == ["n", "x", "cap"]
+    assert (answer.kept, answer.connections, answer.proved) == (1, 1, True)
+
+
+def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:
+    sonar, tracker, odometry = (
+        component("sonar"),
+        component("tracker", outputs="p:Pose"),
+        component("odometry", outputs="p:Pose"),
+    )
+    cap = component("cap", "p:Pose")
+    given_ = problem(
+        {"sonar": [component("newer"), sonar], "position": [odometry], "control": [cap]}, "position>control"
+    )
+    running = first.search(problem({"sonar": [sonar], "position": [tracker], "control": [cap]}, "position>control"))
+    assert isinstance(running, Configuration)
+    answer = reconfigure.nearest_configuration(given_, running)
+    assert isinstance(answer, Configuration)
+    assert [c.short for c in answer.components] == ["sonar", "odometry", "cap"]
+
+
+def test_where_no_candidate_is_left_the_answer_is_a_refusal() -> None:
+    running = first.search(problem({"eye": [component("camera")]}))
+    assert isinstance(running, Configuration)
+    assert isinstance(reconfigure.nearest_configuration(problem({"eye": []}), running), Refusal)
+
+
+def test_when_the_steps_end_the_answer_is_the_nearest_configuration_that_was_met() -> None:
+    lamps = [component("red", "s:Scan"), component("green", "t:Time")]
+    cameras = [component("blind"), component("half", outputs="s:Scan"), component("full", outputs="s:Scan t:Time")]
+
+    def watching(*eyes: Profile) -> Problem:
+        return problem({"camera": eyes, "lamp": lamps}, "camera>lamp", {"lamp": (0, 2)})
+
+    running = first.search(watching(component("lost", outputs="s:Scan t:Time")))
+    assert isinstance(running, Configuration)
+    # The slot of the camera takes the cameras in order, and the lamps that each of them can feed are added to it: one
+    # more step, one more lamp. Two steps meet the camera that keeps one lamp, but do not reach the one that keeps both.
+    found = [reconfigure.nearest(watching(*cameras), running, steps) for steps in range(1, 5)]
+    assert [
+        (one.configuration.components[0].short, one.kept, one.proved)
+        for one in found
+        if isinstance(one, reconfigure.Reconfiguration)
+    ] == [("blind", 0, False), ("half", 1, False), ("full", 2, False), ("full", 2, True)]
+
+
+@given(problems(), st.data())
+@agreement(0.2)
+def test_more_steps_never_find_a_configuration_farther_away(problem: Problem, data: st.DataObject) -> None:
+    running = first.search(problem)
+    if not isinstance(running, Configuration) or not running.components:
+        return
+    left = _after_losses(problem, running, data)
+    if not isinstance(first.search(left), Configuration):
+        return
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(clause_learning, "find_spec", lambda name: None)
+        found = [reconfigure.nearest(left, running, steps) for steps in range(1, 11)]
+    scores = [_score(one.configuration, running) for one in found if isinstance(one, reconfigure.Reconfiguration)]
+    assert scores == sorted(scores)
+    assert len(scores) == len(found)

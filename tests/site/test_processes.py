@@ -1,0 +1,209 @@
+"""Dormant components: how a site starts their processes, what it says when they end, and that they end with it."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from selfconf import rendezvous
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Sample
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import Fail, Page, Release, Wake
+from selfconf.site import Site
+from tests.lab import PREFIXES, iri, write_advertisements
+from tests.site.served import KEYS, ask, serve
+
+SLEEPER = iri("sleeper")
+
+
+def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+    """Wait in real time for a condition."""
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        os.sched_yield()
+    return condition()
+
+
+def dormant(folder: Path, command: str) -> Path:
+    """An advertisement of a component that a site can start."""
+    folder.mkdir(parents=True, exist_ok=True)
+    quoted = command.replace("\\", "\\\\").replace('"', '\\"')
+    (folder / "sleeper.ttl").write_text(
+        PREFIXES + f':sleeper a sc:Component, rob:Encoder ; sc:grounding [ sc:command "{quoted}" ] .\n'
+    )
+    return folder
+
+
+@pytest.fixture
+def sites(network: Network) -> Iterator[Callable[[Path], Site]]:
+    """Sites that can start components, and that end them again."""
+    made: list[Site] = []
+
+    def make(folder: Path) -> Site:
+        made.append(serve(network, folder, rendezvous.environment("lab", "tcp/127.0.0.1:1")))
+        return made[-1]
+
+    yield make
+    for site in made:
+        site.close()
+
+
+def python(code: str) -> str:
+    """A command that runs some Python and then waits to be ended."""
+    return f"{sys.executable} -c '{code}; import signal; signal.pause()'"
+
+
+def test_a_dormant_component_is_startable_and_an_ordinary_one_is_not(network: Network, tmp_path: Path) -> None:
+    write_advertisements(dormant(tmp_path, "true"), "tracker")
+    serve(network, tmp_path)
+    pages = [decode(sample.attachment, Page) for sample in ask(network, KEYS.advertisements()).samples]
+    assert {(page.component, page.startable) for page in pages} == {(SLEEPER, True), (iri("person-tracker"), False)}
+
+
+def test_a_dormant_component_is_started_beside_its_advertisement_with_its_ecology(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site]
+) -> None:
+    code = (
+        'import os; open("woken", "w").write(" ".join(map(os.environ.get, ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT"))))'
+    )
+    folder = dormant(tmp_path / "here", python(code))
+    sites(folder)
+    replies = ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
+    assert replies.errors == ()
+    assert len(replies.samples) == 1
+    assert until(lambda: (folder / "woken").exists() and (folder / "woken").read_text() != "")
+    assert (folder / "woken").read_text() == "lab tcp/127.0.0.1:1"
+
+
+def test_a_component_that_runs_is_not_started_twice_and_ends_with_its_site(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site]
+) -> None:
+    code = 'import os; open(str(os.getpid()), "w")'
+    folder = dormant(tmp_path / "here", python(code))
+    site = sites(folder)
+    for _ in range(3):
+        ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
+    (process,) = site.processes.by_component.values()
+    assert until(lambda: (folder / str(process.pid)).exists())
+    site.close()
+    assert process.poll() is not None
+    assert len([path for path in folder.iterdir() if path.name.isdigit()]) == 1
+
+
+def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_reported(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site]
+) -> None:
+    site = sites(dormant(tmp_path / "here", f"{sys.executable} -c 'raise SystemExit(3)'"))
+    fails: list[Sample] = []
+    network.node().subscribe(KEYS.any_fail(), fails.append)
+    ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
+    (first,) = site.processes.by_component.values()
+    first.wait(10)
+    network.run(lambda: bool(fails), 5.0)
+    assert b"ended with code 3" in fails[0].payload
+    ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
+    (second,) = site.processes.by_component.values()
+    assert second.pid != first.pid
+    second.wait(10)
+
+
+@pytest.mark.parametrize(
+    ("command", "reason"),
+    [
+        ("/no/such/program --really", "does not start: /no/such/program: No such file or directory"),
+        ("'unbalanced", "cannot be read: No closing quotation"),
+        ("", "has no sc:command"),
+    ],
+)
+def test_a_command_that_does_not_start_is_refused_with_a_reason(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site], command: str, reason: str
+) -> None:
+    sites(dormant(tmp_path / "here", command))
+    replies = ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
+    assert replies.samples == ()
+    assert reason in replies.errors[0]
+
+
+def test_only_what_the_site_itself_advertises_with_a_command_can_be_started(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site]
+) -> None:
+    site = sites(write_advertisements(tmp_path, "tracker"))
+    for payload in (
+        encode(Wake(iri("person-tracker"))),
+        encode(Wake(IRI("urn:somebody"))),
+        b"rm -rf /",
+        encode(Release(1, "x")),
+        b"",
+    ):
+        replies = ask(network, KEYS.wake("home"), payload)
+        assert replies.samples == ()
+        assert len(replies.errors) == 1
+    assert site.processes.by_component == {}
+
+
+def test_a_site_without_an_environment_starts_nothing(network: Network, tmp_path: Path) -> None:
+    site = serve(network, dormant(tmp_path / "here", "true"))
+    with pytest.raises(PeerError, match="cannot start"):
+        site.start(SLEEPER)
+
+
+def test_a_broad_question_starts_no_component(network: Network, tmp_path: Path, sites: Callable[[Path], Site]) -> None:
+    site = sites(dormant(tmp_path / "here", python("pass")))
+    for key in ("**", "selfconf/lab/site/**", "selfconf/**"):
+        ask(network, key, encode(Wake(SLEEPER)))
+    assert site.processes.by_component == {}
+
+
+def test_a_process_that_does_not_want_to_end_is_killed(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("selfconf.site.processes.ENDING", 0.1)
+    code = 'import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN); open("deaf", "w").close()'
+    folder = dormant(tmp_path / "here", python(code))
+    site = sites(folder)
+    site.start(SLEEPER)
+    assert until(lambda: (folder / "deaf").exists())
+    (process,) = site.processes.by_component.values()
+    site.close()
+    assert process.poll() == -9
+
+
+def test_processes_that_do_not_want_to_end_are_waited_for_together(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("selfconf.site.processes.ENDING", 0.5)
+    code = 'import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN); open("deaf", "w").close()'
+    folder = dormant(tmp_path / "here", python(code))
+    site = sites(folder)
+    (advertisement,) = site.shelf.advertisements.values()
+    for number in range(6):
+        site.processes.start(replace(advertisement.profile, component=IRI(f"urn:sleeper:{number}")))
+        assert until((folder / "deaf").exists)
+        (folder / "deaf").unlink()
+    began = time.monotonic()
+    site.close()
+    assert time.monotonic() - began < 2.0
+
+
+def test_each_end_of_a_process_that_is_started_again_at_once_is_reported_once(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site]
+) -> None:
+    code = 'import os; count = len(os.listdir()); open(str(count), "w"); raise SystemExit(count)'
+    site = sites(dormant(tmp_path / "here", f"{sys.executable} -c '{code}'"))
+    fails: list[Sample] = []
+    network.node().subscribe(KEYS.any_fail(), fails.append)
+    for _ in range(3):
+        site.start(SLEEPER)
+        (process,) = site.processes.by_component.values()
+        process.wait(10)
+    network.run(lambda: False, 5.0)
+    assert [decode(fail.payload, Fail).detail.split()[-1] for fail in fails] == ["1", "2", "3"]

@@ -1,0 +1,124 @@
+"""The shelf of a site: which files it reads, what it leaves out and says, and how it notices changes."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from selfconf.api.reading import read
+from selfconf.model.term import IRI
+from selfconf.site import Shelf
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
+
+
+def touch(path: Path, text: str) -> None:
+    """Write a file so that its time of change differs for sure."""
+    path.write_text(text)
+    status = path.stat()
+    os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns + 1_000_000))
+
+
+def test_a_shelf_holds_what_lies_in_its_files_and_folders(tmp_path: Path) -> None:
+    write_advertisements(tmp_path / "deep" / "deeper", "tracker")
+    write_advertisements(tmp_path / "other", "drive", "pippi")
+    complaints: list[str] = []
+    shelf = Shelf([tmp_path / "deep", tmp_path / "other" / "drive.ttl"], complaints.append)
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {iri("person-tracker"), iri("astrid-drive")}
+    assert not shelf.refresh()
+    assert complaints == []
+
+
+def test_a_file_that_comes_changes_or_goes_is_noticed(tmp_path: Path) -> None:
+    shelf = Shelf([write_advertisements(tmp_path, "tracker")], print)
+    shelf.refresh()
+    write_advertisements(tmp_path, "drive")
+    assert shelf.refresh()
+    assert len(shelf.advertisements) == 2
+    touch(tmp_path / "drive.ttl", PREFIXES + ADVERTISEMENTS["drive"].replace("Astrid", "Pippi"))
+    assert shelf.refresh()
+    (tmp_path / "drive.ttl").unlink()
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {iri("person-tracker")}
+
+
+def test_a_file_means_what_it_means_to_a_command(tmp_path: Path) -> None:
+    lamp = PREFIXES + "<#lamp> a sc:Component, :Lamp ."
+    (tmp_path / "marked.ttl").write_bytes(b"\xef\xbb\xbf" + lamp.encode())
+    complaints: list[str] = []
+    shelf = Shelf([tmp_path], complaints.append)
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {IRI(f"{(tmp_path / 'marked.ttl').as_uri()}#lamp")}
+    assert shelf.advertisements.keys() == read(tmp_path).advertisements().keys()
+    assert complaints == []
+
+
+def test_a_folder_that_is_called_like_a_file_is_a_folder(tmp_path: Path) -> None:
+    write_advertisements(tmp_path / "lamps.ttl", "tracker")
+    complaints: list[str] = []
+    shelf = Shelf([tmp_path], complaints.append)
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {iri("person-tracker")}
+    assert complaints == []
+
+
+def test_a_complaint_is_made_once_until_it_changes(tmp_path: Path) -> None:
+    complaints: list[str] = []
+    shelf = Shelf([write_advertisements(tmp_path, "tracker")], complaints.append)
+    (tmp_path / "lamp.ttl").write_text("no turtle")
+    shelf.refresh()
+    assert len(complaints) == 1
+    write_advertisements(tmp_path, "drive")
+    assert shelf.refresh()
+    assert len(complaints) == 1
+    touch(tmp_path / "lamp.ttl", "\nno turtle")
+    shelf.refresh()
+    assert len(complaints) == 2
+    touch(tmp_path / "lamp.ttl", PREFIXES)
+    shelf.refresh()
+    touch(tmp_path / "lamp.ttl", "\nno turtle")
+    shelf.refresh()
+    assert len(complaints) == 3
+
+
+def test_a_file_that_is_broken_is_named_and_the_others_stay(tmp_path: Path) -> None:
+    complaints: list[str] = []
+    shelf = Shelf([write_advertisements(tmp_path, "tracker", "drive")], complaints.append)
+    shelf.refresh()
+    touch(tmp_path / "drive.ttl", "this is no turtle")
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {iri("person-tracker")}
+    assert "drive.ttl:1" in complaints[0]
+    touch(tmp_path / "drive.ttl", PREFIXES + ADVERTISEMENTS["drive"])
+    assert shelf.refresh()
+    assert len(shelf.advertisements) == 2
+
+
+def test_an_advertisement_that_does_not_conform_is_named_with_what_it_lacks(tmp_path: Path) -> None:
+    complaints: list[str] = []
+    (tmp_path / "bad.ttl").write_text(PREFIXES + ":lamp a sc:Component .\n" + ADVERTISEMENTS["drive"])
+    shelf = Shelf([tmp_path], complaints.append)
+    shelf.refresh()
+    assert set(shelf.advertisements) == {iri("astrid-drive")}
+    assert len(complaints) == 1
+    assert "bad.ttl" in complaints[0]
+    assert "needs a type of its own" in complaints[0]
+
+
+def test_of_two_advertisements_of_one_component_the_first_counts_and_the_other_is_named(tmp_path: Path) -> None:
+    complaints: list[str] = []
+    (tmp_path / "a.ttl").write_text(PREFIXES + ADVERTISEMENTS["tracker"])
+    (tmp_path / "b.ttl").write_text(PREFIXES + ADVERTISEMENTS["tracker"].replace("10", "20"))
+    shelf = Shelf([tmp_path], complaints.append)
+    shelf.refresh()
+    assert shelf.advertisements[iri("person-tracker")].profile.preference == 10
+    assert len(complaints) == 1
+    assert "b.ttl" in complaints[0]
+
+
+def test_an_empty_folder_that_is_called_like_a_file_is_no_trouble(tmp_path: Path) -> None:
+    (tmp_path / "folder.ttl").mkdir()
+    complaints: list[str] = []
+    shelf = Shelf([tmp_path], complaints.append)
+    shelf.refresh()
+    assert shelf.advertisements == {}

@@ -1,0 +1,70 @@
+"""A site on the bus: what it replies, and what it tells when its files change."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Sample
+from selfconf.errors import AuthorError
+from selfconf.protocol.codec import decode
+from selfconf.protocol.messages import Page
+from selfconf.site import Shelf, Site
+from selfconf.site.site import FILE_CHECK
+from tests.lab import ADVERTISEMENTS, iri, write_advertisements
+from tests.site.served import KEYS, ask, serve
+
+
+def test_every_advertisement_is_one_reply_on_a_key_of_its_own(network: Network, tmp_path: Path) -> None:
+    serve(network, write_advertisements(tmp_path))
+    samples = ask(network, KEYS.advertisements()).samples
+    assert len({sample.key for sample in samples}) == len(ADVERTISEMENTS)
+    pages = [decode(sample.attachment, Page) for sample in samples]
+    assert [page.index for page in pages] == list(range(len(ADVERTISEMENTS)))
+    assert {page.total for page in pages} == {len(ADVERTISEMENTS)}
+
+
+def test_one_advertisement_may_be_asked_for_alone_or_all_come(network: Network, tmp_path: Path) -> None:
+    serve(network, write_advertisements(tmp_path, "tracker"))
+    assert len(ask(network, KEYS.advertisement("home", iri("person-tracker"))).samples) == 1
+
+
+def test_a_change_is_announced_and_the_next_answer_has_a_new_revision(network: Network, tmp_path: Path) -> None:
+    serve(network, write_advertisements(tmp_path, "tracker"))
+    told: list[Sample] = []
+    network.node().subscribe(KEYS.changed(), told.append)
+    before = decode(ask(network, KEYS.advertisements()).samples[0].attachment, Page)
+    write_advertisements(tmp_path, "drive")
+    network.run(lambda: bool(told), 2 * FILE_CHECK)
+    assert len(told) == 1
+    after = [decode(sample.attachment, Page) for sample in ask(network, KEYS.advertisements()).samples]
+    assert {page.revision for page in after} == {before.revision + 1}
+    assert {page.total for page in after} == {2}
+
+
+def test_nothing_is_announced_while_nothing_changes(network: Network, tmp_path: Path) -> None:
+    serve(network, write_advertisements(tmp_path, "tracker"))
+    told: list[Sample] = []
+    network.node().subscribe(KEYS.changed(), told.append)
+    network.run(lambda: False, 10 * FILE_CHECK)
+    assert told == []
+
+
+def test_a_site_that_is_closed_is_not_called_any_more(network: Network, tmp_path: Path) -> None:
+    site = serve(network, write_advertisements(tmp_path, "tracker"))
+    called: list[tuple[str, ...]] = []
+    node = network.node()
+    node.roll_call(KEYS.any_site_life(), 1.0, called.append)
+    network.run(lambda: bool(called))
+    assert len(called[0]) == 1
+    site.close()
+    node.roll_call(KEYS.any_site_life(), 1.0, called.append)
+    network.run(lambda: len(called) == 2)
+    assert called[1] == ()
+
+
+def test_a_site_needs_a_name_that_can_stand_in_a_key(network: Network, tmp_path: Path) -> None:
+    with pytest.raises(AuthorError, match="cannot name a site"):
+        Site(network.node(), "lab", "a/b", Shelf([tmp_path], print))
