@@ -31,7 +31,7 @@ MOST_NAMED = 5
 def near_misses_by_type(
     role: CompiledRole, partitioner: Partitioner, ecology: AdvertisementIndex, known: Hierarchy
 ) -> Iterator[NearMiss]:
-    """The components that one class test alone keeps out: misspelt ones first, then by what was meant, and by component.
+    """The components that one class test alone keeps out: misspelt ones first, then by meaning, then by component.
 
     `known` is the hierarchy that the ontologies have, whatever the role sees.
     """
