@@ -75,7 +75,7 @@ def _texts(sources: Iterable[object]) -> Iterator[Text]:
             paths.append(Path(source))
         else:
             yield text_of(source)
-    yield from map(file_text, turtle_files(paths))
+    yield from map(file_text, listed_files(paths))
 
 
 def text_of(source: object) -> Text:
@@ -137,13 +137,13 @@ def collector_at_rest() -> Iterator[None]:
             gc.enable()
 
 
-def turtle_files(paths: Sequence[Path]) -> list[Path]:
-    """The files, and all *.ttl below the folders, each once, sorted. Raises AuthorError for what is not there."""
+def listed_files(paths: Sequence[Path], endings: tuple[str, ...] = files.TURTLE) -> list[Path]:
+    """The files, and all below the folders that end so, each once, sorted. Raises AuthorError for what is not there."""
     found: set[Path] = set()
     for path in paths:
         if path != STDIN:
             existing(path)
-        found.update(files.within(path))
+        found.update(files.within(path, endings=endings))
     return sorted(found, key=Path.absolute)
 
 

@@ -148,8 +148,7 @@ def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
 
 def ecology_of(given: argparse.Namespace) -> Ecology:
     """The ecology that the arguments name: files, an endpoint, or else the living one, to be closed by `close`."""
-    if given.ads is not None and given.endpoint is not None:
-        raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
+    one_ecology(given)
     if given.ads is not None:
         return read_files(given.ads)
     if given.endpoint is not None:
@@ -157,6 +156,12 @@ def ecology_of(given: argparse.Namespace) -> Ecology:
 
         return EndpointEcology(given.endpoint)
     return joined(given)
+
+
+def one_ecology(given: argparse.Namespace) -> None:
+    """Raises AuthorError where two ecologies are named."""
+    if given.ads is not None and given.endpoint is not None:
+        raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
 
 
 def read_files(paths: Iterable[Path]) -> Ecology:

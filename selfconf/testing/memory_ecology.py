@@ -69,7 +69,7 @@ class MemoryRun:
             policy=policy,
             patient=wait,
             report=self.events.append,
-            ended=self._settle,
+            ended=self._ended,
         )
         network = ecology.network
         self._runner = TaskRunner(network.node(), NAME, request, f"c{len(network.nodes)}", lambda: network.time)
@@ -103,7 +103,7 @@ class MemoryRun:
         self._runner.stop()
         self._ecology.until(lambda: self.ended)
 
-    def _settle(self, refusal: Refusal | Undecided | None) -> None:
+    def _ended(self, refusal: Refusal | Undecided | None) -> None:
         self.refusal, self.ended = refusal, True
 
 

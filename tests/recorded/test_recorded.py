@@ -20,10 +20,7 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("pysat", reason="with fewer solvers, fewer searches are decided: install the extra solvers")
 
 
-@pytest.fixture(
-    scope="module",
-    params=[pytest.param(group, marks=pytest.mark.xdist_group(f"recorded {group}")) for group in sorted(GROUPS)],
-)
+@pytest.fixture(scope="module", params=sorted(GROUPS))
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, Answer]]:
     """A group, and what is answered to its cases now."""
     with pytest.MonkeyPatch.context() as patch:

@@ -44,7 +44,7 @@ def inlined(
             subjects = None
         return _late(text, base, statements) if subjects is None else subjects
     except (SyntaxError, MemoryError) as error:
-        raise turtle.not_turtle(error, source) from None
+        raise turtle.not_turtle(error, source, text) from None
     except NotInlinableError:
         return None
 

@@ -6,6 +6,7 @@ equal statements, so all that follows from a clause alone is worked out once.
 
 from __future__ import annotations
 
+import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
@@ -50,8 +51,9 @@ _VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)
 class _PortPattern(NamedTuple):
     """What is recognised of the ports, or operational parameters, that one predicate links to."""
 
-    marks: tuple[tuple[str, Field, str], ...]
-    """How each field begins in Turtle, and the group that has its value or the first value in it."""
+    fields: tuple[tuple[str, int, float, str], ...]
+    """Of each field how it begins in Turtle, how often it may be there, and the group of its value, or of the first
+    value in it."""
     type: str
     """The group of the type."""
     pattern: re.Pattern[str]
@@ -63,7 +65,17 @@ class _PortPattern(NamedTuple):
         allowed = "|".join(field.turtle for field in fields if field.most != 0)
         statement = f"(?:{_KINDS}|{allowed}|<[^<>]*> {_VALUE})"
         return cls(
-            tuple([(f"<{f.predicate}> ", f, (f.into.fields or (f,))[0].predicate.short) for f in fields]),
+            tuple(
+                [
+                    (
+                        f"<{field.predicate}> ",
+                        field.least,
+                        math.inf if field.most is None else field.most,
+                        (field.into.fields or (field,))[0].predicate.short,
+                    )
+                    for field in fields
+                ]
+            ),
             next(field.predicate.short for field in fields if field.least and field is not NAME),
             re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]"),
         )
@@ -155,13 +167,15 @@ def port_of(text: str) -> WrittenPort | None:
     known = _PORTS.get(link)
     if known is None:
         return None
-    present = [
-        (field.counts(text.count(mark)), group) for mark, field, group in known.marks if mark in text or field.least
-    ]
-    found = known.pattern.fullmatch(text) if all(counts for counts, _ in present) else None
-    if found is None or any(found[group] is None for _, group in present):
+    for mark, least, most, _ in known.fields:
+        if not least <= text.count(mark) <= most:
+            return None
+    found = known.pattern.fullmatch(text)
+    if found is None:
         return None
     said = found.groupdict()
+    if any(mark in text and said[group] is None for mark, _, most, group in known.fields if most):
+        return None
     return WrittenPort(link, said["name"], said[known.type], said.get("value"))
 
 

@@ -18,11 +18,15 @@ from functools import cached_property
 
 from selfconf.errors import TurtleError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
+from selfconf.rdf import turtle
 from selfconf.rdf.validation.prefilter import Prefiltered, prefilter
 from selfconf.rdf.validation.syntax import hint, telling
 from selfconf.rdf.validation.term_index import TermIndex, index_of
 
 _NOTHING = "There is no component, template, task, configuration or ontology in this file: nothing to validate."
+MOST_STATEMENTS = 250_000
+"""Statements of a file that is checked for the place of each problem, which takes a thousand times as long as reading:
+a bound on the work that is known before, and is the same on every machine."""
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
@@ -111,6 +115,9 @@ def validate(
         if source.name in seen
         and (source.name in elsewhere or not (seen[source.name].clear and familiar.clear(seen[source.name])))
     ]
+    for suspect in [one for one in suspects if seen[one.source.name].size > MOST_STATEMENTS]:
+        suspects.remove(suspect)
+        diagnostics.append(_too_large(suspect.source, seen[suspect.source.name].size))
     for problems in each(FileChecker(tuple(shapes), familiar), suspects):
         diagnostics += problems
     concerned = {found.file for found in diagnostics}
@@ -140,13 +147,20 @@ def _digest(*parts: bytes) -> hashlib.blake2s:
 
 
 def _loaded(source: SourceText) -> Prefiltered:
+    """What an ontology declares, in whatever format it is. Raises TurtleError."""
     for fault in _encoding(source):
         raise TurtleError(fault.message, file=source.name, line=fault.line, column=fault.column)
-    screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
-    if screened.problems:
-        problem = screened.problems[0]
-        raise TurtleError(problem.message, file=source.name, line=problem.line, column=problem.column)
-    return screened
+    octets = source.octets.removeprefix(_BYTE_ORDER_MARK)
+    found = prefilter(octets, source.base, turtle.format_of(source.name, octets).parser)
+    if found.problems:
+        turtle.read_ontology(octets, source.name, source.base)  # which raises, and words it
+    return found
+
+
+def _too_large(source: SourceText, size: int) -> Diagnostic:
+    message = f"With {size:,} statements this file is too large to be checked in full."
+    advice = f"Split it into files of at most {MOST_STATEMENTS:,} statements."
+    return Diagnostic(source.name, 1, 1, "SC-S05", message, hint=advice, source=source.line(1))
 
 
 def _encoding(source: SourceText) -> Iterator[Diagnostic]:
@@ -167,6 +181,12 @@ def _encoding(source: SourceText) -> Iterator[Diagnostic]:
 
 
 def _syntax(source: SourceText, screened: Prefiltered) -> Iterator[Diagnostic]:
+    other = turtle.other_format(source.name, source.octets) if screened.problems else None
+    if other is not None:
+        message = f"This is {other.name}, and what is validated is Turtle."
+        advice = f"Convert it: {turtle.conversion(source.name, other)}"
+        yield Diagnostic(source.name, 1, 1, "SC-S01", message, hint=advice, source=source.line(1))
+        return
     for problem in telling(screened.problems):
         message = f"This is not Turtle: {problem.message.rstrip('.')}."
         yield Diagnostic(

@@ -70,6 +70,8 @@ class Prefiltered:
     problems: list[SyntaxProblem] = field(default_factory=list)
     clear: bool = True
     """Whether every shape is certain to hold."""
+    size: int = 0
+    """How many statements the file makes."""
     relevant: bool = False
     """Whether the file speaks of anything that is validated."""
     components: list[str] = field(default_factory=list)
@@ -91,10 +93,10 @@ class Prefiltered:
     prefixes: set[tuple[str, str]] = field(default_factory=set)
 
 
-def prefilter(octets: bytes, base: str | None = None) -> Prefiltered:
-    """Look at a Turtle text in UTF-8 without a byte order mark."""
+def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.RdfFormat.TURTLE) -> Prefiltered:
+    """Look at a text in UTF-8 without a byte order mark: Turtle, or of an ontology another format."""
     found = Prefiltered(prefixes={(match[1].decode(), match[2].decode()) for match in _PREFIX.finditer(octets)})
-    statements = _read(octets, base, found)
+    statements = _read(octets, base, syntax, found)
     for subject, properties in statements.items():
         _note(found, subject, properties)
     advertisements = _Advertisements(statements)
@@ -106,10 +108,10 @@ def prefilter(octets: bytes, base: str | None = None) -> Prefiltered:
     return found
 
 
-def _read(octets: bytes, base: str | None, found: Prefiltered) -> Statements:
+def _read(octets: bytes, base: str | None, syntax: ox.RdfFormat, found: Prefiltered) -> Statements:
     """The statements of a text; what is no Turtle is noted, and reading goes on after it."""
     statements: Statements = {}
-    reader = ox.parse(octets, format=ox.RdfFormat.TURTLE, base_iri=base)
+    reader = ox.parse(octets, format=syntax, base_iri=base)
     while len(found.problems) < MOST_PROBLEMS:
         try:
             for quad in reader:
@@ -144,6 +146,7 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     """Note which terms a subject uses, and whether it declares one."""
     for predicate, values in properties.items():
         found.used.add(predicate)
+        found.size += len(values)
         for value in values:
             if isinstance(value, Lexical):
                 found.literal_of.add(predicate)

@@ -1,4 +1,4 @@
-"""A refusal names requirements that cannot hold together, every one of which is needed for that."""
+"""A refusal names constraints that cannot hold together, every one of which is needed for that."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from hypothesis import given
 from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.refusal import Refusal
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
-from selfconf.search.engines import clause_learning as sat
+from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
-from selfconf.search.strategies import first as solve
+from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, problem, problems
 
 
 def possible(world: World, force: Iterable[Requirement]) -> bool:
-    """Whether requirements can hold together, by enumeration: less in force, more is allowed."""
+    """Return whether requirements can hold together, by enumeration; what is not required is allowed to fail."""
     wanted = set(force)
     choices = [
         [
@@ -35,8 +35,8 @@ def possible(world: World, force: Iterable[Requirement]) -> bool:
 
 
 def _holds(world: World, players: tuple[tuple[Candidate, ...], ...], wanted: set[Requirement]) -> bool:
-    everybody = [c.profile.component for role in players for c in role]
-    if OneRoleEach() in wanted and len(everybody) > len(set(everybody)):
+    components = [c.profile.component for role in players for c in role]
+    if OneRoleEach() in wanted and len(components) > len(set(components)):
         return False
     for number, variable in enumerate(world.variables):
         if OneValue(variable.parameter.short) in wanted:
@@ -81,7 +81,7 @@ def _unfed(world: World, players: tuple[tuple[Candidate, ...], ...]) -> set[tupl
 
 
 def _check(problem: Problem) -> None:
-    refusal = solve.search(problem)
+    refusal = first.search(problem)
     if not isinstance(refusal, Refusal):
         return
     assert refusal.irreducible
@@ -106,7 +106,7 @@ def test_a_reason_is_irreducible(problem: Problem) -> None:
 @agreement(0.2)
 def test_a_reason_is_irreducible_without_a_solver_library(problem: Problem) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sat, "find_spec", lambda name: None)
+        patch.setattr(clause_learning, "find_spec", lambda name: None)
         _check(problem)
 
 
@@ -119,7 +119,7 @@ def test_the_cause_comes_first_and_then_what_follows_from_it() -> None:
         },
         "sonar>control control>drive",
     )
-    (reason,) = solve.search(given_).reasons
+    (reason,) = first.search(given_).reasons
     assert reason.code == "input-unfed"
     assert str(reason).startswith("the input 'scan' (RangeScan) of cap cannot be fed: no candidate of sonar issues")
 
@@ -132,7 +132,7 @@ def test_the_cause_comes_first_and_then_what_follows_from_it() -> None:
         (["b", "c", "d"], "b and 2 others cannot play the role control"),
     ],
 )
-def test_those_who_cannot_play_for_the_same_cause_are_counted(caps: list[str], words: str) -> None:
+def test_components_that_cannot_play_for_the_same_cause_are_counted(caps: list[str], words: str) -> None:
     given_ = problem(
         {
             "sonar": [component("bumper", outputs="o:Bump")],
@@ -141,14 +141,14 @@ def test_those_who_cannot_play_for_the_same_cause_are_counted(caps: list[str], w
         },
         "sonar>position position>control",
     )
-    answer = solve.search(given_)
+    answer = first.search(given_)
     assert isinstance(answer, Refusal)
     (reason,) = answer.reasons
     cause = "the input 'scan' (RangeScan) of gps cannot be fed: no candidate of sonar issues a RangeScan for it"
     assert str(reason) == f"{cause}; so {words}, as nobody left in position issues a Pose"
 
 
-def test_who_cannot_play_for_another_cause_is_not_counted() -> None:
+def test_a_component_that_cannot_play_for_another_cause_is_not_counted() -> None:
     given_ = problem(
         {
             "sonar": [component("bumper", outputs="o:Bump")],
@@ -161,13 +161,13 @@ def test_who_cannot_play_for_another_cause_is_not_counted() -> None:
         },
         "sonar>position position>control",
     )
-    answer = solve.search(given_)
+    answer = first.search(given_)
     assert isinstance(answer, Refusal)
     (reason,) = answer.reasons
     assert "b and one other cannot play the role control, as nobody left in position issues a Pose" in str(reason)
 
 
-def test_a_source_that_is_asked_for_nobody_is_not_said_to_issue_nothing() -> None:
+def test_a_source_with_a_minimum_of_zero_is_not_said_to_issue_nothing() -> None:
     given_ = problem(
         {
             "sonar": [component("ring", outputs="scan:RangeScan")],
@@ -177,6 +177,6 @@ def test_a_source_that_is_asked_for_nobody_is_not_said_to_issue_nothing() -> Non
         "sonar>control bumper>control",
         {"sonar": (0, 1)},
     )
-    (reason,) = solve.search(given_).reasons
+    (reason,) = first.search(given_).reasons
     cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for nobody (sc:minCount 0)"
     assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.rdf.test_lints import HEAD, TEMPLATE, lints, only
+from tests.rdf.validation.lints.test_terms import HEAD, TEMPLATE, lints, only
 
 
 def test_a_role_that_has_the_type_of_its_component_is_told_what_to_write() -> None:

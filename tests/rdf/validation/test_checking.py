@@ -13,7 +13,7 @@ from selfconf.errors import TurtleError
 from selfconf.model.codes import CODES, PREAMBLE, Code
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
 from selfconf.rdf.validation.checking import SourceText, validate
-from tests.bad_files import BAD, checked, judges_bad_files, promised
+from tests.bad_files import BAD, checked, promised
 
 ADVERTISEMENT = ":tuner a sc:Component, rob:Tuner .\n"
 
@@ -38,7 +38,6 @@ def found(report: Report) -> list[str]:
     return [f"{each.line - head}:{each.column} {each.code}" for each in report.diagnostics]
 
 
-@judges_bad_files
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
 def test_a_bad_file_earns_what_its_first_line_says(path: Path) -> None:
     found = [f"{each.line}:{each.column} {each.severity.value}[{each.code}]" for each in checked(path).diagnostics]

@@ -15,7 +15,7 @@ from selfconf.rdf.advertisements import statements as clauses
 from selfconf.rdf.advertisements.segments import NEW_SEGMENTS, SegmentCache, inlined_document
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
-from tests.rdf.test_stream import GOOD, documents, shape_of
+from tests.rdf.advertisements.test_loader import GOOD, documents, shape_of
 
 BASE = "file:///folder/a.ttl"
 SNIPPETS = st.sampled_from(

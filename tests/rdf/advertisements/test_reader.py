@@ -18,7 +18,7 @@ from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import RDFS, ROB, SC
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
-BAD = Path(__file__).resolve().parents[1] / "bad"
+BAD = Path(__file__).resolve().parents[2] / "bad"
 UNDECLARED = {"component-untyped"}
 """Files about something that says nowhere that it is a component."""
 PORT = '[ sc:name "a" ; sc:signalType :S'

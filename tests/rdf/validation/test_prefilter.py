@@ -96,7 +96,7 @@ def test_a_good_advertisement_is_cleared_at_first_sight() -> None:
     assert screened.components == ["https://example.org/home#cap"]
 
 
-@pytest.mark.parametrize("path", sorted((Path(__file__).parents[1] / "bad").glob("*.ttl")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "bad").glob("*.ttl")), ids=lambda path: path.stem)
 def test_no_file_that_breaks_a_shape_is_cleared(path: Path) -> None:
     if any(f"[SC-{letter}" in path.read_text("utf-8").partition("\n")[0] for letter in "STAKCO"):
         assert not prefilter(path.read_bytes(), "file:///").clear

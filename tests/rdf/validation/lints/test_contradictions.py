@@ -18,7 +18,7 @@ from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeSource
 from selfconf.rdf.vocabulary import SC
 from tests.effort import examples
 from tests.lab import PREFIXES, iri
-from tests.rdf.test_partition_agreement import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
+from tests.rdf.eligibility.test_compiler import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
 
 TYPE = "<http://www.w3.org/1999/02/22-rdf-syntax-ns#type>"
 ALWAYS = Graph()

@@ -14,7 +14,7 @@ from selfconf.rdf.advertisements.segments import SegmentCache, inlined_document
 from selfconf.rdf.advertisements.token_templates import OCCURRENCES, TokenTemplates, shaped
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
-from tests.rdf.test_stream import GOOD, told
+from tests.rdf.advertisements.test_loader import GOOD, told
 
 MANY = OCCURRENCES + 3
 STRINGS = st.sampled_from(

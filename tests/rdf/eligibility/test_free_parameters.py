@@ -20,7 +20,7 @@ from selfconf.rdf.vocabulary import RDF, XSD
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first as solve
 from tests.lab import PREFIXES, iri
-from tests.rdf.test_partition_agreement import COMPONENTS, ecology
+from tests.rdf.eligibility.test_compiler import COMPONENTS, ecology
 
 PARAMETER = ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :v . :v a sc:Parameter ; sc:name 'v'"
 SETS = "; sc:sets [ sc:parameterType :T ; sc:value :v ]"

@@ -133,7 +133,7 @@ def test_what_cannot_be_read_is_one_sentence_that_names_the_file(text: str, sent
 
 def wrong_about_templates() -> list[Path]:
     """The bad files whose first line promises an error about a template or a task, or a list without an end."""
-    files = sorted((Path(__file__).parents[1] / "bad").glob("*.ttl"))
+    files = sorted((Path(__file__).parents[2] / "bad").glob("*.ttl"))
     return [file for file in files if re.search(r"error\[SC-([TK]|S06)", file.read_text("utf-8").partition("\n")[0])]
 
 
@@ -171,7 +171,7 @@ def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
     assert [parameter.in_shape for parameter in task.template.parameters] == [True]
 
 
-@pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "examples").rglob("*.ttl")), ids=str)
+@pytest.mark.parametrize("path", sorted((Path(__file__).parents[3] / "examples").rglob("*.ttl")), ids=str)
 def test_every_example_that_holds_a_template_is_read(path: Path) -> None:
     document = turtle.parse(path.read_bytes(), path.name)
     if document.instances(SC.Template):
