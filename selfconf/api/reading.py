@@ -21,9 +21,6 @@ from selfconf.rdf.eligibility import AdvertisementIndex
 if TYPE_CHECKING:
     import rdflib
 
-STDIN = Path("-")
-"""What stands for standard input where a file can be given."""
-
 
 class _Graph(Protocol):
     """An rdflib graph, as far as it matters here."""
@@ -92,13 +89,13 @@ def text_of(source: object) -> Text:
 
 def file_text(path: Path) -> Text:
     """What is in a file, or in standard input. Raises AuthorError."""
-    octets = sys.stdin.buffer.read() if path == STDIN else files.octets(path)
+    octets = sys.stdin.buffer.read() if path == files.STDIN else files.octets(path)
     return files.text(octets, file_name(path)), file_name(path), files.base(path)
 
 
 def file_name(path: Path) -> str:
     """How a file is spoken of."""
-    return "<stdin>" if path == STDIN else str(path)
+    return "<stdin>" if path == files.STDIN else str(path)
 
 
 def _name(source: object) -> str:
@@ -141,7 +138,7 @@ def listed_files(paths: Sequence[Path], endings: tuple[str, ...] = files.TURTLE)
     """The files, and all below the folders that end so, each once, sorted. Raises AuthorError for what is not there."""
     found: set[Path] = set()
     for path in paths:
-        if path != STDIN:
+        if path != files.STDIN:
             existing(path)
         found.update(files.within(path, endings=endings))
     return sorted(found, key=Path.absolute)

@@ -23,7 +23,7 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.termination import Termination
 
 TAKING_DOWN = 15.0
-"""How long, in seconds, leaving a run waits for its components to be turned off."""
+"""How long, in seconds, a configurator may take to turn off everything that it holds."""
 CHECK = 0.5
 """How often, in seconds, it is checked whether what a run rests on is still there."""
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
+from selfconf.files import STDIN
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Method
@@ -22,8 +23,6 @@ REASONING = ("syntactic", "subclass", "owl-rl")
 # Both are enumerations of the library, which is not loaded to parse arguments; a test compares them.
 LONGEST_SECONDS = 1e6
 """Seconds that an alarm can be set to everywhere."""
-STDIN = Path("-")
-"""What stands for standard input where a file can be given."""
 
 
 def add_task_arguments(parser: argparse.ArgumentParser) -> None:
@@ -97,7 +96,7 @@ def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", metavar="S", type=_seconds, help="give up a search after so many seconds")
 
 
-def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
+def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
     """The options by which a command finds the living ecology."""
     parser.add_argument("--ecology", metavar="NAME", help="the ecology; by default the only one on this machine")
     parser.add_argument(
@@ -146,7 +145,7 @@ def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
     return Method.of(given.strategy, given.reasoning, given.ontology, steps, seconds)
 
 
-def ecology_of(given: argparse.Namespace) -> Ecology:
+def given_ecology(given: argparse.Namespace) -> Ecology:
     """The ecology that the arguments name: files, an endpoint, or else the living one, to be closed by `close`."""
     one_ecology(given)
     if given.ads is not None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.options import (
     add_budget_arguments,
-    add_connection_arguments,
+    add_ecology_arguments,
     add_endpoint_argument,
     add_task_arguments,
     complain_of,
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_budget_arguments(parser)
-    add_connection_arguments(parser)
+    add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:

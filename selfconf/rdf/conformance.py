@@ -40,7 +40,7 @@ _TARGETS = frozenset(
 _CLASSES = frozenset((rdflib.RDFS.Class, rdflib.OWL.Class))
 """A shape that is a class has its instances as targets (SHACL, 2.1.3.3)."""
 _NOTHING = IRI("urn:selfconf:nothing")
-"""A node that nobody says anything about."""
+"""A node about which nothing is said."""
 _NO_ORDER = (*UNORDERED, ReportableRuntimeError)
 """What comes through pySHACL where two values have no order; the last is its own, for blank nodes."""
 _ILL_FORMED = (
@@ -91,7 +91,7 @@ def violations(
 def _bisected(
     subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
 ) -> dict[IRI, list[ShapeViolated]]:
-    """The same where pySHACL stops at some nodes, as they have values without an order."""
+    """The violations of each node where pySHACL stops at some, as they have values without an order."""
     try:
         return _found(subjects, shapes, shape, focus, source)
     except _NO_ORDER:

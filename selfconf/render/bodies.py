@@ -85,6 +85,7 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
             for miss in refusal.near_misses
         ],
         "repairs": repairs,
+        **({"missing_sites": list(refusal.missing_sites)} if refusal.missing_sites else {}),
     }
 
 

@@ -3,7 +3,7 @@
 Each subject (a component, an input, an output, an operational parameter, a rate, a grounding) has fields; a field is a
 predicate with the number of its values and what kind of value it takes. The careful reader, the prefilter of
 validation, the patterns of the fast loader and the lints take both from here. `shapes/advertisement.ttl` says the same
-in SHACL, for everybody else; a test holds the two together, both ways.
+in SHACL, for use without selfconf; a test holds the two together, both ways.
 
 A kind of value is given three times: as a test of a value, as the words that an author reads, and as the Turtle that
 the fast loader recognises without looking closer. The last may accept less than the first, never more.

@@ -81,7 +81,7 @@ class ClassClosure(dict[TypeSet, frozenset[IRI]]):
 
 
 class RelevantPredicates(dict[str, bool]):
-    """Whether some tests look at a predicate, as clauses name it; worked out when it is first met."""
+    """Whether some tests look at a predicate, as statements name it; worked out when it is first met."""
 
     def __init__(self, tests: Iterable[RoleTest], hierarchy: Hierarchy) -> None:
         tests = list(tests)
@@ -105,7 +105,7 @@ class Signature:
         self._itself = any(isinstance(test, SelfTest) for test in inner)
 
     def __call__(self, advertisement: Advertisement) -> Hashable:
-        """The signature of an advertisement; where it shares its clauses with others, its profile is not needed."""
+        """The signature of an advertisement; where it shares its statements with others, its profile is not needed."""
         looked = self._looked
         itself = advertisement.component if self._itself else None
         statements = advertisement.statements if isinstance(advertisement, LoadedAdvertisement) else ()

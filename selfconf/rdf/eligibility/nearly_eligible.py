@@ -1,7 +1,7 @@
-"""Who is kept out of a role, and by what: those who nearly fit, and all the others.
+"""Which components are kept out of a role, and by what: those that nearly fit, and all the others.
 
 A *near miss* is kept out by exactly one thing: one test, or one property shape, or one constraint that pySHACL finds to
-be violated, or that it leaves no value for a free parameter. Mend that and it may play the role.
+be violated, or that it leaves no value for a free parameter. Without that it may play the role.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partit
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
 
 JUDGED = 24
-"""How many pySHACL judges at most to find near misses of a role: of those whom no test keeps out, and of the others."""
+"""How many pySHACL judges at most to find near misses of a role: of those that no test keeps out, and of the others."""
 _component = attrgetter("component")
 
 
@@ -37,9 +37,9 @@ class Exclusion:
 def exclusions(
     partitioner: Partitioner, role: CompiledRole, inside: Container[IRI], advertisements: Advertisements
 ) -> list[Exclusion]:
-    """All that keeps out of a role who is not inside; first those of its class, and those with few obstacles.
+    """What keeps each component out that does not play a role: first those of its class, and those with few obstacles.
 
-    What only pySHACL can judge is told of those who pass all tests.
+    What only pySHACL can judge is told of the components that pass all tests.
     """
     ecology = AdvertisementIndex.of(advertisements)
     akin = set(partitioner.akin(role, ecology))
@@ -117,7 +117,7 @@ def _let_in(partitioner: Partitioner, role: CompiledRole, advertisement: Adverti
 def _judged(
     partitioner: Partitioner, role: CompiledRole, ecology: AdvertisementIndex, few: Iterable[Tested]
 ) -> Iterator[NearMiss]:
-    """Those whom pySHACL finds to be kept out by one thing, for some value of the parameter that is left free."""
+    """The components that pySHACL finds to be kept out by one thing, for some value of the free parameter."""
     obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
     by_name = sorted(obstacles, key=_component)
     focus = [a for a in by_name if not obstacles[a]][:JUDGED] + [a for a in by_name if obstacles[a]][:JUDGED]

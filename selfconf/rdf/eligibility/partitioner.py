@@ -2,7 +2,7 @@
 
 Every role is compiled once. The classes that it asks for are tested once for each set of types in the ecology, its
 other tests once for each *signature*: what a component says of the properties that the role looks at. Where the shape
-says more than the tests, pySHACL judges those who pass them, all in one call.
+says more than the tests, pySHACL judges the components that pass them, all in one call.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Partitioner:
         self.suitable = free_values.Suitable(self._parameters, given.document)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
-        """The same task for roles that see another hierarchy."""
+        """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
         return other
@@ -89,7 +89,7 @@ class Partitioner:
 
         def admits(found: EligibleComponent) -> tuple[int, ...]:
             allowed = tuple([_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True)])
-            return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity who is alike
+            return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity which are alike
 
         return Partition(
             tuple(ordered([Candidate(found.profile, admits(found)) for found in role]) for role in eligible), variables
@@ -101,7 +101,7 @@ class Partitioner:
         return (kind for kind in ecology.type_sets if classes <= self._above[kind])
 
     def tested(self, role: CompiledRole, ecology: AdvertisementIndex, type_sets: Iterable[TypeSet]) -> Iterator[Tested]:
-        """What the tests of a role say of the components of some kinds; of those that are alike they say the same."""
+        """What the tests of a role say of the components of some kinds; of those that are alike they say one thing."""
         signature = Signature(role.tests, self.hierarchy)
         for kind in type_sets:
             for alike in ecology.alike(kind, signature):

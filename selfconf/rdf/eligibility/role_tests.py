@@ -77,7 +77,7 @@ class PropertyTest:
         return PropertyUnmet(self.path, faults) if faults else None
 
     def _faults(self, values: frozenset[Term]) -> Iterator[Fault]:
-        """All that is wrong with some values: one property is one obstacle, with all that it takes to mend it."""
+        """All that is wrong with some values: one property is one obstacle, with all that it takes to remove it."""
         if not values and (self.minimum or self.required or self.free_required):
             yield Missing()
             return

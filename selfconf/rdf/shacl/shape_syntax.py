@@ -48,7 +48,7 @@ WANTED: dict[IRI, str] = {
     SH.property: "a property shape, which has one sh:path",
     SH.pattern: "a regular expression",
     SH.path: "a property or a path of properties",
-    SH.sparql: "a constraint with a SPARQL query that asks nobody else",
+    SH.sparql: "a constraint with a SPARQL query that asks no other machine",
 }
 """What the value of each property has to be, in words."""
 

@@ -1,7 +1,7 @@
 """Validation of many files at once: texts in, a report out.
 
 Two passes. The first reads every file by Oxigraph and learns which terms there are; a file in which
-nothing is suspicious has passed then. The second looks closely at the others: places by rdflib's parser,
+nothing is suspicious has passed then. The second checks the others: places by rdflib's parser,
 violations by pySHACL, malformed roles, lints. Each file is judged on its own triples. What the files of a
 run share is only the knowledge which terms exist, which can make a warning of a term or take it away, and
 which components are described twice. An ontology is known alike whether it is among the files, given as an
@@ -50,7 +50,7 @@ class SourceText:
 
 @dataclass(frozen=True, slots=True)
 class UnclearedFile:
-    """A file that did not pass at first sight."""
+    """A file that the prefilter has not cleared."""
 
     source: SourceText
     elsewhere: dict[str, str] = field(default_factory=dict)
@@ -59,28 +59,28 @@ class UnclearedFile:
 
 @dataclass(frozen=True)
 class FileChecker:
-    """The close look at one file, and all that its outcome depends on besides the file."""
+    """The check of one file, and all that its outcome depends on besides the file."""
 
     shapes: tuple[SourceText, ...]
-    familiar: TermIndex
+    index: TermIndex
 
     def __call__(self, suspect: UnclearedFile) -> list[Diagnostic]:
         """The problems of a file."""
         # rdflib and pySHACL take longer to load than thousands of good files take to pass.
-        from selfconf.rdf.validation import file_check as scrutiny
+        from selfconf.rdf.validation.file_check import FileCheck, shapes_of
 
-        close = scrutiny.FileCheck(scrutiny.shapes_of(*(source.text() for source in self.shapes)), self.familiar)
-        return close.of(suspect.source.text(), suspect.source.name, suspect.source.base, suspect.elsewhere)
+        check = FileCheck(shapes_of(*(source.text() for source in self.shapes)), self.index)
+        return check.of(suspect.source.text(), suspect.source.name, suspect.source.base, suspect.elsewhere)
 
     @cached_property
     def knowledge(self) -> bytes:
         """A digest of the shapes and of the terms that are known."""
-        known = (self.familiar.terms, self.familiar.object_properties, self.familiar.covered)
-        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.familiar.above)))
+        known = (self.index.terms, self.index.object_properties, self.index.covered)
+        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.index.above)))
         return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
 
     def key(self, suspect: UnclearedFile) -> str:
-        """A digest of all that the outcome depends on; whoever remembers outcomes adds the versions of the programs."""
+        """A digest of all that the outcome depends on; a memory of outcomes adds the versions of the programs."""
         source = suspect.source
         elsewhere = repr(sorted(suspect.elsewhere.items()))
         said = (source.name, source.base, elsewhere)
@@ -88,7 +88,7 @@ class FileChecker:
 
 
 CheckEach = Callable[[FileChecker, Sequence[UnclearedFile]], Iterable[list[Diagnostic]]]
-"""Calls a judge for each suspect, in whatever order, process or memory; `map` is one."""
+"""Calls a file checker for each uncleared file, in any order and process, or remembers; `map` is one."""
 
 
 def validate(
@@ -98,7 +98,7 @@ def validate(
     files = list(sources)
     diagnostics: list[Diagnostic] = []
     seen: dict[str, Prefiltered] = {}
-    familiar = index_of(_loaded(source) for source in ontologies)
+    index = index_of(_loaded(source) for source in ontologies)
     for source in files:
         problems = list(_encoding(source))
         if not problems:
@@ -106,19 +106,19 @@ def validate(
             problems = list(_syntax(source, screened))
             if not problems:
                 seen[source.name] = screened
-                familiar.learn(screened)
+                index.learn(screened)
         diagnostics += problems
     elsewhere = described_twice(seen)
     suspects = [
         UnclearedFile(source, elsewhere.get(source.name, {}))
         for source in files
         if source.name in seen
-        and (source.name in elsewhere or not (seen[source.name].clear and familiar.clear(seen[source.name])))
+        and (source.name in elsewhere or not (seen[source.name].clear and index.clear(seen[source.name])))
     ]
     for suspect in [one for one in suspects if seen[one.source.name].size > MOST_STATEMENTS]:
         suspects.remove(suspect)
         diagnostics.append(_too_large(suspect.source, seen[suspect.source.name].size))
-    for problems in each(FileChecker(tuple(shapes), familiar), suspects):
+    for problems in each(FileChecker(tuple(shapes), index), suspects):
         diagnostics += problems
     concerned = {found.file for found in diagnostics}
     for name, screened in seen.items():

@@ -36,7 +36,7 @@ class FileCheck:
     """What the check of a file needs, for any number of files."""
 
     shapes: Shapes
-    familiar: TermIndex
+    index: TermIndex
 
     def of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
         """The problems of one file, in no particular order."""
@@ -60,5 +60,5 @@ class FileCheck:
         violations = list(endless_lists(graph, positions))
         if not violations:  # pySHACL does not come back from a list without an end
             violations = [*shape_violations(graph, positions, self.shapes), *malformed_roles(graph, positions)]
-        file = LintedFile(graph, positions, self.familiar, elsewhere, self.shapes.all)
+        file = LintedFile(graph, positions, self.index, elsewhere, self.shapes.all)
         return violations + lint(file, conforms=not violations)

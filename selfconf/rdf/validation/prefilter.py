@@ -1,8 +1,8 @@
-"""A first look at a file, as fast as Oxigraph reads it: is it Turtle, and could anything be wrong with it?
+"""The prefilter: a file read as fast as Oxigraph can, to see whether it is Turtle, and whether all is certainly right.
 
 Most files of an ecology are right, and saying so must not cost what finding the place of an error costs.
-The first look clears an advertisement only if every statement in it is one that the shapes are known to
-allow, and leaves all else to `judging`. So it may suspect a good file, which costs time, but it clears no
+The prefilter clears an advertisement only if every statement in it is one that the shapes are known to
+allow, and leaves all else to `file_check`. So it may leave a good file uncleared, which costs time, but it clears no
 bad one; that is a property test.
 """
 
@@ -65,7 +65,7 @@ class SyntaxProblem:
 
 @dataclass(slots=True)
 class Prefiltered:
-    """What the first look tells about a file."""
+    """What the prefilter tells about a file."""
 
     problems: list[SyntaxProblem] = field(default_factory=list)
     clear: bool = True
@@ -117,7 +117,7 @@ def _read(octets: bytes, base: str | None, syntax: ox.RdfFormat, found: Prefilte
             for quad in reader:
                 subject, value = quad.subject, quad.object
                 if isinstance(subject, ox.Triple) or isinstance(value, ox.Triple):
-                    found.clear = False  # RDF 1.2; who reads Turtle 1.1 will say where
+                    found.clear = False  # RDF 1.2; the parser of Turtle 1.1 will say where
                     continue
                 key = subject.value if isinstance(subject, ox.NamedNode) else f"_:{subject.value}"
                 term: FileTerm

@@ -72,7 +72,7 @@ def cut(text: str, known: SegmentCache) -> object:
 @example(PREFIXES + ":c1 .")
 @example(PREFIXES + f":c1 {GOOD} ; :p :x.")
 @example(f"# a ; b\n{PREFIXES}\n# c .\n:c1 {GOOD} . # end")
-@example(PREFIXES + "<urn:selfconf:piece:0> a :T . :x a :T .")
+@example(PREFIXES + "<urn:selfconf:segment:0> a :T . :x a :T .")
 @example(PREFIXES + f':c1 {GOOD} .\n<urn:p>"s" ; :q 1 .')
 @example(PREFIXES + ":c1 a [ :n 1 ], sc:Component ; a :T .\n")
 def test_cutting_makes_of_a_document_what_reading_it_whole_makes_of_it(text: str) -> None:

@@ -11,7 +11,7 @@ from selfconf.rdf.advertisements import loader as stream
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.loader import LoadedAdvertisement
 from selfconf.rdf.advertisements.segments import SegmentCache, inlined_document
-from selfconf.rdf.advertisements.token_templates import OCCURRENCES, TokenTemplates, shaped
+from selfconf.rdf.advertisements.token_templates import OCCURRENCES, TokenTemplates, patterns_of
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
 from tests.rdf.advertisements.test_loader import GOOD, told
@@ -136,7 +136,7 @@ def test_pieces_that_differ_in_strings_and_digits_are_read_once(said: str) -> No
     "piece", [b" :p 'a1' ;", b' :p "a\\q" ;', b" p1:p 1 ;", b" :p <a%201> ;", b' :p "x"@en-1 ;', b" :p <http://a:1/> ;"]
 )
 def test_shapes_in_which_digits_do_not_mean_themselves_have_no_form(piece: bytes) -> None:
-    assert not TokenTemplates().wanted(shaped([piece] * OCCURRENCES))
+    assert not TokenTemplates().wanted(patterns_of([piece] * OCCURRENCES))
 
 
 @pytest.mark.parametrize(
