@@ -103,5 +103,9 @@ class SiteProcess:
 
 
 def sites(ecology: str | None = None) -> tuple[LocalSite, ...]:
-    """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each."""
+    """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each.
+
+    >>> [site.site for site in sites()]
+    ['home']
+    """
     return tuple(rendezvous.local_sites(ecology))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import math
 from collections.abc import Iterable
 from pathlib import Path
@@ -169,6 +170,7 @@ def read_files(paths: Iterable[Path]) -> Ecology:
 
     paths = list(paths)
     ecology = read(*paths)
+    gc.freeze()  # it stays until the command ends, so the collector need not look at a million values again and again
     complain_of(ecology)
     if not len(ecology):
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")

@@ -19,7 +19,7 @@ from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import allowed
-from selfconf.rdf.advertisements.fields import COMPONENT, GROUNDING, LINKS, NAME, NEXT, PORTS, STRUCTURE, Field
+from selfconf.rdf.advertisements.fields import COMPONENT, GROUNDING, LINKS, NEXT, PORT_NAME, PORTS, STRUCTURE, Field
 from selfconf.rdf.vocabulary import RDF, SC, TYPE, XSD
 
 END = " .\n"
@@ -68,7 +68,7 @@ class _PortPattern(NamedTuple):
             allowed.append(f"(?P<{SC.value.short}>(?!))")  # there is no rate: a group that matches nothing
         statement = f"(?:{_KINDS}|{'|'.join(allowed)}|<[^<>]*> {_VALUE})"
         pattern = re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]")
-        (kind,) = (field.predicate for field in fields if field.least and field is not NAME)
+        (kind,) = (field.predicate for field in fields if field.least and field is not PORT_NAME)
         name, type_, rate = (pattern.groupindex[predicate.short] for predicate in (SC.name, kind, SC.value))
         return cls(
             tuple([f"<{f.predicate}> " for f in fields if (f.least, f.most) == (1, 1)]),

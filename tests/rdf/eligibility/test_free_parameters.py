@@ -110,7 +110,7 @@ def test_a_role_that_must_not_have_the_value_of_another_is_not_played_by_its_lik
     assert [component.short for component in found.components] == ["c2", "c1"]
 
 
-def test_a_role_that_nobody_has_to_play_may_set_what_has_no_value() -> None:
+def test_a_role_that_may_stay_empty_may_set_what_has_no_value() -> None:
     text = (
         f"{PARAMETER} . :r a sc:Role ; sc:minCount 0 ; sh:property [ sh:path :p ; sh:in ( :v ) ] ;"
         " sc:sets [ sc:parameterType :T ; sc:value :v ] ."
@@ -125,7 +125,7 @@ def test_a_role_that_nobody_has_to_play_may_set_what_has_no_value() -> None:
 
 
 @pytest.mark.parametrize("shape", ["{}", "sh:and ( [ {} ] )"])
-def test_a_parameter_that_lists_its_values_has_them_though_nobody_states_any(shape: str) -> None:
+def test_a_parameter_that_lists_its_values_has_them_though_no_component_states_any(shape: str) -> None:
     looked_at = shape.format("sh:property [ sh:path :p ; sh:in ( :v ) ]")
     task = bindings.complete(document(f"{PARAMETER} ; sh:in ( :y :x ) . :r a sc:Role ; {looked_at} {SETS} ."))
     text = f'{PREFIXES} :a a sc:Component, :A ; sc:hasParameter [ sc:name "k" ; sc:parameterType :T ] .'
