@@ -31,9 +31,8 @@ class Tabular(ABC):
     def _printed(self) -> tuple[list[list[str]], str]:
         """The rows that are printed, and a remark where there are more."""
         rows = [[_cut(cell) for cell in row] for row in islice(self._cells(), LONGEST_TABLE + 1)]
-        return rows[:LONGEST_TABLE], f"... only the first {LONGEST_TABLE} are shown" if len(
-            rows
-        ) > LONGEST_TABLE else ""
+        more = f"... only the first {LONGEST_TABLE} are shown" if len(rows) > LONGEST_TABLE else ""
+        return rows[:LONGEST_TABLE], more
 
     def __repr__(self) -> str:
         rows, remark = self._printed()
