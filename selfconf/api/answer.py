@@ -149,7 +149,7 @@ class Answer(Configuration):
 
     def _repr_html_(self) -> str:
         sections = {f"configured {self.names(self.template)}": diagram(self, self.names)}
-        return html_sections(sections) + html_text(str(self))
+        return html_sections(sections) + html_text(plain(str(self)))
 
 
 def _answer(facts: Mapping[str, Any]) -> Answer:
