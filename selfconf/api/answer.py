@@ -124,7 +124,7 @@ class Answer(Configuration):
     @property
     def plain(self) -> Configuration:
         """The configuration by itself."""
-        return Configuration(self.template, self.assignments, self.connections, self.settings, self.bindings)
+        return Configuration(self.template, self.assignments, self.connections, self.settings, dict(self.bindings))
 
     def to_turtle(self) -> str:
         """The configuration in RDF, as Turtle."""

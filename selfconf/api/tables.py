@@ -9,9 +9,9 @@ from itertools import islice
 from selfconf.model.wording import plain
 from selfconf.render import html_table, html_text, table
 
-MOST_ROWS = 60
+ROWS_PRINTED = 60
 """How many rows are printed; the value itself has them all."""
-MOST_CHARACTERS = 120
+CHARACTERS_PRINTED = 120
 """How many characters of a cell are printed."""
 
 
@@ -30,8 +30,8 @@ class Tabular(ABC):
 
     def _printed(self) -> tuple[list[list[str]], str]:
         """The rows that are printed, and a remark where there are more."""
-        rows = [[_cut(cell) for cell in row] for row in islice(self._cells(), MOST_ROWS + 1)]
-        return rows[:MOST_ROWS], f"... only the first {MOST_ROWS} are shown" if len(rows) > MOST_ROWS else ""
+        rows = [[_cut(cell) for cell in row] for row in islice(self._cells(), ROWS_PRINTED + 1)]
+        return rows[:ROWS_PRINTED], f"... only the first {ROWS_PRINTED} are shown" if len(rows) > ROWS_PRINTED else ""
 
     def __repr__(self) -> str:
         rows, remark = self._printed()
@@ -45,4 +45,4 @@ class Tabular(ABC):
 def _cut(cell: str) -> str:
     """The text of a cell on one line, without what would steer a terminal."""
     line = plain(cell).replace("\n", "\\n").replace("\t", "\\t")
-    return line if len(line) <= MOST_CHARACTERS else f"{line[: MOST_CHARACTERS - 1]}…"
+    return line if len(line) <= CHARACTERS_PRINTED else f"{line[: CHARACTERS_PRINTED - 1]}…"

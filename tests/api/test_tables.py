@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from selfconf.api.tables import MOST_CHARACTERS, MOST_ROWS, Tabular
+from selfconf.api.tables import CHARACTERS_PRINTED, ROWS_PRINTED, Tabular
 
 
 class Numbers(Tabular):
@@ -24,15 +24,15 @@ class Numbers(Tabular):
 
 def test_no_more_rows_are_made_than_are_printed() -> None:
     million = Numbers(1_000_000)
-    assert repr(million).splitlines()[-1] == f"... only the first {MOST_ROWS} are shown"
-    assert million.made == MOST_ROWS + 1
+    assert repr(million).splitlines()[-1] == f"... only the first {ROWS_PRINTED} are shown"
+    assert million.made == ROWS_PRINTED + 1
     assert "only the first" in million._repr_html_()
-    assert "only the first" not in repr(Numbers(MOST_ROWS))
+    assert "only the first" not in repr(Numbers(ROWS_PRINTED))
 
 
 def test_a_long_cell_is_cut_and_one_of_several_lines_is_one_line() -> None:
     assert repr(Numbers(1, "a" * 10_000)).splitlines()[-1].endswith("a…")
-    assert max(map(len, repr(Numbers(1, "a" * 10_000)).splitlines())) < MOST_CHARACTERS + 20
+    assert max(map(len, repr(Numbers(1, "a" * 10_000)).splitlines())) < CHARACTERS_PRINTED + 20
     assert repr(Numbers(1, "a\nb\tc")).splitlines()[-1] == "0       a\\nb\\tc"
 
 
