@@ -124,7 +124,7 @@ class Answer(Configuration):
     @property
     def plain(self) -> Configuration:
         """The configuration by itself."""
-        return Configuration(self.template, self.assignments, self.connections, self.settings, self.bindings)
+        return Configuration(self.template, self.assignments, self.connections, self.settings, dict(self.bindings))
 
     def to_turtle(self) -> str:
         """The configuration in RDF, as Turtle."""
@@ -149,7 +149,7 @@ class Answer(Configuration):
 
     def _repr_html_(self) -> str:
         sections = {f"configured {self.names(self.template)}": diagram(self, self.names)}
-        return html_sections(sections) + html_text(str(self))
+        return html_sections(sections) + html_text(plain(str(self)))
 
 
 def _answer(facts: Mapping[str, Any]) -> Answer:

@@ -36,7 +36,7 @@ class _Graph(Protocol):
 class _Dataset(Protocol):
     """An rdflib dataset, as far as it matters here."""
 
-    def contexts(self) -> Iterable[_Graph]: ...
+    def graphs(self) -> Iterable[_Graph]: ...
 
 
 Source: TypeAlias = "str | Path | rdflib.Graph"
@@ -106,7 +106,7 @@ def text_of(source: object) -> Text:
 def _serialized(graph: _Graph) -> str:
     """Turtle with the prefixes of a graph, by which its terms can be named; of a dataset all of its graphs."""
     prefixes = (f"@prefix {prefix}: <{base}> ." for prefix, base in graph.namespaces())
-    parts = graph.contexts() if isinstance(graph, _Dataset) else [graph]
+    parts = graph.graphs() if isinstance(graph, _Dataset) else [graph]
     return "\n".join([*prefixes, *(part.serialize(format="nt") for part in parts)])
 
 

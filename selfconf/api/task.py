@@ -147,7 +147,9 @@ def _text(name: str, value: Value) -> str | Term:
     if hasattr(value, "n3"):  # one of rdflib's terms; they are strings too
         from selfconf.rdf.rdflib_terms import from_rdflib
 
-        return from_rdflib(value)  # type: ignore[arg-type]  # told by the line above
+        value = from_rdflib(value)  # type: ignore[arg-type]  # told by the line above
+        if not isinstance(value, BlankNode):
+            return value
     if not isinstance(value, str):
         raise BindingError(f"a parameter is bound to text, a number, an IRI or a Literal; {name} is not, by {value!r}")
     if isinstance(value, BlankNode) or value.startswith("_:"):
