@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from docs import ontology
+from docs import json_schemas, ontology
 from selfconf.cli import validate
 from selfconf.cli.main import COMMANDS, parser
 from selfconf.model.codes import CODES
@@ -35,7 +35,17 @@ def codes() -> str:
     return f"{NOTE}\n\n{validate.reference(CODES)}"
 
 
-PAGES: dict[str, Callable[[], str]] = {"commands.md": commands, "codes.md": codes, "ontology.html": ontology.page}
+def bodies() -> str:
+    """The reference of what the commands print as JSON."""
+    return f"{NOTE}\n\n{json_schemas.page()}"
+
+
+PAGES: dict[str, Callable[[], str]] = {
+    "commands.md": commands,
+    "codes.md": codes,
+    "json.md": bodies,
+    "ontology.html": ontology.page,
+}
 
 
 def main() -> int:

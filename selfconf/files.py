@@ -17,6 +17,8 @@ from selfconf.errors import AuthorError, TurtleError
 if TYPE_CHECKING:
     from selfconf.rdf.advertisements import Advertisement, MalformedAdvertisement, SegmentCache
 
+STDIN = Path("-")
+"""What stands for standard input where a file can be given."""
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 TURTLE = (".ttl",)
 """The ending of the files that stand for a folder."""

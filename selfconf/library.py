@@ -1,4 +1,4 @@
-"""The one door to the ontologies and shapes that ship with selfconf.
+"""The one door to the ontologies, shapes and JSON Schemas that ship with selfconf.
 
 They are files in a checkout and in an installed wheel. A wheel that is imported as it is, zipped, has none; there they
 are unpacked once per process into a temporary folder, because everything that reads Turtle takes a path: its name is
@@ -27,11 +27,20 @@ def shapes() -> list[Path]:
     return sorted(_folder("shapes").glob("*.ttl"))
 
 
+def schemas() -> list[Path]:
+    """The JSON Schemas of what the commands print as JSON, sorted by name: `configure.schema.json` and so on."""
+    return sorted(_folder("schemas").glob("*.schema.json"))
+
+
+_IN_CHECKOUT = {"schemas": "docs/schemas"}
+"""Where a folder of the wheel is in a checkout, if it is not at its root."""
+
+
 def _folder(name: str) -> Path:
-    """The folder in the wheel (`selfconf/_data/...`), or else at the root of the checkout."""
+    """The folder in the wheel (`selfconf/_data/...`), or else in the checkout."""
     packaged = files("selfconf") / "_data" / name
     if not packaged.is_dir():
-        return Path(__file__).resolve().parent.parent / name
+        return Path(__file__).resolve().parent.parent / _IN_CHECKOUT.get(name, name)
     if isinstance(packaged, Path):
         return packaged
     folder = Path(_unpacked().name, name)

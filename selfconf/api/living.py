@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
 from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, configure
+from selfconf.api.arguments import Paths, option
 from selfconf.api.ecology import Ecology
-from selfconf.api.run import Run
+from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh_bus import client
@@ -31,13 +31,18 @@ ROLL_CALL = 3.0
 """How long, in seconds, a roll-call may take."""
 ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
-TAKING_DOWN = 15.0
-"""How long, in seconds, a configurator may take to release everything."""
-Result = TypeVar("Result")
+_Result = TypeVar("_Result")
 
 
 class LivingEcology(Ecology):
-    """Everything that is alive under one name, as seen over the network; use it in a `with` statement."""
+    """Everything that is alive under one name, as seen over the network; use it in a `with` statement.
+
+    >>> with join() as living:
+    ...     for component in living.components:
+    ...         print(component.short, living.state(component))
+    clock dormant
+    display dormant
+    """
 
     def __init__(self, name: str, endpoints: Sequence[str]) -> None:
         """Connects; raises NetworkError if no site of the ecology answers."""
@@ -133,13 +138,21 @@ class LivingEcology(Ecology):
         *,
         strategy: str = "first",
         reasoning: str = "syntactic",
-        ontologies: Sequence[str | Path] = (),
+        ontologies: Paths = (),
         steps: int | None = None,
         seconds: float | None = None,
+        what_if: bool = False,
     ) -> Answer | Refusal | Undecided:
         """What `selfconf.configure` answers for this ecology, as it is now. Changes nothing."""
         return configure(
-            task, self, strategy=strategy, reasoning=reasoning, ontologies=ontologies, steps=steps, seconds=seconds
+            task,
+            self,
+            strategy=strategy,
+            reasoning=reasoning,
+            ontologies=ontologies,
+            steps=steps,
+            seconds=seconds,
+            what_if=what_if,
         )
 
     def run(
@@ -150,7 +163,7 @@ class LivingEcology(Ecology):
         wait: bool = False,
         strategy: str = "first",
         reasoning: str = "syntactic",
-        ontologies: Sequence[str | Path] = (),
+        ontologies: Paths = (),
         steps: int | None = None,
         seconds: float | None = None,
     ) -> Run:
@@ -160,7 +173,7 @@ class LivingEcology(Ecology):
         ecology to change where there is no configuration.
         """
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
-        return Run(task, method, self.name, self.endpoints, Policy(policy), wait)
+        return Run(task, method, self.name, self.endpoints, option(Policy, "policy", policy), wait)
 
     def stop(self, configurator: str | None = None) -> tuple[str, ...]:
         """Take down what one configurator has deployed, or all of them; the names of those that were stopped.
@@ -191,9 +204,9 @@ class LivingEcology(Ecology):
 
         return self._wait(begin)
 
-    def _wait(self, begin: Callable[[Callable[[Result], None]], None]) -> Result:
+    def _wait(self, begin: Callable[[Callable[[_Result], None]], None]) -> _Result:
         """Begin something that says when it is done, and let the bus run until then."""
-        results: list[Result] = []
+        results: list[_Result] = []
         begin(results.append)
         deadline = self._bus.now() + ANSWER_PATIENCE
         self._bus.run(lambda: bool(results) or self._bus.now() > deadline)
@@ -210,5 +223,10 @@ def join(ecology: str | None = None, *, connect: Sequence[str] = ()) -> LivingEc
 
     `connect` are endpoints of sites, such as `tcp/127.0.0.1:7447`; without them the sites on this machine. Joining
     reads; nothing changes before `run`. Raises NetworkError, saying what to try, if there is no such ecology.
+
+    >>> with join() as living:
+    ...     answer = living.configure(template("examples/clock/tell-the-time.ttl"))
+    ...     answer["screen"], living.tasks
+    ((<https://example.org/my-home#display>,), ())
     """
     return LivingEcology(*rendezvous.find(ecology, list(connect)))

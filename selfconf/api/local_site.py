@@ -12,8 +12,9 @@ from pathlib import Path
 from types import TracebackType
 
 from selfconf import rendezvous
-from selfconf.api.reading import STDIN, existing
+from selfconf.api.reading import existing
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
+from selfconf.files import STDIN
 from selfconf.rendezvous import LocalSite
 from selfconf.termination import parent_environment
 
@@ -102,5 +103,9 @@ class SiteProcess:
 
 
 def sites(ecology: str | None = None) -> tuple[LocalSite, ...]:
-    """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each."""
+    """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each.
+
+    >>> [site.site for site in sites()]
+    ['home']
+    """
     return tuple(rendezvous.local_sites(ecology))

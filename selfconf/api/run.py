@@ -23,7 +23,7 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.termination import Termination
 
 TAKING_DOWN = 15.0
-"""How long, in seconds, leaving a run waits for its components to be turned off."""
+"""How long, in seconds, a configurator may take to turn off everything that it holds."""
 CHECK = 0.5
 """How often, in seconds, it is checked whether what a run rests on is still there."""
 
@@ -32,6 +32,13 @@ class Run:
     """A task that runs in a living ecology; use it in a `with` statement, which takes it down at its end.
 
     The run is driven by `events`, in the thread that reads them: read on for as long as it should be watched.
+
+    >>> with join() as living, living.run(template("examples/clock/tell-the-time.ttl")) as run:
+    ...     for event in run.events():
+    ...         if event.act == "running":
+    ...             print(event.configuration.components)
+    ...             run.stop()
+    (<https://example.org/my-home#clock>, <https://example.org/my-home#display>)
     """
 
     def __init__(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import math
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
+from selfconf.files import STDIN
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Method
@@ -22,8 +24,6 @@ REASONING = ("syntactic", "subclass", "owl-rl")
 # Both are enumerations of the library, which is not loaded to parse arguments; a test compares them.
 LONGEST_SECONDS = 1e6
 """Seconds that an alarm can be set to everywhere."""
-STDIN = Path("-")
-"""What stands for standard input where a file can be given."""
 
 
 def add_task_arguments(parser: argparse.ArgumentParser) -> None:
@@ -97,7 +97,7 @@ def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", metavar="S", type=_seconds, help="give up a search after so many seconds")
 
 
-def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
+def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
     """The options by which a command finds the living ecology."""
     parser.add_argument("--ecology", metavar="NAME", help="the ecology; by default the only one on this machine")
     parser.add_argument(
@@ -146,10 +146,9 @@ def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
     return Method.of(given.strategy, given.reasoning, given.ontology, steps, seconds)
 
 
-def ecology_of(given: argparse.Namespace) -> Ecology:
+def given_ecology(given: argparse.Namespace) -> Ecology:
     """The ecology that the arguments name: files, an endpoint, or else the living one, to be closed by `close`."""
-    if given.ads is not None and given.endpoint is not None:
-        raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
+    one_ecology(given)
     if given.ads is not None:
         return read_files(given.ads)
     if given.endpoint is not None:
@@ -159,12 +158,19 @@ def ecology_of(given: argparse.Namespace) -> Ecology:
     return joined(given)
 
 
+def one_ecology(given: argparse.Namespace) -> None:
+    """Raises AuthorError where two ecologies are named."""
+    if given.ads is not None and given.endpoint is not None:
+        raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
+
+
 def read_files(paths: Iterable[Path]) -> Ecology:
     """The ecology in some files; what was left out of it is named on stderr."""
     from selfconf.api.reading import read
 
     paths = list(paths)
     ecology = read(*paths)
+    gc.freeze()  # it stays until the command ends, so the collector need not look at a million values again and again
     complain_of(ecology)
     if not len(ecology):
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")

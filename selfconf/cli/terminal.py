@@ -10,17 +10,10 @@ from __future__ import annotations
 
 import io
 import os
-import re
 import sys
 from typing import TextIO
 
-# The controls of ASCII and Latin-1 but for tab and line feed, and those that change the direction of writing.
-_STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-
-
-def plain(text: str) -> str:
-    """The text with `\\x1b` and the like spelt out."""
-    return _STEERING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+from selfconf.model.wording import plain
 
 
 class Terminal(io.TextIOBase):
@@ -73,7 +66,7 @@ def for_programs() -> None:
         sys.stdout.reconfigure(encoding="utf-8", errors="backslashreplace")
 
 
-def show(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
+def display(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
     """Print a result, or what else there is to say, to a reader who may have seen enough."""
     stream = stream or sys.stdout
     try:
@@ -84,7 +77,7 @@ def show(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
 
 def complain(sentence: str) -> None:
     """Say something on stderr that is not a result."""
-    show(sentence, sys.stderr)
+    display(sentence, sys.stderr)
 
 
 def silence(stream: TextIO) -> None:

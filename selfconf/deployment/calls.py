@@ -14,7 +14,7 @@ from selfconf.configurator import machine
 from selfconf.configurator.effects import ApplyTo, ReleaseFrom, SetOn
 from selfconf.configurator.events import Answered, Call, Event
 from selfconf.configurator.state import State
-from selfconf.deployment.request import Report, Standby
+from selfconf.deployment.request import EventListener, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
@@ -58,7 +58,7 @@ class Calls:
         supervisor: str,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        report: Report,
+        report: EventListener,
     ) -> None:
         self.bus, self.ecology, self.keys = ecology.bus, ecology, ecology.keys
         self.supervisor, self._state, self._step, self._report = supervisor, state, step, report

@@ -14,7 +14,7 @@ from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
 from selfconf.configurator.state import State
 from selfconf.deployment.calls import Calls
-from selfconf.deployment.request import Report
+from selfconf.deployment.request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.run_event import EcologyReachable, EcologyUnreachable
 from selfconf.model.term import IRI
@@ -43,7 +43,7 @@ class Liveness:
         ecology: EcologyView,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        report: Report,
+        report: EventListener,
         calls: Calls,
     ) -> None:
         self.bus, self.ecology = ecology.bus, ecology

@@ -17,7 +17,7 @@ from selfconf.rdf.advertisements import Advertisement
 ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
 
-Report = Callable[[RunEvent], None]
+EventListener = Callable[[RunEvent], None]
 """Receives an event of a run."""
 
 Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
@@ -37,7 +37,7 @@ class RunRequest:
     """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
     passed_over: Callable[[Configuration], Mapping[IRI, Sequence[IRI]]] = lambda configuration: {}
     """For each role of a configuration, the candidates that came before the chosen ones."""
-    report: Report = lambda event: None
+    report: EventListener = lambda event: None
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None
     """Called once when the task has ended; with the refusal if that is why."""

@@ -201,7 +201,14 @@ Reason = Contradiction | ValueUnknown | TooFewEligible | InputUnfed | TooFewDist
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """No configuration: the reasons, the most likely cause first, near misses, repairs, and a hint if there is one."""
+    """No configuration: the reasons, the most likely cause first, near misses, repairs, and a hint if there is one.
+
+    >>> refusal = configure(template("examples/clock/tell-the-time.ttl").bind(room=":cellar"), home)
+    >>> bool(refusal), str(refusal.reasons[0])
+    (False, 'no component is eligible for the role screen')
+    >>> str(refusal.near_misses[0]), str(refusal.near_misses[0].place)
+    ('its place is kitchen, not cellar', 'examples/clock/display.ttl:5')
+    """
 
     template: IRI
     reasons: tuple[Reason, ...]
@@ -219,7 +226,12 @@ class Refusal:
 
 @dataclass(frozen=True, slots=True)
 class Undecided:
-    """What was allowed is used up, and there is neither a configuration nor a proof that there is none."""
+    """What was allowed is used up, and there is neither a configuration nor a proof that there is none.
+
+    >>> answer = configure(template("examples/watch.ttl"), read("examples/watch"), steps=1)
+    >>> isinstance(answer, Undecided), bool(answer)
+    (True, False)
+    """
 
     code: ClassVar[str] = "undecided"
     steps: int = 0

@@ -7,11 +7,17 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-XSD = "http://www.w3.org/2001/XMLSchema#"
+XSD_NAMESPACE = "http://www.w3.org/2001/XMLSchema#"
 
 
 class IRI(str):
-    """An absolute IRI, without the angle brackets."""
+    """An absolute IRI, without the angle brackets.
+
+    >>> IRI("https://example.org/my-home#clock")
+    <https://example.org/my-home#clock>
+    >>> IRI("https://example.org/my-home#clock").short
+    'clock'
+    """
 
     __slots__ = ()
 
@@ -31,19 +37,23 @@ class BlankNode(str):
     __slots__ = ()
 
 
-STRING = IRI(XSD + "string")
+STRING = IRI(XSD_NAMESPACE + "string")
 _BARE = {
-    XSD + "integer": re.compile(r"[+-]?[0-9]+"),
-    XSD + "decimal": re.compile(r"[+-]?[0-9]*\.[0-9]+"),
-    XSD + "double": re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][+-]?[0-9]+"),
-    XSD + "boolean": re.compile("true|false"),
+    XSD_NAMESPACE + "integer": re.compile(r"[+-]?[0-9]+"),
+    XSD_NAMESPACE + "decimal": re.compile(r"[+-]?[0-9]*\.[0-9]+"),
+    XSD_NAMESPACE + "double": re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][+-]?[0-9]+"),
+    XSD_NAMESPACE + "boolean": re.compile("true|false"),
 }
 """What Turtle takes for a literal of a datatype as it stands."""
 
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A literal: lexical form, datatype and, for `rdf:langString`, a language tag."""
+    """A literal: lexical form, datatype and, for `rdf:langString`, a language tag.
+
+    >>> str(Literal("1.5", IRI("http://www.w3.org/2001/XMLSchema#decimal")))
+    '1.5'
+    """
 
     lexical: str
     datatype: IRI = STRING

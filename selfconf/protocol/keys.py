@@ -40,8 +40,9 @@ def checked_name(name: str, what: str) -> str:
     return name
 
 
+@lru_cache(maxsize=1 << 14)
 def component_chunk(component: IRI) -> str:
-    """The chunk that stands for a component."""
+    """The chunk that stands for a component; remembered, as every life that begins or ends is looked up by it."""
     return base64.b32encode(_digest(component)).decode().lower()
 
 

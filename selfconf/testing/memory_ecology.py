@@ -24,11 +24,11 @@ from selfconf.sdk import Component
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Shelf, Site
 
-NAME = "memory"
+ECOLOGY_NAME = "memory"
 """The name of every ecology in memory; no two of them meet."""
-PATIENCE = 60.0
+UNTIL_SECONDS = 60.0
 """Simulated seconds for which `until` waits, unless told otherwise."""
-SETTLING = 0.1
+REPORT_LAG = 0.1
 """Simulated seconds that events and releases may come after what they are about."""
 Kind = TypeVar("Kind", bound=Component)
 
@@ -72,7 +72,7 @@ class MemoryRun:
             ended=self._ended,
         )
         network = ecology.network
-        self._runner = TaskRunner(network.node(), NAME, request, f"c{len(network.nodes)}", lambda: network.time)
+        self._runner = TaskRunner(network.node(), ECOLOGY_NAME, request, f"c{len(network.nodes)}", lambda: network.time)
         self._runner.start()
 
     @property
@@ -93,7 +93,7 @@ class MemoryRun:
     def started(self) -> MemoryRun:
         """The run once it is running. Raises ProgrammerError, with the refusal, if it does not come to that."""
         self._ecology.until(lambda: self.running or self.ended)
-        self._ecology.advance(SETTLING)
+        self._ecology.advance(REPORT_LAG)
         if not self.running:
             raise ProgrammerError(f"the task does not run; it is {self.phase}, {self.refusal or 'without a refusal'}")
         return self
@@ -114,7 +114,7 @@ class MemoryEcology:
         """`seed` decides the delays and losses of the network; without `faults` nothing is lost."""
         self.network = Network(seed, faults)
         self._shelf = _MemoryShelf()
-        self._site = Site(self.network.node(), NAME, "site", self._shelf)
+        self._site = Site(self.network.node(), ECOLOGY_NAME, "site", self._shelf)
         self._runtimes: dict[IRI, tuple[ComponentRuntime, MemoryBus]] = {}
 
     @property
@@ -137,7 +137,7 @@ class MemoryEcology:
         self._shelf.put(found)
         bus = self.network.node()
         life = f"life{len(self.network.nodes)}"
-        self._runtimes[found.component] = ComponentRuntime(bus, Keys(NAME), found.profile, component, life), bus
+        self._runtimes[found.component] = ComponentRuntime(bus, Keys(ECOLOGY_NAME), found.profile, component, life), bus
         return component
 
     def advertise(self, advertisement: str | Path) -> IRI:
@@ -175,7 +175,7 @@ class MemoryEcology:
         """Let simulated time pass."""
         self.network.run(lambda: False, seconds)
 
-    def until(self, condition: Callable[[], bool], seconds: float = PATIENCE) -> bool:
+    def until(self, condition: Callable[[], bool], seconds: float = UNTIL_SECONDS) -> bool:
         """Let simulated time pass until something holds; returns whether it does."""
         return self.network.run(condition, seconds)
 

@@ -22,6 +22,7 @@ from selfconf.site import Site
 from tests.lab import PREFIXES, iri, write_advertisements
 from tests.site.served import KEYS, ask, serve
 
+pytestmark = pytest.mark.process
 SLEEPER = iri("sleeper")
 
 

@@ -53,7 +53,7 @@ class _Cores:
         self.bound = 0
 
     def run(self) -> Minimum:
-        """Relax cores until there are none, stratum by stratum."""
+        """Process cores until there are none, stratum by stratum."""
         for heavy in self._strata():
             while True:
                 active = [literal for literal, weight in self.weights.items() if weight >= heavy]

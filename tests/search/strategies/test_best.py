@@ -14,7 +14,7 @@ from selfconf.model.cost import CostTerm, cost
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
-from selfconf.model.term import IRI, XSD, Literal
+from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
@@ -26,7 +26,7 @@ LATENCY, ERROR = iri("latency"), iri("error")
 
 def priced(profile: Profile, **values: float) -> Profile:
     """A component with numbers for properties."""
-    said = tuple((iri(name), Literal(str(value), IRI(XSD + "decimal"))) for name, value in values.items())
+    said = tuple((iri(name), Literal(str(value), IRI(XSD_NAMESPACE + "decimal"))) for name, value in values.items())
     return replace(profile, properties=said)
 
 
@@ -44,7 +44,7 @@ def priced_problems(draw: st.DrawFn) -> Problem:
     amounts = st.integers(-2, 3)
     known = {
         name: tuple(
-            (predicate, Literal(str(draw(amounts) / 2), IRI(XSD + "decimal")))
+            (predicate, Literal(str(draw(amounts) / 2), IRI(XSD_NAMESPACE + "decimal")))
             for predicate in (LATENCY, ERROR)
             if draw(st.integers(0, 3))
         )

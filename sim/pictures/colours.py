@@ -7,16 +7,13 @@ comes back through `to_screen`.
 from __future__ import annotations
 
 import numpy as np
-
-from sim.pictures.arrays import Array, Bytes
+from numpy.typing import NDArray
 
 BLUE = "#0072b2"
 ORANGE = "#e69f00"
-VERMILION = "#d55e00"
 GREEN = "#009e73"
 PURPLE = "#cc79a7"
 SKY = "#56b4e9"
-BLACK = "#000000"
 
 SOURCES = (BLUE, ORANGE, GREEN, PURPLE, SKY)
 """The colours of the components that supplied the pose, in the order in which they first did."""
@@ -28,6 +25,7 @@ PAPER = "#ffffff"
 INK = "#1f2430"
 GREY = "#5b6372"
 MIST = "#c9ced8"
+SLATE = "#2d3442"
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
@@ -42,21 +40,21 @@ def written(colour: tuple[float, float, float]) -> str:
     return "#" + "".join(f"{round(part * 255):02x}" for part in colour)
 
 
-def linear(colour: str) -> Array:
+def linear(colour: str) -> NDArray[np.floating]:
     """Return a colour as three linear intensities in 0..1, what a surface reflects of white light."""
     return to_linear(np.asarray(rgb(colour), np.float32) / 255.0)
 
 
-def to_linear(screen: Array) -> Array:
+def to_linear(screen: NDArray[np.floating]) -> NDArray[np.floating]:
     """Return the linear intensities of sRGB values in 0..1."""
     return np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055) ** 2.4).astype(np.float32)
 
 
-def to_screen(intensity: Array) -> Bytes:
+def to_screen(intensity: NDArray[np.floating]) -> NDArray[np.uint8]:
     """Return 8-bit sRGB values of linear intensities; 1.0 is paper white, and brighter light is cut off."""
     level = np.clip(intensity, 0.0, 1.0)
     curve = np.where(level <= 0.0031308, 12.92 * level, 1.055 * level ** (1 / 2.4) - 0.055)
-    return (curve * 255.0 + 0.5).astype(np.uint8)
+    return np.asarray(curve * 255.0 + 0.5, np.uint8)
 
 
 def mix(first: str, second: str, share: float) -> str:
