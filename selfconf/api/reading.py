@@ -153,7 +153,7 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
 
 @contextmanager
 def collector_at_rest() -> Iterator[None]:
-    """No garbage collection while much is read that will stay.
+    """No garbage collection while much is read that will stay; afterwards it counts as old, and is looked at rarely.
 
     Values are not garbage, but looking at a million of them again and again takes as long as making them.
     """
@@ -162,6 +162,9 @@ def collector_at_rest() -> Iterator[None]:
     try:
         yield
     finally:
+        if not gc.get_freeze_count():  # a program that has frozen something itself does so for its own reasons
+            gc.freeze()
+            gc.unfreeze()  # moves everything to the oldest generation, without a look at it
         if collecting:
             gc.enable()
 

@@ -89,7 +89,7 @@ def check_text(text: tuple[bytes, str, str | None]) -> Report:
 def _validated(sources: Iterable[SourceText], ontologies: Iterable[str], each: CheckEach) -> Report:
     shapes = [_load(path) for path in library.shapes()]
     known = [*map(_load, library.ontologies()), *_ontologies(ontologies)]
-    return validation.validate(sources, shapes, known, each)
+    return validation.validate_texts(sources, shapes, known, each)
 
 
 def _remembered(paths: Iterable[str]) -> CheckEach:

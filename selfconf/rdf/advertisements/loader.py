@@ -238,7 +238,7 @@ def read(
     segments = SegmentCache() if segments is None else segments
     subjects = inlined_document(text, source, base, segments)
     if subjects is None:
-        return advertisements.read(turtle.parse(text, source, base))
+        return advertisements.read_document(turtle.parse(text, source, base))
     del text  # as large as what is made of it
     origin = Origin(source)
     found: list[Advertisement | tuple[str, list[Statement]]] = []

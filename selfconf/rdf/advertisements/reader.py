@@ -26,7 +26,7 @@ from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
 
 
-def read(document: Document) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
+def read_document(document: Document) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
     """Every advertisement of a document, in the order of the text, and those that do not conform."""
     good: list[Advertisement] = []
     bad: list[MalformedAdvertisement] = []

@@ -91,7 +91,7 @@ CheckEach = Callable[[FileChecker, Sequence[UnclearedFile]], Iterable[list[Diagn
 """Calls a file checker for each uncleared file, in any order and process, or remembers; `map` is one."""
 
 
-def validate(
+def validate_texts(
     sources: Iterable[SourceText], shapes: Iterable[SourceText], ontologies: Iterable[SourceText], each: CheckEach = map
 ) -> Report:
     """Every problem of every source; raises TurtleError if an ontology is not Turtle."""

@@ -103,7 +103,7 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
 @example(PREFIXES + f":c1 {GOOD} . [] {GOOD} . :c1 rob:support :c2 . :c2 {GOOD} ; sc:hasInput :shared-port .")
 @example(PREFIXES + f":c1 {GOOD} ; :place :kitchen . :c2 {GOOD} ; :place :kitchen . :kitchen :size [ :value 3 ] .")
 def test_the_fast_loader_reads_what_the_careful_reader_reads(text: str) -> None:
-    careful = advertisements.read(turtle.parse(text, "a.ttl", "file:///a.ttl"))
+    careful = advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl"))
     assert told(loader.read(text.encode(), "a.ttl", "file:///a.ttl")) == told(careful)
 
 
@@ -111,7 +111,7 @@ def test_a_document_longer_than_a_window_is_read_as_one() -> None:
     text = PREFIXES + "\n".join(f":c{k} {GOOD} ; rob:support :robot{k % 7} ." for k in range(500))
     good, bad = loader.read(text.encode(), "a.ttl")
     assert (len(good), bad) == (500, [])
-    assert told((good, bad)) == told(advertisements.read(turtle.parse(text, "a.ttl")))
+    assert told((good, bad)) == told(advertisements.read_document(turtle.parse(text, "a.ttl")))
 
 
 def test_documents_may_share_their_segments() -> None:
@@ -145,7 +145,7 @@ def test_a_literal_that_is_too_long_for_the_parser_is_blamed_on_its_file(form: s
 def test_ports_with_names_take_time_as_there_are_ports(monkeypatch: pytest.MonkeyPatch) -> None:
     port = "sc:name 'in' ; sc:signalType :S"
     text = PREFIXES + "".join(f":c{k} {GOOD} ; sc:hasInput :in{k} . :in{k} {port} .\n" for k in range(50))
-    careful = told(advertisements.read(turtle.parse(text, "a.ttl")))
+    careful = told(advertisements.read_document(turtle.parse(text, "a.ttl")))
     monkeypatch.setattr(advertisements, "profiles", None)  # nobody looks at one by one
     found = loader.read(text.encode(), "a.ttl")
     assert told(found) == careful

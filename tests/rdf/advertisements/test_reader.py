@@ -27,7 +27,7 @@ Read = tuple[list[Advertisement], list[MalformedAdvertisement]]
 
 def read(text: str) -> Read:
     """The advertisements of a text."""
-    return advertisements.read(turtle.parse(PREFIXES + text, "ads.ttl"))
+    return advertisements.read_document(turtle.parse(PREFIXES + text, "ads.ttl"))
 
 
 def one(text: str) -> Advertisement:
@@ -181,7 +181,7 @@ def broken(path: Path) -> bool:
 @pytest.mark.parametrize("path", sorted(filter(broken, BAD.glob("*.ttl"))), ids=lambda path: path.stem)
 def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
     text = path.read_bytes()
-    careful, streamed = advertisements.read(turtle.parse(text, path.name)), loader.read(text, path.name)
+    careful, streamed = advertisements.read_document(turtle.parse(text, path.name)), loader.read(text, path.name)
     if path.stem in UNDECLARED:
         assert careful == streamed == ([], [])
     else:

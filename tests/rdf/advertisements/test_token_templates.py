@@ -105,7 +105,7 @@ def each(said: str) -> str:
 @example(each("sc:hasInput _:in{d} . _:in{d} sc:name 'in' ; sc:signalType _:s"))
 def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None:
     try:
-        careful = told(advertisements.read(turtle.parse(text, "a.ttl", "file:///a.ttl")))
+        careful = told(advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl")))
     except TurtleError:
         with pytest.raises(TurtleError):
             loader.read(text.encode(), "a.ttl", "file:///a.ttl")
@@ -146,6 +146,6 @@ def test_patterns_in_which_digits_do_not_mean_themselves_have_no_template(piece:
 )  # fmt: skip
 def test_one_odd_statement_leaves_the_rest_to_the_segments(odd: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text = f"{each(':serial {d}')}\n{odd}"
-    careful = told(advertisements.read(turtle.parse(text, "a.ttl")))
-    monkeypatch.setattr(advertisements, "read", None)
+    careful = told(advertisements.read_document(turtle.parse(text, "a.ttl")))
+    monkeypatch.setattr(advertisements, "read_document", None)
     assert told(loader.read(text.encode(), "a.ttl")) == careful

@@ -30,7 +30,7 @@ PARAMETER = iri("par")
 
 def read(texts: Iterable[str]) -> list[Advertisement]:
     """The advertisements that some texts are."""
-    return [one for text in texts for one in advertisements.read(turtle.parse(PREFIXES + text, "ads.ttl"))[0]]
+    return [one for text in texts for one in advertisements.read_document(turtle.parse(PREFIXES + text, "ads.ttl"))[0]]
 
 
 def partitioner(
