@@ -8,7 +8,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.api.reading import Text, text_of
+from selfconf.api.reading import text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, TemplateError
 from selfconf.model.template import Parameter, Role
@@ -112,7 +112,7 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
     try:
         return TaskSpecification(tasks.read_task(document, wanted))
     except TemplateError as error:
-        raise _located((text, source_name, base), error) from None
+        raise tasks.placed(error, text.decode(), base or "file:///") from None
 
 
 def pairs(bound: Iterable[str]) -> dict[str, str]:
@@ -155,16 +155,3 @@ def _text(name: str, value: Value) -> str | Term:
     if isinstance(value, BlankNode) or value.startswith("_:"):
         raise BindingError(f"{value} is a blank node, which has a name in its own file alone; bind {name} to an IRI")
     return value
-
-
-def _located(source: Text, error: TemplateError) -> TemplateError:
-    """The error with the line and column of the statement that it is about."""
-    from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # rdflib, for mistakes alone
-
-    text, name, base = source
-    try:
-        _, positions = parse_with_positions(text.decode(), name, base or "file:///")
-    except (NotTurtleError, RecursionError):  # rdflib's grammar and Oxigraph's differ in corners
-        return error
-    place = positions.at_the_end_of(error.subject, error.steps)
-    return error if place is None else TemplateError(error.message, file=name, line=place.line, column=place.column)
