@@ -77,7 +77,7 @@ class Remembered:
             return {}  # none yet, or not one of ours
 
     def _keep(self, outcomes: dict[str, list[Diagnostic]]) -> None:
-        """Write it so that nobody ever reads half of it; a memory that cannot be written is done without."""
+        """Replace the file as a whole, so that no reader sees half of it; without it where it cannot be written."""
         entries = {key: [asdict(found) for found in problems] for key, problems in outcomes.items()}
         with contextlib.suppress(OSError):
             self._file.parent.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,6 @@
 """A terminal shows what strangers have written and is not steered by it: control characters become escapes.
 
-Names, labels, file names and the words of a failure come from whoever is on the network. A file or a program that
+Names, labels, file names and the words of a failure come from the network. A file or a program that
 reads the output gets it unchanged; only a terminal obeys `ESC [ 2 J`.
 
 Nor does what a command comes to depend on its readers: one may have seen enough, or never have been there.

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 
 MANY = 12
-"""More names than that are not read by anybody; the last ones become a number."""
+"""How many names are listed; the rest become a number."""
 # The controls of ASCII and Latin-1 but for tab and line feed, and those that change the direction of writing.
 _STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
