@@ -14,8 +14,8 @@ SEEDS  ?= 20
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
 
-# As many processes as processors; the tests of one `xdist_group` share a process.
-PARALLEL := --numprocesses auto --dist loadgroup
+# As many processes as processors; which tests share one is said in tests/schedule.py.
+PARALLEL := --numprocesses auto
 
 test: $(VENV)/with-dev
 	$(BIN)/python -m pytest $(PARALLEL)
@@ -26,7 +26,7 @@ quick: $(VENV)/with-dev
 
 # Ten thousand random ecologies for each property of the search, against every oracle; about twenty minutes.
 nightly: $(VENV)/with-dev
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest tests/search tests/test_certificate.py
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py
 
 check: $(VENV)/with-dev lint types floors shapes docs-check test package
 

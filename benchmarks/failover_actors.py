@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 from selfconf.sdk import Component, Host, Signal, Termination
-from selfconf.sdk.program import join
+from selfconf.sdk.program import open_host
 
 ADVERTISEMENTS = Path(__file__).parent / "failover"
 
@@ -81,7 +81,7 @@ class Phoenix:
 def main() -> None:
     """Run one actor until told to end."""
     name = sys.argv[1]
-    host = join()
+    host = open_host()
     ending = Termination(host.bus)
     if name.startswith("position"):
         Phoenix(host, actor(name))

@@ -1,8 +1,9 @@
-"""A certificate: whether a configuration is one, checked by rules that share nothing with the search.
+"""A certificate: whether a configuration meets its task, checked by rules that share nothing with the search.
 
-It reads the contract as a list of conditions on a finished configuration (section 2 of the paper: <B, S>, the two
-rules of section 2.3) and says which of them it breaks. It imports values alone, and no code of the search, so that a
-mistake there does not repeat itself here. Linear in the connections that there could be.
+The contract is read as a list of conditions on a finished configuration (section 2 of the paper: <B, S>, the two
+rules of section 2.3), and the certificate names those that the configuration breaks. The module imports values alone,
+and no code of the search, so that a mistake there does not repeat itself here. The cost is linear in the number of
+connections that the template could make.
 """
 
 from __future__ import annotations
@@ -17,12 +18,13 @@ from selfconf.model.template import Task
 from selfconf.model.term import IRI, Term
 
 Players = Mapping[IRI, Sequence[Candidate]]
+"""For each role the candidates that play it."""
 
 
 def broken_conditions(
     task: Task, partition: Partition, configuration: Configuration, hierarchy: Hierarchy = NOTHING_ABOVE
 ) -> list[str]:
-    """Every condition that a configuration breaks, each in a sentence; empty if it is one."""
+    """Return every condition that a configuration breaks, each in a sentence; none if it meets its task."""
     return list(_Check(task, partition, configuration, hierarchy).problems())
 
 
@@ -33,7 +35,8 @@ class _Check:
         self.template = task.template
 
     def problems(self) -> Iterator[str]:
-        """Roles first: what rests on them can only be checked when the right components play."""
+        """Yield the conditions that are broken."""
+        # Roles first: what rests on them can only be checked when the right components play.
         wrong = list(self._roles())
         yield from wrong
         if not wrong:
@@ -75,7 +78,24 @@ class _Check:
         return players
 
     def _connections(self, players: Players) -> Iterator[str]:
-        possible = {
+        possible = self._possible_connections(players)
+        actual = Counter(self.configuration.connections)
+        for connection in sorted(set(actual) - possible):
+            yield f"{_words(connection)}: no interaction makes this connection"
+        for connection in sorted(possible - set(actual)):
+            yield f"{_words(connection)}: this connection is missing"
+        for connection, times in actual.items():
+            if times > 1:
+                yield f"{_words(connection)}: this connection is there {times} times"
+        fed = {(connection.sink, connection.input) for connection in actual}
+        for candidate in (candidate for some in players.values() for candidate in some):
+            for wanted in candidate.profile.inputs:
+                if (candidate.profile.component, wanted.name) not in fed:
+                    yield f"the input {wanted.name!r} of {candidate.profile.component.short} is not fed"
+
+    def _possible_connections(self, players: Players) -> set[Connection]:
+        """Return every pair of an output and an input that match along an interaction."""
+        return {
             Connection(source.profile.component, output.name, sink.profile.component, wanted.name)
             for interaction in self.template.interactions
             for source in players[interaction.source]
@@ -86,20 +106,6 @@ class _Check:
             if interaction.input is None or interaction.input == wanted.name
             if self.hierarchy.matches(output.signal, wanted.signal)
         }
-        actual = Counter(self.configuration.connections)
-        for connection in sorted(set(actual) - possible):
-            yield f"{_words(connection)}: no interaction makes this connection"
-        for connection in sorted(possible - set(actual)):
-            yield f"{_words(connection)}: this connection is missing"
-        for connection, times in actual.items():
-            if times > 1:
-                yield f"{_words(connection)}: this connection is there {times} times"
-        fed = {(connection.sink, connection.input) for connection in actual}
-        for some in players.values():
-            for candidate in some:
-                for wanted in candidate.profile.inputs:
-                    if (candidate.profile.component, wanted.name) not in fed:
-                        yield f"the input {wanted.name!r} of {candidate.profile.component.short} is not fed"
 
     def _values(self, players: Players) -> Iterator[str]:
         names = {parameter.iri: parameter.name for parameter in self.template.parameters}

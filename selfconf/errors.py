@@ -37,7 +37,26 @@ class TurtleError(AuthorError):
 
 
 class TemplateError(AuthorError):
-    """A template or task is Turtle, but not a template or task."""
+    """A template or task is Turtle, but not a template or task.
+
+    `subject` is the IRI of what the error speaks of. `steps` lead from it to the value at fault, where there is one:
+    each a predicate, and which of its values in the order of the text, counted from zero. Without a subject the first
+    step has no predicate, and counts the nodes without an IRI to which nothing leads. So the place can be looked up
+    when it is wanted, in another reading of the file, in which blank nodes have other names.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        file: str | None = None,
+        line: int | None = None,
+        column: int | None = None,
+        subject: str | None = None,
+        steps: tuple[tuple[str, int], ...] = (),
+    ) -> None:
+        super().__init__(message, file=file, line=line, column=column)
+        self.subject, self.steps = subject, steps
 
 
 class BindingError(AuthorError):

@@ -17,11 +17,19 @@ from selfconf.errors import AuthorError, TurtleError
 if TYPE_CHECKING:
     from selfconf.rdf.advertisements import Advertisement, MalformedAdvertisement, SegmentCache
 
+STDIN = Path("-")
+"""What stands for standard input where a file can be given."""
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+TURTLE = (".ttl",)
+"""The ending of the files that stand for a folder."""
+ONTOLOGY = (".ttl", ".rdf", ".owl", ".nt", ".nq", ".trig", ".jsonld")
+"""The endings of the files that stand for a folder of ontologies, which come in every format of RDF."""
 
 
-def within(path: Path, left_out: Callable[[AuthorError], None] | None = None) -> list[Path]:
-    """The files that a path stands for, sorted: all *.ttl below a folder, or else itself.
+def within(
+    path: Path, left_out: Callable[[AuthorError], None] | None = None, endings: tuple[str, ...] = TURTLE
+) -> list[Path]:
+    """The files that a path stands for, sorted: all below a folder that end so, or else itself.
 
     A folder that cannot be read raises AuthorError, unless `left_out` is given, which receives the error instead.
     """
@@ -35,7 +43,7 @@ def within(path: Path, left_out: Callable[[AuthorError], None] | None = None) ->
         left_out(wrong)
 
     found = [Path(folder, name) for folder, _, names in os.walk(path, onerror=unreadable) for name in names]
-    return sorted(file for file in found if file.suffix == ".ttl" and file.is_file())
+    return sorted(file for file in found if file.suffix in endings and file.is_file())
 
 
 def advertisements(

@@ -13,13 +13,13 @@ import os
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
-from selfconf.termination import alive
+from selfconf.termination import alive, start_time
 
 ECOLOGY_VARIABLE = "SELFCONF_ECOLOGY"
 """The variable that names the ecology of a program to which none is given."""
@@ -42,6 +42,8 @@ class LocalSite:
     site: str
     endpoint: str
     process: int
+    started: str = field(default="", compare=False)
+    """When the process began: after a restart of the machine another one may have its number. Empty if not known."""
 
 
 def runtime_folder() -> Path:
@@ -97,6 +99,7 @@ def turn() -> Iterator[None]:
 
 def announce(site: LocalSite) -> Path:
     """Write the file of a site, which `leave` removes; return its path. Raises NetworkError where that cannot be."""
+    site = replace(site, started=start_time(site.process))
     if any(other.site == site.site and other.process != os.getpid() for other in local_sites(site.ecology)):
         raise NetworkError(f"a site {site.site!r} of ecology {site.ecology!r} runs on this machine already")
     with _writing() as root:
@@ -125,7 +128,7 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
     for path in sorted(root.glob("*.json")):
         try:
             site = LocalSite(**json.loads(path.read_text()))
-            living = alive(int(site.process))
+            living = alive(int(site.process)) and site.started in ("", start_time(site.process))
         except (OSError, ValueError, TypeError):
             continue
         if not living:

@@ -39,44 +39,19 @@ class Account:
         return self._event(fact)
 
     def _act(self, fact: dict[str, Any]) -> str | None:
+        """Note an act of the configurator; it words itself, and is passed over where it has no words."""
         act = fact["act"]
-        time = f"{fact['time'] - self.began:8.3f} s"
-        if act == "query":
-            return f"{time}  act 1  asking the ecology what it has"
-        if act == "discovered":
-            return f"{time}  act 2  {fact['components']} components at the sites {', '.join(fact['sites'])}"
         if act == "composed":
             self.search_seconds.append(fact["seconds"])
-            roles = fact["outcome"].get("roles")
-            names = ", ".join(short(c) for role in roles for c in role["components"]) if roles else "nothing fits"
-            return f"{time}  act 3  {names}  ({fact['seconds'] * 1000:.1f} ms)"
-        if act == "connecting":
-            ends = f"{short(fact['source'])} {fact['output']} -> {short(fact['sink'])} {fact['input']}"
-            return f"{time}  act 4  connecting {ends}"
-        if act == "lost":
+        elif act == "lost":
             self.losses.append(fact)
-            return f"{time}  {fact['cause'].upper():5}  {short(fact['component'])}: {fact['detail']}"
-        if act == "running":
+        elif act == "running":
             self.configurations.append(fact["configuration"])
-            return f"{time}         configured, running"
-        if act == "refused":
+        elif act == "refused":
             self.refused = True
             reasons = "; ".join(reason["message"] for reason in fact["refusal"]["reasons"])
-            return f"{time}         no configuration: {reasons}"
-        words = {
-            "watching": "act 4  listening to FAIL of",
-            "waking": "act 4  waking",
-            "activated": "act 4  active:",
-            "set": "act 4  parameters set:",
-            "released": "       turned off:",
-            "stopped": "       taken down",
-        }
-        if act in words:
-            return f"{time}  {words[act]} {short(fact.get('component', ''))}".rstrip()
-        if act in ("activating", "refused", "complaint") and "detail" not in fact:
-            return None
-        detail = fact.get("detail", "")
-        return f"{time}         {short(fact.get('component', ''))} {act}: {detail}"
+            return f"{fact['time'] - self.began:8.3f} s         no configuration: {reasons}"
+        return f"{fact['time'] - self.began:8.3f} s  {fact['message']}" if fact["message"] else None
 
     def _event(self, fact: dict[str, Any]) -> str | None:
         time = f"{fact['real'] - self.began:8.3f} s"

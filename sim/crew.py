@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 
-from selfconf.sdk import lineage
+from selfconf.sdk import parent_environment
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Crew:
     def __init__(self, environment: Mapping[str, str] | None = None) -> None:
         path = os.pathsep.join(filter(None, (str(Path(__file__).parent.parent), os.environ.get("PYTHONPATH"))))
         own = {"PYTHONPATH": path}
-        self._environment = {**os.environ, **(environment or {}), **lineage(), **own}
+        self._environment = {**os.environ, **(environment or {}), **parent_environment(), **own}
         self._processes: dict[str, subprocess.Popen[str]] = {}
         self._lines: queue.SimpleQueue[Line] = queue.SimpleQueue()
 

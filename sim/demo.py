@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
+import selfconf
 from sim.account import Account
 from sim.crew import Crew, Line
 
@@ -71,15 +72,16 @@ class Stage:
         paths = map(str, advertisements)
         self.crew.start(name, "-m", "selfconf", "site", *paths, "--ecology", self.ecology, "--name", name, *connect)
         deadline = time.monotonic() + STARTING
-        for line in self.crew.lines(STARTING):
-            if line.process == name and line.text is None:
-                break
-            if line.process == name and line.text is not None and " on tcp/" in line.text:
-                self.endpoint = line.text.rpartition(" on ")[2]
-                self._say(f"{time.time() - self.account.began:8.3f} s         {line.text}")
-                return
-            self.hear(line.process, line.text)
-        raise DemoError(f"the site {name} does not listen after {STARTING - deadline + time.monotonic():.0f} s")
+        while time.monotonic() < deadline:
+            for site in selfconf.sites(self.ecology):
+                if site.site == name:
+                    self.endpoint = site.endpoint
+                    return
+            for line in self.crew.lines(0.05):
+                self.hear(line.process, line.text)
+                if line.process == name and line.text is None:
+                    raise DemoError(f"the site {name} has ended before it listened")
+        raise DemoError(f"the site {name} does not listen after {STARTING:.0f} s")
 
     def configurator(self, template: Path, policy: str, *bound: str) -> None:
         """Start the configurator with a task."""

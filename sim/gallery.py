@@ -14,7 +14,7 @@ from selfconf.model.term import IRI
 from sim.account import Account, short
 from sim.apartment import Apartment, read_apartment
 from sim.peis_home import standing_point
-from sim.pictures import Failure, Link, Part, Port, RunRecord, Sample, Sight, Supply, Wiring, draw
+from sim.pictures import CameraImage, Failure, Link, Part, RunRecord, Sample, Supply, Wiring, draw
 
 GOAL = "bedroom"
 SPOKEN = {"tracker": "the person tracker", "odometry": "odometry"}
@@ -110,12 +110,12 @@ def _supplies(times: NDArray[np.float64], sources: NDArray[np.str_]) -> Iterator
             start = index
 
 
-def _sights(logbook: dict[str, NDArray[Any]]) -> Iterator[Sight]:
+def _sights(logbook: dict[str, NDArray[Any]]) -> Iterator[CameraImage]:
     for time, image, pose in zip(logbook["sight_times"], logbook["sight_images"], logbook["sight_poses"], strict=True):
         lost = bool(np.isnan(pose[0]))
         x, y, theta = (float(value) for value in pose)
         words = "lost" if lost else f"x {x:.2f} m, y {y:.2f} m, {math.degrees(theta):.0f}°"
-        yield Sight(image, float(time), words, lost)
+        yield CameraImage(image, float(time), words, lost)
 
 
 def _wirings(account: Account) -> Iterator[Wiring]:
@@ -131,8 +131,8 @@ def _wirings(account: Account) -> Iterator[Wiring]:
             Part(
                 short(component),
                 IRI(role).short,
-                tuple(dict.fromkeys(Port(link.input) for link in links if link.sink == short(component))),
-                tuple(dict.fromkeys(Port(link.output) for link in links if link.source == short(component))),
+                tuple(dict.fromkeys(link.input for link in links if link.sink == short(component))),
+                tuple(dict.fromkeys(link.output for link in links if link.source == short(component))),
                 failed=component in lost,
                 fresh=bool(before) and component not in before,
             )

@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 
 from selfconf.sdk import Host, Termination
-from selfconf.sdk.program import add_connection_arguments, join
+from selfconf.sdk.program import add_connection_arguments, open_host
 from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
 from sim.geometry import Pose
@@ -133,7 +133,7 @@ def main() -> int:
     parser.add_argument("--record", type=Path)
     parser.add_argument("--gui", action="store_true")
     given = parser.parse_args()
-    host = join(given.ecology, given.connect)
+    host = open_host(given.ecology, given.connect)
     home = PeisHome(host, read_apartment(), given.seed, given.speed, given.place, given.gui)
     say("ready", time=home.world.time)
     try:

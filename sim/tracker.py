@@ -39,7 +39,7 @@ class Tracker:
 
     def look(self, exposure: StereoFrame) -> PlanarPose2D | None:
         """Return her pose on the floor plan, or None if this frame does not show her whole plate."""
-        magenta, cyan = (self._plate(mask, exposure.depth) for mask in _colours(exposure.rgb))
+        magenta, cyan = (self._plate(mask, exposure.depth) for mask in plate_colours(exposure.rgb))
         if not (self._is_whole(magenta) and self._is_whole(cyan)):
             self._missed += 1
             return None
@@ -71,8 +71,8 @@ class Tracker:
         return np.asarray(np.average(points[:, :2], axis=0, weights=weights), dtype=np.float64)
 
 
-def _colours(rgb: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return where (h, w) an image is magenta and where cyan, by ratios: shade does not matter."""
+def plate_colours(rgb: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return where (h, w) an image shows the plate's magenta and its cyan, by ratios: shade does not matter."""
     red, green, blue = (rgb[:, :, k].astype(np.int32) for k in range(3))
     magenta = (red > 100) & (blue > 100) & (red > 3 * green) & (blue > 3 * green)
     cyan = (green > 100) & (blue > 100) & (green > 3 * red) & (blue > 3 * red)

@@ -1,7 +1,7 @@
 """The files of `tests/bad`, each of which is wrong in the way that its first line promises.
 
 To validate all of them takes a quarter of a minute, so each is validated once in a process and the reports are shared.
-The tests that do so carry the mark `judges_bad_files`: where tests run in several processes, one process has them all.
+Where tests run in several processes, `tests/schedule.py` gives all tests that do so to one of them.
 """
 
 from __future__ import annotations
@@ -10,14 +10,11 @@ import re
 from functools import cache
 from pathlib import Path
 
-import pytest
-
 from selfconf import library
 from selfconf.model.diagnostic import Report
 from selfconf.rdf.validation import SourceText, validate
 
 BAD = tuple(sorted((Path(__file__).parent / "bad").glob("*.ttl")))
-judges_bad_files = pytest.mark.xdist_group("bad files")
 
 
 def promised(path: Path) -> list[str]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import secrets
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests import schedule
 from tests.effort import examples
 
 settings.register_profile(
@@ -19,8 +21,6 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("selfconf")
-COSTLY_FIXTURES = {"inhabited"}
-"""Fixtures of the session that start processes: all their tests run in one process, so that they start once."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -28,17 +28,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--seed", type=int, help="the seed of the first history of faults to run")
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    """Declare the mark of pytest-xdist, so that strict markers allow it where pytest-xdist is not installed."""
-    config.addinivalue_line("markers", "xdist_group(name): tests that run in one process, one after the other")
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Spread the tests over processes so that those of a group share one."""
+    return schedule.scheduler(config, log)
 
 
-@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Where tests run in several processes, begin with those that take longest, so that all processes end together."""
     for item in items:
-        for name in COSTLY_FIXTURES.intersection(getattr(item, "fixturenames", ())):
-            item.add_marker(pytest.mark.xdist_group(name))
+        if "inhabited" in getattr(item, "fixturenames", ()) and schedule.group_of(item.nodeid) != "inhabited":
+            raise pytest.UsageError(f"{item.nodeid} uses `inhabited`: add its module to INHABITED in tests/schedule.py")
     if hasattr(config, "workerinput"):
         items.sort(key=_takes_seconds, reverse=True)
 

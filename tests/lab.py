@@ -9,7 +9,7 @@ from typing import Any
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
 from selfconf.composition.composer import Composer
-from selfconf.configurator.machine import Phase, Policy
+from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.refusal import Refusal
@@ -88,7 +88,7 @@ def write_advertisements(folder: Path, *names: str) -> Path:
 
 
 class Recorder(Component):
-    """A component that writes down what it is told."""
+    """A component that writes down which of its methods were called."""
 
     def __init__(self) -> None:
         self.said: list[tuple[Any, ...]] = []
@@ -117,7 +117,7 @@ class Lab:
         self.folder = folder
         self.keys = Keys("lab")
         self.components: dict[str, Recorder] = {}
-        self.bodies: dict[str, ComponentRuntime] = {}
+        self.runtimes: dict[str, ComponentRuntime] = {}
         self.complaints: list[str] = []
         self.events: list[RunEvent] = []
         self.ended: list[Refusal | None] = []
@@ -133,7 +133,7 @@ class Lab:
         (advertisement,), _ = advertisements.read(document)
         recorder = recorder or Recorder()
         life = f"{name}{len(self.network.nodes)}"
-        self.bodies[name] = ComponentRuntime(self.network.node(), self.keys, advertisement.profile, recorder, life)
+        self.runtimes[name] = ComponentRuntime(self.network.node(), self.keys, advertisement.profile, recorder, life)
         self.components[name] = recorder
         return recorder
 
@@ -163,7 +163,7 @@ class Lab:
             policy=policy,
             patient=patient,
             report=self.events.append,
-            settle=self.ended.append,
+            ended=self.ended.append,
         )
         agent = TaskRunner(
             self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time
@@ -183,26 +183,26 @@ class Lab:
 
     def node_of(self, name: str) -> MemoryBus:
         """The node of a component."""
-        return _node(self.bodies[name].bus)
+        return _node(self.runtimes[name].bus)
 
     def crash(self, program: TaskRunner | Site | str) -> None:
         """End a configurator, a site, or the component of that name, as kill -9 does."""
-        _node(self.bodies[program].bus if isinstance(program, str) else program.bus).close()
+        _node(self.runtimes[program].bus if isinstance(program, str) else program.bus).close()
 
     def is_open(self, program: TaskRunner | Site) -> bool:
         """Whether a program has not been ended."""
         return _node(program.bus).open
 
     def isolate(self, program: TaskRunner | Site | str) -> None:
-        """Cut a program off from everybody else."""
-        node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
+        """Cut a program off from all others."""
+        node = _node(self.runtimes[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and self.network.reaches(node, other):
                 self.network.cut(node, other)
 
     def rejoin(self, program: TaskRunner | Site | str) -> None:
-        """Let a program reach everybody again."""
-        node = _node(self.bodies[program].bus if isinstance(program, str) else program.bus)
+        """Let a program reach all others again."""
+        node = _node(self.runtimes[program].bus if isinstance(program, str) else program.bus)
         for other in self.network.nodes:
             if other is not node and not self.network.reaches(node, other):
                 self.network.reconnect(node, other)
@@ -213,7 +213,7 @@ class Lab:
 
     def active(self) -> set[str]:
         """The names of the components that act, crashed ones left out."""
-        return {name for name, body in self.bodies.items() if body.active and self.node_of(name).open}
+        return {name for name, runtime in self.runtimes.items() if runtime.active and self.node_of(name).open}
 
     def acts(self, act: str) -> list[Any]:
         """The events of one kind."""

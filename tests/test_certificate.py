@@ -17,7 +17,7 @@ from selfconf.model.configuration import Assignment, Configuration, Connection, 
 from selfconf.model.template import Parameter, Setting, Task
 from selfconf.model.term import Literal
 from selfconf.search.problem import Problem
-from selfconf.search.strategies import first as solve
+from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -25,7 +25,7 @@ from tests.search.worlds import agreement, component, iri, problem, problems
 @given(problems())
 @agreement(0.3)
 def test_every_answer_is_accepted(problem: Problem) -> None:
-    answer = solve.search(problem)
+    answer = first.search(problem)
     if isinstance(answer, Configuration):
         assert broken_conditions(problem.task, problem.partition, answer, problem.hierarchy) == []
 
@@ -53,7 +53,7 @@ def test_what_is_accepted_is_valid_by_enumeration_too(problem: Problem) -> None:
 
 
 def _answer() -> tuple[Problem, Configuration]:
-    """A camera of Astrid's, who is set on the mind, and a goal that is bound."""
+    """Return a problem and its answer: a camera on Astrid, a mind that is set to that robot, a goal that is bound."""
     plain = problem(
         {
             "eye": [component("camera", outputs="o:Image"), component("spare", outputs="o:Image")],
@@ -71,7 +71,7 @@ def _answer() -> tuple[Problem, Configuration]:
         parameters=(Parameter(iri("robot"), "robot", in_shape=True, is_set=True), Parameter(iri("goal"), "goal")),
     )
     given_ = Problem(Task(template, {iri("goal"): GOAL}), plain.partition)
-    answer = solve.search(given_)
+    answer = first.search(given_)
     assert isinstance(answer, Configuration)
     assert broken_conditions(given_.task, given_.partition, answer) == []
     return given_, answer

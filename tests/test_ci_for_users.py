@@ -155,4 +155,4 @@ def test_the_page_speaks_of_what_there_is() -> None:
     assert [local] == [{key: value for key, value in hook.items() if key != "description"} for hook in HOOKS]
     for line in re.findall(r"^\$ selfconf (.*)$", PAGE, re.MULTILINE):
         assert parser().parse_args(shlex.split(line.partition(" >")[0])).run
-    assert set(re.findall(r"--format (\w+)", PAGE)) < set(command("validate").FORMATS)
+    assert set(re.findall(r"--format (\w+)", PAGE)) < set(command("validate").REPORT_FORMATS)

@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 in_git = pytest.mark.skipif(not (ROOT / ".git").exists(), reason="there is no git repository to take a revision from")
 
 
+@pytest.mark.process
 @in_git
 def test_the_short_run_runs() -> None:
     command = [sys.executable, "-m", "benchmarks.compare", "HEAD", "--smoke", "--only", "search", "--only", "validate"]

@@ -8,6 +8,8 @@ import sys
 import zipfile
 from pathlib import Path
 
+import pytest
+
 from selfconf import library
 from selfconf.rdf.turtle import document as turtle
 
@@ -42,6 +44,7 @@ def zipped(wheel: Path) -> Path:
     return wheel
 
 
+@pytest.mark.process
 def test_a_wheel_that_is_not_unpacked_has_all_of_them_and_leaves_nothing_behind(tmp_path: Path) -> None:
     temporary = tmp_path / "temporary"
     temporary.mkdir()

@@ -1,7 +1,8 @@
-"""The manual's examples: each command on a page is run, and says what the page says."""
+"""The manual's examples: each command and each session on a page is run, and says what the page says."""
 
 from __future__ import annotations
 
+import doctest
 import re
 import shlex
 from pathlib import Path
@@ -14,7 +15,10 @@ ROOT = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"^```console\n\$ selfconf (.+)\n((?:.*\n)*?)```$", re.MULTILINE)
 
 
-EXAMPLES = BLOCK.findall((ROOT / "docs" / "search.md").read_text("utf-8"))
+SESSION = re.compile(r"^```pycon\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+PAGE = (ROOT / "docs" / "search.md").read_text("utf-8")
+EXAMPLES = BLOCK.findall(PAGE)
 """Each command of the page on the search, and what it prints."""
 
 
@@ -37,3 +41,12 @@ def test_nothing_is_said_to_come_from_an_index_on_which_it_is_not() -> None:
 
 def test_the_page_has_examples() -> None:
     assert len(EXAMPLES) == 5
+
+
+def test_the_instance_on_the_page_goes_through_the_stages_as_printed() -> None:
+    pytest.importorskip("pysat")
+    blocks = SESSION.findall(PAGE)
+    assert len(blocks) == 9
+    session = doctest.DocTestParser().get_doctest("\n".join(blocks), {}, "docs/search.md", "docs/search.md", 0)
+    said: list[str] = []
+    assert doctest.DocTestRunner().run(session, out=said.append).failed == 0, "".join(said)

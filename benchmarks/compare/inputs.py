@@ -83,7 +83,7 @@ BEST: dict[str, Callable[[], Problem]] = {
     "chain, 20 roles": partial(f.graph, "chain", 20, 10, 3, SEED),
     "tree, 20 roles": partial(f.graph, "tree", 20, 6, 3, SEED),
     "graph, 10 roles": partial(f.graph, "graph", 10, 5, 3, SEED),
-    "distinct, 12 roles": partial(f.distinct, 12, 12),
+    "distinct, 9 roles": partial(f.distinct, 9, 9),
     "fleet of 5, 20 per role": partial(f.fleet, 5, 20, SEED),
 }
 SMOKE = ("navigation, 10 per role", "graph, 10 roles")
@@ -106,31 +106,40 @@ def _search(folder: Path, smoke: bool) -> Iterator[Measure]:
 
 def turtle(problem: Problem) -> tuple[str, str]:
     """A problem of a family as a template and advertisements: the class of a role is that of its candidates."""
-    task = problem.task.template
-    variables = {variable.parameter: variable.domain for variable in problem.partition.variables}
-    shapes = [f"sh:property [ sh:path <{name}-of> ; sh:in ( <{name}> ) ]" for name in variables]
-    said: dict[str, list[str]] = {}
-    roles = []
-    for role, candidates in zip(task.roles, problem.candidates, strict=True):
-        fed = [f"<{each.sink}>" for each in task.interactions if each.source == role.iri]
-        parts = [f"<{role.iri}> a sc:Role", f"sh:class <{role.iri}-kind>", *shapes]
-        roles.append(" ;\n    ".join([*parts, *([f"sc:feeds {', '.join(fed)}"] if fed else [])]) + " .\n")
-        for candidate in candidates:
-            profile = candidate.profile
-            if profile.component not in said:
-                ports = [f'sc:hasInput [ sc:name "{p.name}" ; sc:signalType <{p.signal}> ]' for p in profile.inputs]
-                ports += [f'sc:hasOutput [ sc:name "{p.name}" ; sc:signalType <{p.signal}> ]' for p in profile.outputs]
-                said[profile.component] = [*ports, f":price {1 + len(said) * 37 % 101}"]
-                for (name, domain), mask in zip(variables.items(), candidate.admits, strict=False):
-                    said[profile.component] += [f"<{name}-of> <{v}>" for k, v in enumerate(domain) if mask == 1 << k]
-            said[profile.component].append(f"a <{role.iri}-kind>")
-    parameters = "".join(f'<{name}> a sc:Parameter ; sc:name "{name.short}" .\n' for name in variables)
-    listed = f"sc:parameter {', '.join(f'<{name}>' for name in variables)} ; " if variables else ""
+    task, names = problem.task.template, [variable.parameter for variable in problem.partition.variables]
+    shapes = [f"sh:property [ sh:path <{name}-of> ; sh:in ( <{name}> ) ]" for name in names]
+    listed = f"sc:parameter {', '.join(f'<{name}>' for name in names)} ; " if names else ""
     order = " ".join(f"<{role.iri}>" for role in task.roles)
-    head = f":t a sc:Template ; {listed}sc:roles ( {order} ) ; sc:cost ( [ sc:term [ sc:property :price ] ] ) .\n"
-    between = " ;\n    "
-    ads = [f"<{component}> {between.join(('a sc:Component', *parts))} .\n" for component, parts in said.items()]
-    return f"{HEAD}{head}{parameters}{''.join(roles)}", HEAD + "".join(ads)
+    text = [HEAD, f":t a sc:Template ; {listed}sc:roles ( {order} ) ;"]
+    text.append(" sc:cost ( [ sc:term [ sc:property :price ] ] ) .\n")
+    text += [f'<{name}> a sc:Parameter ; sc:name "{name.short}" .\n' for name in names]
+    for role in task.roles:
+        feeds = [f"sc:feeds <{each.sink}>" for each in task.interactions if each.source == role.iri]
+        text.append(_statement(f"<{role.iri}> a sc:Role", [f"sh:class <{role.iri}-kind>", *shapes, *feeds]))
+    return "".join(text), "".join(_advertisements(problem))
+
+
+def _advertisements(problem: Problem) -> Iterator[str]:
+    variables = problem.partition.variables
+    said: dict[str, list[str]] = {}
+    for role, candidates in zip(problem.task.template.roles, problem.candidates, strict=True):
+        for candidate in candidates:
+            parts = said.setdefault(candidate.profile.component, [f":price {1 + len(said) * 37 % 101}"])
+            parts.append(f"a <{role.iri}-kind>")
+            if len(parts) > 2:
+                continue  # it is a candidate of another role too, and described already
+            for link, ports in (("hasInput", candidate.profile.inputs), ("hasOutput", candidate.profile.outputs)):
+                parts += [f'sc:{link} [ sc:name "{port.name}" ; sc:signalType <{port.signal}> ]' for port in ports]
+            for variable, mask in zip(variables, candidate.admits, strict=False):
+                values = [value for place, value in enumerate(variable.domain) if mask == 1 << place]
+                parts += [f"<{variable.parameter}-of> <{value}>" for value in values]
+    yield HEAD
+    for component, parts in said.items():
+        yield _statement(f"<{component}> a sc:Component", parts)
+
+
+def _statement(subject: str, said: list[str]) -> str:
+    return " ;\n    ".join([subject, *said]) + " .\n"
 
 
 def _scale(folder: Path, size: int, trials: int) -> Iterator[Measure]:

@@ -14,7 +14,7 @@ import rdflib
 
 from benchmarks.scale.worlds import ROLES, task
 from selfconf.api.ontologies import hierarchy_of
-from selfconf.api.reading import read, turtle_files
+from selfconf.api.reading import listed_files, read
 from selfconf.composition import TimeLimit, explained
 from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
@@ -53,7 +53,7 @@ def peak() -> float:
 
 def bare(path: Path) -> None:
     """Every triple of the parser, and nothing done with it."""
-    for file in turtle_files([path]):
+    for file in listed_files([path]):
         for _ in ox.parse(file.read_bytes(), format=ox.RdfFormat.TURTLE, base_iri="file:///ads.ttl"):
             pass
 

@@ -15,7 +15,7 @@ from types import ModuleType
 from benchmarks.search import families as f
 from benchmarks.search.families import Instance
 from benchmarks.search.measure import measure
-from selfconf.search.engines import candidate_search as filling
+from selfconf.search.engines import candidate_search
 from selfconf.search.engines import clause_learning as sat
 from selfconf.search.strategies import first as solve
 
@@ -37,11 +37,11 @@ class Threshold:
 
 
 THRESHOLDS = (
-    Threshold(solve, "FILL_STEPS", (0, 1, 2, 4, 8, 16)),
-    Threshold(filling, "TAKEN", (1, 8, 32, 128)),
-    Threshold(solve, "NEARBY", (0, 1, 2, 3, 4, 6)),
-    Threshold(solve, "SHARE", (1, 2, 3, 4, 6)),
-    Threshold(solve, "WALK_PACE", (0.0, 0.15, 0.3, 0.6, 1.2, 2.4, 4.8)),
+    Threshold(solve, "CANDIDATE_STEPS", (0, 1, 2, 4, 8, 16)),
+    Threshold(candidate_search, "SKIPS_PER_STEP", (1, 8, 32, 128)),
+    Threshold(solve, "PREFIX_REACH", (0, 1, 2, 3, 4, 6)),
+    Threshold(solve, "PREFIX_SHARE", (1, 2, 3, 4, 6)),
+    Threshold(solve, "REDUCED_PACE", (0.0, 0.15, 0.3, 0.6, 1.2, 2.4, 4.8)),
     Threshold(sat, "SOLVER", ("Minicard", "Minisat22", "MinisatGH", "Glucose4", "MapleCM", "Cadical153", "Cadical195")),
 )
 

@@ -11,11 +11,11 @@ from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, configure
 from selfconf.api.arguments import Paths, option
 from selfconf.api.ecology import Ecology
-from selfconf.api.run import Run
+from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh_bus import client
-from selfconf.configurator.machine import Policy
+from selfconf.configurator.state import Policy
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import NetworkError, PeerError, TurtleError
 from selfconf.model.refusal import Refusal, Undecided
@@ -31,9 +31,7 @@ ROLL_CALL = 3.0
 """How long, in seconds, a roll-call may take."""
 ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
-TAKING_DOWN = 15.0
-"""How long, in seconds, a configurator may take to release everything."""
-Result = TypeVar("Result")
+_Result = TypeVar("_Result")
 
 
 class LivingEcology(Ecology):
@@ -206,9 +204,9 @@ class LivingEcology(Ecology):
 
         return self._wait(begin)
 
-    def _wait(self, begin: Callable[[Callable[[Result], None]], None]) -> Result:
+    def _wait(self, begin: Callable[[Callable[[_Result], None]], None]) -> _Result:
         """Begin something that says when it is done, and let the bus run until then."""
-        results: list[Result] = []
+        results: list[_Result] = []
         begin(results.append)
         deadline = self._bus.now() + ANSWER_PATIENCE
         self._bus.run(lambda: bool(results) or self._bus.now() > deadline)

@@ -12,8 +12,9 @@ from pathlib import Path
 from types import TracebackType
 
 from selfconf import rendezvous
-from selfconf.api.reading import STDIN, existing
+from selfconf.api.reading import existing
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
+from selfconf.files import STDIN
 from selfconf.rendezvous import LocalSite
 from selfconf.termination import parent_environment
 

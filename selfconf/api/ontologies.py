@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf import entailment, library
-from selfconf.api.reading import file_text, turtle_files
+from selfconf import entailment, files, library
+from selfconf.api.reading import file_text, listed_files
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
@@ -24,19 +24,21 @@ def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hiera
 
     Raises AuthorError for what is not there or cannot be read, also in the mode `syntactic`, which uses none of it.
     """
-    own = turtle_files(ontologies)
+    own = listed_files(ontologies, files.ONTOLOGY)
     if reasoning is Reasoning.SYNTACTIC:
         return hierarchy([], reasoning)
     relevant = HIERARCHY if reasoning is Reasoning.SUBCLASS else None
     texts = map(file_text, (*library.ontologies(), *own))
-    return hierarchy([turtle.parse(*text, relevant) for text in texts], reasoning, entailment.entailed_hierarchy)
+    return hierarchy(
+        [turtle.read_ontology(*text, relevant) for text in texts], reasoning, entailment.entailed_hierarchy
+    )
 
 
 def with_ontologies(dataset: Dataset, question: Question, ontologies: Sequence[Path]) -> tuple[Dataset, Question]:
     """A dataset with ontologies, each a named graph, and a question that may use their prefixes."""
     prefixes: dict[str, str] = {}
-    for path in turtle_files(ontologies):
-        document = turtle.parse(*file_text(path))
+    for path in listed_files(ontologies, files.ONTOLOGY):
+        document = turtle.read_ontology(*file_text(path))
         prefixes |= document.prefixes
         dataset.add(IRI(path.resolve().as_uri()), document.triples())
     lent = {name: base for name, base in prefixes.items() if name and name not in QUERY_PREFIXES}

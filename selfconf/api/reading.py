@@ -22,9 +22,6 @@ from selfconf.rdf.eligibility import AdvertisementIndex
 if TYPE_CHECKING:
     import rdflib
 
-STDIN = Path("-")
-"""What stands for standard input where a file can be given."""
-
 
 @runtime_checkable
 class _Graph(Protocol):
@@ -92,7 +89,7 @@ def _texts(sources: Iterable[object]) -> Iterator[Text]:
             paths.append(_path(source))
         else:
             yield text_of(source)
-    yield from map(file_text, turtle_files(paths))
+    yield from map(file_text, listed_files(paths))
 
 
 def text_of(source: object) -> Text:
@@ -125,13 +122,13 @@ def _path(source: str | Path) -> Path:
 
 def file_text(path: Path) -> Text:
     """What is in a file, or in standard input. Raises AuthorError."""
-    octets = sys.stdin.buffer.read() if path == STDIN else files.octets(path)
+    octets = sys.stdin.buffer.read() if path == files.STDIN else files.octets(path)
     return files.text(octets, file_name(path)), file_name(path), files.base(path)
 
 
 def file_name(path: Path) -> str:
     """How a file is spoken of."""
-    return "<stdin>" if path == STDIN else str(path)
+    return "<stdin>" if path == files.STDIN else str(path)
 
 
 def _name(source: object) -> str:
@@ -169,13 +166,13 @@ def collector_at_rest() -> Iterator[None]:
             gc.enable()
 
 
-def turtle_files(paths: Sequence[Path]) -> list[Path]:
-    """The files, and all *.ttl below the folders, each once, sorted. Raises AuthorError for what is not there."""
+def listed_files(paths: Sequence[Path], endings: tuple[str, ...] = files.TURTLE) -> list[Path]:
+    """The files, and all below the folders that end so, each once, sorted. Raises AuthorError for what is not there."""
     found: set[Path] = set()
     for path in paths:
-        if path != STDIN:
+        if path != files.STDIN:
             existing(path)
-        found.update(files.within(path))
+        found.update(files.within(path, endings=endings))
     return sorted(found, key=Path.absolute)
 
 

@@ -12,7 +12,7 @@ from selfconf.api.places import Places
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.zenoh_bus import client
 from selfconf.composition import TimeLimit, composed
-from selfconf.configurator.machine import Loss, Policy
+from selfconf.configurator.state import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
@@ -23,7 +23,7 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.termination import Termination
 
 TAKING_DOWN = 15.0
-"""How long, in seconds, leaving a run waits for its components to be turned off."""
+"""How long, in seconds, a configurator may take to turn off everything that it holds."""
 CHECK = 0.5
 """How often, in seconds, it is checked whether what a run rests on is still there."""
 
@@ -77,7 +77,7 @@ class Run:
                 policy=policy,
                 patient=wait,
                 report=self._events.append,
-                settle=self._settle,
+                ended=self._settle,
             ),
         )
 

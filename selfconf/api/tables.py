@@ -9,9 +9,9 @@ from itertools import islice
 from selfconf.model.wording import plain
 from selfconf.render import html_table, html_text, table
 
-ROWS_PRINTED = 60
+LONGEST_TABLE = 60
 """How many rows are printed; the value itself has them all."""
-CHARACTERS_PRINTED = 120
+WIDEST_CELL = 120
 """How many characters of a cell are printed."""
 
 
@@ -30,8 +30,9 @@ class Tabular(ABC):
 
     def _printed(self) -> tuple[list[list[str]], str]:
         """The rows that are printed, and a remark where there are more."""
-        rows = [[_cut(cell) for cell in row] for row in islice(self._cells(), ROWS_PRINTED + 1)]
-        return rows[:ROWS_PRINTED], f"... only the first {ROWS_PRINTED} are shown" if len(rows) > ROWS_PRINTED else ""
+        rows = [[_cut(cell) for cell in row] for row in islice(self._cells(), LONGEST_TABLE + 1)]
+        remark = f"... only the first {LONGEST_TABLE} are shown"
+        return rows[:LONGEST_TABLE], remark if len(rows) > LONGEST_TABLE else ""
 
     def __repr__(self) -> str:
         rows, remark = self._printed()
@@ -45,4 +46,4 @@ class Tabular(ABC):
 def _cut(cell: str) -> str:
     """The text of a cell on one line, without what would steer a terminal."""
     line = plain(cell).replace("\n", "\\n").replace("\t", "\\t")
-    return line if len(line) <= CHARACTERS_PRINTED else f"{line[: CHARACTERS_PRINTED - 1]}…"
+    return line if len(line) <= WIDEST_CELL else f"{line[: WIDEST_CELL - 1]}…"

@@ -8,10 +8,9 @@ from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.api.reading import STDIN, Text, text_of
+from selfconf.api.reading import Text, text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, TemplateError
-from selfconf.model.diagnostic import Severity
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import tasks, turtle
@@ -159,12 +158,13 @@ def _text(name: str, value: Value) -> str | Term:
 
 
 def _located(source: Text, error: TemplateError) -> TemplateError:
-    """The error with the line and column of what is wrong, as `validate` finds them."""
-    from selfconf.api.validation import check_text  # loads the lints, which a template that is well-formed never needs
+    """The error with the line and column of the statement that it is about."""
+    from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # rdflib, for mistakes alone
 
-    if source[1] == str(STDIN):
+    text, name, base = source
+    try:
+        _, positions = parse_with_positions(text.decode(), name, base or "file:///")
+    except (NotTurtleError, RecursionError):  # rdflib's grammar and Oxigraph's differ in corners
         return error
-    for problem in check_text(source).diagnostics:
-        if problem.severity is Severity.ERROR:
-            return TemplateError(error.message, file=problem.file, line=problem.line, column=problem.column)
-    return error
+    place = positions.at_the_end_of(error.subject, error.steps)
+    return error if place is None else TemplateError(error.message, file=name, line=place.line, column=place.column)

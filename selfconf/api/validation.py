@@ -99,20 +99,20 @@ def _remembered(paths: Iterable[str]) -> CheckEach:
 
 
 def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
-    for name in (name for path in given for name in _files(path)):
+    for name in (name for path in given for name in _files(path, files.ONTOLOGY)):
         try:
             yield _read(name)
         except OSError as error:
             raise AuthorError(f"the ontology cannot be read: {error.strerror or error}", file=name) from None
 
 
-def _files(given: str) -> Iterator[str]:
-    """The files that a path stands for: those of a folder by name, or itself."""
+def _files(given: str, endings: tuple[str, ...] = files.TURTLE) -> Iterator[str]:
+    """The files that a path stands for: those of a folder that end so, by name, or itself."""
     path = Path(given)
     if given == "-" or not path.is_dir():
         yield given
     else:
-        yield from map(str, files.within(path))
+        yield from map(str, files.within(path, endings=endings))
 
 
 def _read(name: str) -> SourceText:

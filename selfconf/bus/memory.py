@@ -50,7 +50,7 @@ class Faults:
 
 
 class Network:
-    """The simulated network: nodes, time, and who reaches whom."""
+    """The simulated network: its nodes, its time, and which nodes reach each other."""
 
     def __init__(self, seed: int = 0, faults: Faults | None = None) -> None:
         self.time = 0.0

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import (
     add_budget_arguments,
-    add_connection_arguments,
+    add_ecology_arguments,
     add_endpoint_argument,
     add_task_arguments,
     complain_of,
-    ecology_of,
+    given_ecology,
     method_of,
     task_of,
 )
-from selfconf.cli.terminal import complain, show
+from selfconf.cli.terminal import complain, display
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer, Inquiry
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--what-if", action="store_true", help="tell for each component what would replace it if it failed"
     )
     add_budget_arguments(parser)
-    add_connection_arguments(parser)
+    add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
@@ -49,7 +49,7 @@ def run(given: argparse.Namespace) -> int:
 
     task = task_of(given)
     method = method_of(given, task)
-    with closing(ecology_of(given)) as ecology:
+    with closing(given_ecology(given)) as ecology:
         inquiry = Inquiry(task, ecology, method)
         if given.ads is None:
             complain_of(ecology)
@@ -57,11 +57,11 @@ def run(given: argparse.Namespace) -> int:
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
         complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")
     if given.format == "json":
-        show(json.dumps(_body(inquiry, answer), indent=2, ensure_ascii=False))
+        display(json.dumps(_body(inquiry, answer), indent=2, ensure_ascii=False))
     elif isinstance(answer, Undecided):
         complain(undecided_text(answer, task.iri, task.names))
     else:
-        show(_text(inquiry, answer, given.format))
+        display(_text(inquiry, answer, given.format))
     return 0 if answer else 2 if isinstance(answer, Undecided) else 1
 
 

@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import NamedTuple
 
-from selfconf.cli.options import add_connection_arguments, complain_of, joined
+from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 
 EXAMPLE = """  selfconf discover --format json"""
 
@@ -23,7 +23,7 @@ class DiscoveredComponent(NamedTuple):
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("--format", choices=["table", "json"], default="table", help="default: %(default)s")
-    add_connection_arguments(parser)
+    add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:

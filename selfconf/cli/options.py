@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
+from selfconf.files import STDIN
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Method
@@ -23,8 +24,6 @@ REASONING = ("syntactic", "subclass", "owl-rl")
 # Both are enumerations of the library, which is not loaded to parse arguments; a test compares them.
 LONGEST_SECONDS = 1e6
 """Seconds that an alarm can be set to everywhere."""
-STDIN = Path("-")
-"""What stands for standard input where a file can be given."""
 
 
 def add_task_arguments(parser: argparse.ArgumentParser) -> None:
@@ -98,7 +97,7 @@ def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", metavar="S", type=_seconds, help="give up a search after so many seconds")
 
 
-def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
+def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
     """The options by which a command finds the living ecology."""
     parser.add_argument("--ecology", metavar="NAME", help="the ecology; by default the only one on this machine")
     parser.add_argument(
@@ -147,10 +146,9 @@ def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
     return Method.of(given.strategy, given.reasoning, given.ontology, steps, seconds)
 
 
-def ecology_of(given: argparse.Namespace) -> Ecology:
+def given_ecology(given: argparse.Namespace) -> Ecology:
     """The ecology that the arguments name: files, an endpoint, or else the living one, to be closed by `close`."""
-    if given.ads is not None and given.endpoint is not None:
-        raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
+    one_ecology(given)
     if given.ads is not None:
         return read_files(given.ads)
     if given.endpoint is not None:
@@ -158,6 +156,12 @@ def ecology_of(given: argparse.Namespace) -> Ecology:
 
         return EndpointEcology(given.endpoint)
     return joined(given)
+
+
+def one_ecology(given: argparse.Namespace) -> None:
+    """Raises AuthorError where two ecologies are named."""
+    if given.ads is not None and given.endpoint is not None:
+        raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
 
 
 def read_files(paths: Iterable[Path]) -> Ecology:

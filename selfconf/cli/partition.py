@@ -9,14 +9,14 @@ from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import (
-    add_connection_arguments,
+    add_ecology_arguments,
     add_endpoint_argument,
     add_task_arguments,
     complain_of,
-    ecology_of,
+    given_ecology,
     task_of,
 )
-from selfconf.cli.terminal import show
+from selfconf.cli.terminal import display
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Inquiry
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--show", choices=["shape", "sparql"], help="print each role as the SHACL shape or SPARQL query it stands for"
     )
-    add_connection_arguments(parser)
+    add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
@@ -46,18 +46,18 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.api.partition_table import PartitionTable
 
     task = task_of(given)
-    with closing(ecology_of(given)) as ecology:
+    with closing(given_ecology(given)) as ecology:
         inquiry = Inquiry(task, ecology, Method.of(reasoning=given.reasoning, ontologies=given.ontology))
         if given.ads is None:
             complain_of(ecology)
     if given.show:
-        show(_exported(inquiry, given.show))
+        display(_exported(inquiry, given.show))
         return 0
     found = PartitionTable(inquiry)
     if given.format == "json":
-        show(json.dumps(_body(found), indent=2, ensure_ascii=False))
+        display(json.dumps(_body(found), indent=2, ensure_ascii=False))
     else:
-        show("\n".join(line for one in found.roles for line in _lines(one, found.names)))
+        display("\n".join(line for one in found.roles for line in _lines(one, found.names)))
     return 0 if found.sufficient else 1
 
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.options import (
     add_ads_argument,
-    add_connection_arguments,
+    add_ecology_arguments,
     add_endpoint_argument,
     add_ontology_argument,
     complain_of,
-    ecology_of,
+    given_ecology,
     one_stdin,
 )
 from selfconf.cli.terminal import complain
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 EXAMPLE = """  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --ads examples/peis-home
   selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --endpoint http://127.0.0.1:7878/query"""
-FORMATS = ("table", "json", "csv", "tsv", "turtle")
+ANSWER_FORMATS = ("table", "json", "csv", "tsv", "turtle")
 SECONDS, ROWS = 60.0, 100_000
 # All three are the library's (`selfconf.query`), which is not loaded to parse arguments; a test compares them.
 
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_ads_argument(parser)
     add_endpoint_argument(parser)
     add_ontology_argument(parser)
-    parser.add_argument("--format", choices=FORMATS, default=FORMATS[0], help="default: %(default)s")
+    parser.add_argument("--format", choices=ANSWER_FORMATS, default=ANSWER_FORMATS[0], help="default: %(default)s")
     parser.add_argument(
         "--seconds",
         metavar="S",
@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rows", metavar="N", type=int, default=ROWS, help="how many rows are shown at most (default: %(default)s)"
     )
-    add_connection_arguments(parser)
+    add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
@@ -62,7 +62,7 @@ def run(given: argparse.Namespace) -> int:
     if given.endpoint is not None and given.ontology:
         raise AuthorError("an endpoint holds what it holds; --ontology is for files and the living ecology")
     question = Question(text, given.format, given.rows, seconds=given.seconds)
-    with closing(ecology_of(given)) as ecology:
+    with closing(given_ecology(given)) as ecology:
         if ecology.remote:
             return _told(ecology.asked(question), given.rows)
         dataset = ecology.dataset()

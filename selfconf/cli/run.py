@@ -6,22 +6,26 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import (
     add_budget_arguments,
-    add_connection_arguments,
+    add_ecology_arguments,
+    add_endpoint_argument,
     add_task_arguments,
+    complain_of,
     method_of,
+    one_ecology,
     task_of,
 )
 from selfconf.cli.terminal import complain, silence
 from selfconf.errors import AuthorError, NetworkError
 
 if TYPE_CHECKING:
+    from selfconf.api.answer import Method
     from selfconf.api.local_site import SiteProcess
     from selfconf.api.run import Run
     from selfconf.api.task import TaskSpecification
@@ -35,6 +39,7 @@ EXAMPLE = """  selfconf run examples/clock/tell-the-time.ttl --ads examples/cloc
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     add_task_arguments(parser)
+    add_endpoint_argument(parser)
     parser.add_argument(
         "--policy",
         choices=["repair", "dismantle"],
@@ -46,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_budget_arguments(parser)
-    add_connection_arguments(parser)
+    add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
@@ -86,19 +91,32 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     from selfconf import rendezvous
     from selfconf.api.local_site import SiteProcess
     from selfconf.api.run import Run
-    from selfconf.configurator.machine import Policy
+    from selfconf.configurator.state import Policy
 
     policy, method = Policy(given.policy), method_of(given, task)
-    if given.ads is None:
-        with Run(task, method, *rendezvous.find(given.ecology, given.connect), policy, given.wait) as running:
-            yield running, None
-        return
-    described = partial(_described, given.ads)
-    with (
-        SiteProcess(given.ads, given.ecology, given.connect) as site,
-        Run(task, method, site.ecology, site.endpoints, policy, given.wait, site.running, described) as running,
-    ):
-        yield running, site
+    with ExitStack() as stack:
+        paths = given.ads if given.endpoint is None else [stack.enter_context(_fetched(given, task, method))]
+        if paths is None:
+            ecology, endpoints = rendezvous.find(given.ecology, given.connect)
+            yield stack.enter_context(Run(task, method, ecology, endpoints, policy, given.wait)), None
+            return
+        site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect))
+        described = partial(_described, given.ads or ())
+        running = Run(task, method, site.ecology, site.endpoints, policy, given.wait, site.running, described)
+        yield stack.enter_context(running), site
+
+
+@contextmanager
+def _fetched(given: argparse.Namespace, task: TaskSpecification, method: Method) -> Iterator[Path]:
+    """A folder with what the endpoint has for the task; what was left out is named on stderr."""
+    from selfconf.api.ecology import EndpointEcology
+    from selfconf.api.endpoint_files import endpoint_files
+
+    one_ecology(given)
+    ecology = EndpointEcology(given.endpoint)
+    with endpoint_files(ecology, task, method) as folder:
+        complain_of(ecology)
+        yield folder
 
 
 def _described(paths: Sequence[Path]) -> Mapping[IRI, Advertisement]:

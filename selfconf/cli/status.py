@@ -7,7 +7,7 @@ import json
 import time
 from typing import TYPE_CHECKING
 
-from selfconf.cli.options import add_connection_arguments, complain_of, joined
+from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 
 if TYPE_CHECKING:
     from selfconf.protocol.messages import Status
@@ -18,7 +18,7 @@ EXAMPLE = """  selfconf status --format json"""
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
-    add_connection_arguments(parser)
+    add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:

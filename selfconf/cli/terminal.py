@@ -66,7 +66,7 @@ def for_programs() -> None:
         sys.stdout.reconfigure(encoding="utf-8", errors="backslashreplace")
 
 
-def show(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
+def display(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
     """Print a result, or what else there is to say, to a reader who may have seen enough."""
     stream = stream or sys.stdout
     try:
@@ -77,7 +77,7 @@ def show(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
 
 def complain(sentence: str) -> None:
     """Say something on stderr that is not a result."""
-    show(sentence, sys.stderr)
+    display(sentence, sys.stderr)
 
 
 def silence(stream: TextIO) -> None:

@@ -9,13 +9,13 @@ import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from selfconf.cli.terminal import show
+from selfconf.cli.terminal import display
 from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
     from selfconf.model.codes import Code
 
-FORMATS = ("text", "json", "github", "sarif", "junit")
+REPORT_FORMATS = ("text", "json", "github", "sarif", "junit")
 # Those of `selfconf.cli.reports`, which is not loaded to parse arguments; a test compares them.
 EXAMPLE = """  selfconf validate examples/navigate.ttl examples/peis-home --ontology ontology/peis-home.ttl"""
 
@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--format",
-        choices=FORMATS,
+        choices=REPORT_FORMATS,
         default="text",
         help="how problems are written (default: %(default)s)",
     )
@@ -65,11 +65,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     result = validate(arguments.paths, ontologies=arguments.ontology, cache=arguments.cache)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
-    show(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
-    show(text.summary(result), sys.stderr)
+    display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
+    display(text.summary(result), sys.stderr)
     if result.unreadable:
         names = ", ".join(sorted(result.unreadable))
-        show(f"selfconf validate: cannot read {names}; correct the path or the syntax.", sys.stderr)
+        display(f"selfconf validate: cannot read {names}; correct the path or the syntax.", sys.stderr)
         return 2
     return 0 if result.conforms else 1
 

@@ -105,9 +105,10 @@ class Composer:
     def answers(
         self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
     ) -> Iterator[Optimum | Outcome]:
-        """The same, with the cost where there is one; whoever has no more time stops, and keeps the last answer.
+        """Better and better configurations, with their costs where there are any; or why there is none.
 
-        A configuration is certified before it is handed out, by rules that share nothing with the search.
+        The last answer so far is the one to keep when the time is up. A configuration is certified before it is handed
+        out, by rules that share nothing with the search.
         """
         partition = self.partition(ecology)
         problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)

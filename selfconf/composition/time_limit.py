@@ -19,7 +19,7 @@ from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.deadline import TimeUp, deadline
 
-Result = TypeVar("Result")
+_Result = TypeVar("_Result")
 
 
 class TimeLimit:
@@ -29,7 +29,7 @@ class TimeLimit:
         self.seconds = seconds
         self._ends = math.inf if seconds is None else time.monotonic() + seconds
 
-    def within(self, ask: Callable[[], Result], otherwise: Result) -> Result:
+    def within(self, ask: Callable[[], _Result], otherwise: _Result) -> _Result:
         """The answer to a question, or what holds without one when the time is up."""
         if self.seconds is None:
             return ask()

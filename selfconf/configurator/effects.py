@@ -18,7 +18,7 @@ class Discover:
 
 @dataclass(frozen=True, slots=True)
 class Compose:
-    """Act 3: search for a configuration without the lost ones; `running` is what a repair should keep of."""
+    """Act 3: search for a configuration without the lost components, which keeps as much of `running` as it can."""
 
     attempt: int
     lost: frozenset[IRI]
@@ -67,7 +67,7 @@ class ReleaseFrom:
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """Tell whoever asks that the configuration is complete."""
+    """The configuration is complete: note and report it."""
 
     configuration: Configuration
 

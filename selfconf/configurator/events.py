@@ -33,7 +33,7 @@ class Discovered:
 
 @dataclass(frozen=True, slots=True)
 class Composed:
-    """The search has ended; `attempt` tells which search, so that the answer to an older question is passed over."""
+    """The search has ended; `attempt` is its number, so that the outcome of an older search is passed over."""
 
     attempt: int
     outcome: Outcome
@@ -64,19 +64,19 @@ class Failed:
 
 @dataclass(frozen=True, slots=True)
 class Appeared:
-    """Something has come that may help: a component lives again, or the advertisements of a site have changed."""
+    """Something has come that may help: a component lives (again), or the advertisements of a site have changed."""
 
     lives: Mapping[IRI, str]
 
 
 @dataclass(frozen=True, slots=True)
 class Reconnected:
-    """We were cut off from the ecology and are not any more: whatever we believe of it may be outdated."""
+    """This node was cut off from the ecology and is not any more: all that is known of it may be outdated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stopped:
-    """Somebody wants the configuration to be taken down."""
+    """The configuration is to be taken down."""
 
 
 Event = Accepted | Discovered | Composed | Answered | Failed | Appeared | Reconnected | Stopped

@@ -15,19 +15,18 @@ down, as the paper does (section 4.2). Either way the lost component is turned o
 search runs again. A search that finds nothing counts only if nothing has appeared since the ecology was asked; else
 it is asked again.
 
-A component that was told to turn off is *owed* a release until it answers: one that was cut off meanwhile may still
-act, and is told again when it is seen again. One that another configurator holds is owed it until it is free.
+A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
+released again when it is seen again. One that another configurator holds is owed it until it is free.
 
 Invariants, each a test: a component is watched before it is applied to; epochs grow; what is held or owed a release
-is a superset of what may be active because of us; in IDLE, REFUSED and STOPPED nothing is held; an answer to an older
-epoch, or the result of an older search, changes nothing.
+is a superset of what may be active because of this configurator; in IDLE, REFUSED and STOPPED nothing is held; an
+answer to an older epoch, or the result of an older search, changes nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import replace
 
 from selfconf.configurator.effects import (
     ApplyTo,
@@ -53,81 +52,15 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
+from selfconf.configurator.state import Held, InputWires, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause, Verdict, Wire
 
 OBEYED = (Verdict.DONE, Verdict.STALE)
 """The answers after which a component obeys no older call; a busy one may yet, once it is free."""
-Inputs = Mapping[str, tuple[Wire, ...]]
-Reaction = tuple["State", tuple[Effect, ...]]
-
-
-class Phase(str, Enum):
-    """Where the configurator is."""
-
-    IDLE = "idle"
-    DISCOVERING = "discovering"
-    COMPOSING = "composing"
-    DEPLOYING = "deploying"
-    SETTING = "setting"
-    RUNNING = "running"
-    DISMANTLING = "dismantling"
-    REFUSED = "refused"
-    STOPPED = "stopped"
-
-
-class Policy(str, Enum):
-    """What to do with the rest of a configuration when a component is lost."""
-
-    REPAIR = "repair"
-    DISMANTLE = "dismantle"
-
-
-@dataclass(frozen=True, slots=True)
-class Held:
-    """A component that we have told to act: its life and inputs, whether it has confirmed, what was set on it."""
-
-    inputs: Inputs
-    life: str = ""
-    confirmed: bool = False
-    values: Mapping[str, Term] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class Loss:
-    """Why a component was dropped, and in which life."""
-
-    cause: Cause
-    detail: str = ""
-    life: str = ""
-    busy: bool = False
-    """Whether another configurator held it; it is free once it obeys the release that it is owed."""
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """All that a configurator knows about its task, apart from the advertisements."""
-
-    policy: Policy = Policy.REPAIR
-    patient: bool = False
-    """Whether a refusal is waited out instead of ending the task."""
-    phase: Phase = Phase.IDLE
-    epoch: int = 0
-    attempt: int = 0
-    target: Configuration | None = None
-    held: Mapping[IRI, Held] = field(default_factory=dict)
-    pending: frozenset[tuple[IRI, Call]] = frozenset()
-    owed: Mapping[IRI, int] = field(default_factory=dict)
-    """The components that were told to turn off and have not answered, each with the epoch of the release."""
-    watched: frozenset[IRI] = frozenset()
-    lost: Mapping[IRI, Loss] = field(default_factory=dict)
-    afterwards: Phase = Phase.STOPPED
-    """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""
-    refusal: Refusal | Undecided | None = None
-    news: bool = False
-    """Whether something has appeared since the ecology was last asked."""
+Reaction = tuple[State, tuple[Effect, ...]]
+"""The next state, and what is to be done."""
 
 
 def step(state: State, event: Event) -> Reaction:
@@ -218,7 +151,7 @@ def _deploy(state: State) -> Reaction:
     return _then(effects, _proceed(deployed))
 
 
-def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, Inputs], changed: Sequence[IRI]) -> dict[IRI, Held]:
+def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, InputWires], changed: Sequence[IRI]) -> dict[IRI, Held]:
     """What is held of a configuration once the changed components are applied to: those have yet to confirm."""
     rewired = {component: before for component, before in held.items() if component in wires}
     for component in changed:
@@ -227,7 +160,7 @@ def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, Inputs], changed: Seq
     return rewired
 
 
-def _as_wanted(held: Held | None, inputs: Inputs) -> bool:
+def _as_wanted(held: Held | None, inputs: InputWires) -> bool:
     return held is not None and held.confirmed and held.inputs == inputs
 
 
@@ -268,7 +201,7 @@ def _answered(state: State, event: Answered) -> Reaction:
 
 
 def _confirmed(state: State, held: Held, event: Answered) -> Held:
-    """What is known of a component that has done as it was told; a new life has nothing set on it."""
+    """What is known of a component that has obeyed; a new life has nothing set on it."""
     values = held.values if held.life in ("", event.life) else {}
     if event.call is Call.SET and state.target is not None:
         values = {**values, **{s.name: s.value for s in state.target.settings if s.component == event.component}}
@@ -305,7 +238,7 @@ def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
 
 
 def _dismantle(state: State, afterwards: Phase) -> Reaction:
-    """Release everything that is held, and tell again whoever is owed a release; then comes `afterwards`."""
+    """Release everything that is held or owed a release; then comes `afterwards`."""
     epoch = state.epoch + 1
     owed = dict.fromkeys((*state.owed, *state.held), epoch)
     effects: list[Effect] = [ReleaseFrom(component, epoch) for component in owed]
@@ -353,7 +286,7 @@ def _appeared(state: State, event: Appeared) -> Reaction:
 
 
 def _reconnected(state: State) -> Reaction:
-    """Components may have turned themselves off, or died: ask the ecology again, and apply to everybody anew."""
+    """Components may have turned themselves off, or died: ask the ecology again, and apply to all of them anew."""
     if state.phase in (Phase.IDLE, Phase.DISMANTLING, Phase.STOPPED):
         return state, ()
     if state.phase is Phase.REFUSED and not state.patient:

@@ -1,7 +1,7 @@
 """The calls that a configurator makes to components: activate and connect, set, turn off, wake, stand by.
 
-A time-out is not an outcome: after one the component is asked for its actual state, and then it is decided. A call
-whose answer shows that it never arrived is made again.
+A time-out is not an outcome: after one the component is asked for its actual state, and that decides. A call is made
+again if the state shows that it never arrived.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from selfconf.bus.port import Replies, Undo
 from selfconf.configurator import machine
 from selfconf.configurator.effects import ApplyTo, ReleaseFrom, SetOn
 from selfconf.configurator.events import Answered, Call, Event
-from selfconf.configurator.machine import State
-from selfconf.deployment.request import Report, Standby
+from selfconf.configurator.state import State
+from selfconf.deployment.request import EventListener, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
@@ -38,19 +38,19 @@ _DONE = {Call.APPLY: ComponentActivated, Call.SET: ParametersSet, Call.RELEASE: 
 """The event of a call that was obeyed."""
 
 CALL = 2.0
-"""How long a component may take to answer a call, before it is asked for its state."""
+"""Seconds that a component may take to answer a call before it is asked for its state."""
 STARTING = 8.0
-"""How long a component that lives, but says nothing, may take over what it was told: it may be in `started`."""
+"""Seconds that a component that lives, but does not answer, may take to obey a call: it may be in `started`."""
 PAUSE = 0.1
-"""How long after a question for its state that nobody has answered a component is asked again."""
+"""Seconds after which a component that has not answered a question for its state is asked again."""
 CALL_ATTEMPTS = 3
-"""How often a call is made to a component that answers, but has not obeyed: a message may have been lost."""
+"""How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
 WAKING = 15.0
-"""How long a component that a site starts may take to live."""
+"""Seconds that a component that a site starts may take to live."""
 
 
 class Calls:
-    """Makes the calls of one configurator, and tells its machine what becomes of them."""
+    """Makes the calls of one configurator, and feeds its machine with what becomes of them."""
 
     def __init__(
         self,
@@ -58,16 +58,16 @@ class Calls:
         supervisor: str,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        report: Report,
+        report: EventListener,
     ) -> None:
         self.bus, self.ecology, self.keys = ecology.bus, ecology, ecology.keys
         self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
         self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
-        """The connections that each component was told to have, in which life, so that only new ones are told of."""
+        """The connections that each component was given, in which life, so that only new ones are reported."""
 
     def woken(self, component: IRI) -> None:
-        """A component lives; if it was waited for, it hears what it was woken for."""
+        """A component lives; if it was started for an apply, the apply goes out now."""
         waiting = self._waking.pop(component, None)
         if waiting is not None:
             waiting[1]()
@@ -99,14 +99,14 @@ class Calls:
         self._report(ActivationSent(effect.component))
 
     def forget_connections(self) -> None:
-        """Components may have turned themselves off: whoever is applied to is connected anew."""
+        """Components may have turned themselves off: all that is applied to from now on is connected anew."""
         self._connections.clear()
 
     def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
         return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}
 
     def stand_by(self, configuration: Configuration, standby: Standby) -> None:
-        """Tell the inputs what may come next, now that there is time for it; nobody waits for the answers."""
+        """Let the inputs listen to what may come next, now that there is time; the answers are not waited for."""
         wires = machine.wiring(configuration)
         for component, outputs in standby.items():
             inputs, spare = self._with_promises(wires[component]), self._with_promises(outputs)
@@ -114,13 +114,13 @@ class Calls:
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
 
     def _promised(self, wire: Wire) -> Wire:
-        """The wire with the longest pause that the output's advertisement promises."""
+        """A wire with the longest pause that the output's advertisement promises."""
         found = self.ecology.discovery.found.get(wire.component)
         output = found.advertisement.profile.output(wire.output) if found else None
         return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
 
     def release(self, effect: ReleaseFrom) -> None:
-        """Turn a component off; one that lives but does not answer is told again as long as it is owed that."""
+        """Turn a component off; one that lives but does not obey is called again as long as it is owed the release."""
         self._connections.pop(effect.component, None)
         if self.ecology.life(effect.component) is None:
             off = Answered(effect.component, Call.RELEASE, effect.epoch, None)
@@ -167,7 +167,7 @@ class Calls:
         def answered(replies: Replies) -> None:
             answer = _answer_in(replies)
             if answer is not None:
-                self._heard_answer(component, call, message.epoch, answer)
+                self._answered(component, call, message.epoch, answer)
             elif replies.errors:
                 detail = replies.errors[0]
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
@@ -175,7 +175,7 @@ class Calls:
                 inspect()
 
         def inspect() -> None:
-            """A time-out is not an outcome: look at the actual state, then decide."""
+            """A time-out is not an outcome: ask for the actual state, then decide."""
             self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
 
         def seen(replies: Replies) -> None:
@@ -184,7 +184,7 @@ class Calls:
             obeyed = answer is not None and answer.epoch == message.epoch
             silent = not replies.samples and not replies.errors
             if obeyed and answer is not None and call is not Call.SET and answer.active == (call is Call.APPLY):
-                self._heard_answer(component, call, message.epoch, answer)
+                self._answered(component, call, message.epoch, answer)
             elif attempts > 1 and answer is not None and current:
                 self._call(component, call, message, attempts - 1)
             elif silent and current and call is not Call.RELEASE and self.bus.now() - began < STARTING:
@@ -196,7 +196,7 @@ class Calls:
         self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
 
     def look(self, component: IRI, seen: Callable[[CallAnswer | None], None], attempts: int = CALL_ATTEMPTS) -> None:
-        """Ask a component for its actual state; `seen` hears None if it does not say."""
+        """Ask a component for its actual state; `seen` receives None if it does not answer."""
 
         def answered(replies: Replies) -> None:
             answer = _answer_in(replies)
@@ -207,9 +207,9 @@ class Calls:
 
         self.bus.ask(self.keys.call(component, "state"), b"", CALL, answered)
 
-    def _heard_answer(self, component: IRI, call: Call, epoch: int, answer: CallAnswer) -> None:
+    def _answered(self, component: IRI, call: Call, epoch: int, answer: CallAnswer) -> None:
         done = answer.verdict is Verdict.DONE
-        if done or call is not Call.RELEASE:  # who is not ours and stays so is told to turn off again and again
+        if done or call is not Call.RELEASE:  # a component that another configurator holds is released again and again
             event = _DONE[call] if done else CallDeclined
             self._report(event(component, answer.detail or answer.verdict.value))
         self._step(Answered(component, call, epoch, answer.verdict, answer.life, answer.epoch, answer.detail))

@@ -1,7 +1,8 @@
-"""Who lives, as a configurator hears it: components come and go, sites too, and it may itself be cut off.
+"""Which components and sites live, and when one of them is believed to be dead.
 
-Whoever is cut off sees everybody die, and cannot tell. So a life that has ended is looked at a second time, and while
-there is no link nothing is believed; what has become of the others is asked when there is one again.
+To a configurator that is cut off from the network all lives seem to end at once, and it cannot tell that from a real
+end. So each life that has ended is looked at a second time; while there is no link, no end is believed; and once there
+is one again, the ecology is asked what has become of its components.
 """
 
 from __future__ import annotations
@@ -11,9 +12,9 @@ from functools import partial
 
 from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
-from selfconf.configurator.machine import State
+from selfconf.configurator.state import State
 from selfconf.deployment.calls import Calls
-from selfconf.deployment.request import Report
+from selfconf.deployment.request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.run_event import EcologyReachable, EcologyUnreachable
 from selfconf.model.term import IRI
@@ -21,40 +22,45 @@ from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.protocol.messages import CallAnswer, Cause
 
 SECOND_LOOK = 0.03
-"""When to look again whether a life that has ended has: the network tells of it before it tells of a broken link."""
+"""Seconds until the second look at a life that has ended: Zenoh reports lost lives before it reports a lost link."""
 CUT_OFF = 0.25
-"""How often a configurator that is cut off looks whether it still is."""
+"""Seconds between two looks of a configurator that is cut off whether it still is."""
 ASK_AGAIN = 5.0
-"""When a site that lives, but has not answered, counts as news again."""
+"""Seconds after which a site that lives, but has not answered in full, is taken for news, and so is asked again."""
 SETTLING = 1.0
-"""How long others may take to be connected again after us; as long as components go on without a supervisor."""
+"""Seconds that other nodes may take to be connected again after this one.
+
+It is the grace period of components (`selfconf.sdk.supervision.GRACE`): after it, each has turned itself off or has
+seen its supervisor again.
+"""
 
 
 class Liveness:
-    """Follows the lives of an ecology for one configurator, and tells its machine what that means."""
+    """Follows the lives of an ecology for one configurator, and feeds its machine with what they mean."""
 
     def __init__(
         self,
         ecology: EcologyView,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        report: Report,
+        report: EventListener,
         calls: Calls,
     ) -> None:
         self.bus, self.ecology = ecology.bus, ecology
         self._state, self._step, self._report, self._calls = state, step, report, calls
         self._sites: set[str] = set()
         """The liveliness keys of the sites that have answered: a site that was started again has another one."""
-        self._unheard: dict[str, str] = {}
+        self._unseen: dict[str, str] = {}
+        """The lives of the roll-call that the watch has not shown yet, by the component's chunk."""
         self._link, self._cut_off = self.bus.link, False
         self._ask_again: Undo = lambda: None
 
     def discovered(self, discovery: Discovery) -> None:
-        """From the first discovery on, lives are followed; a site that did not answer counts as news later."""
+        """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
         self._sites.update(key for key in discovery.site_tokens if owner_of(key) not in discovery.missing)
         if not self.ecology.followed:
-            self._unheard = dict(self.ecology.lives)
-            self.bus.later(SETTLING, self._end_unheard)
+            self._unseen = dict(self.ecology.lives)
+            self.bus.later(SETTLING, self._end_unseen)
         self.ecology.follow(self._life_changed, self._site_changed)
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
         if discovery.missing:
@@ -64,7 +70,7 @@ class Liveness:
         chunk, life = owner_of(key), life_of(key)
         component = self._component(chunk)
         known = self.ecology.lives.get(chunk) == life
-        self._unheard.pop(chunk, None)
+        self._unseen.pop(chunk, None)
         if alive and not known:
             self.ecology.lives[chunk] = life
             if component is not None:
@@ -74,7 +80,7 @@ class Liveness:
             self._ended(chunk, life)
 
     def _ended(self, chunk: str, life: str) -> None:
-        """A life has ended, or the way to it: who is connected to another router lives again in a moment."""
+        """A life has ended, or only the way to it: a client that changes its router seems to end for a moment."""
         component = self._component(chunk)
         known = self.ecology.lives.get(chunk) == life
         if known:
@@ -95,7 +101,11 @@ class Liveness:
             self.bus.later(SECOND_LOOK, look_again)
 
     def _seen(self, component: IRI, life: str, answer: CallAnswer | None) -> None:
-        """Who was cut off for a moment may have failed in it, unheard; or we were, and nobody supervised it."""
+        """Judge a component whose life seemed to end and goes on, by the answer to a question for its state.
+
+        If the component was cut off for a moment, it may have failed meanwhile, unnoticed. If this node was, then the
+        component may have turned itself off, or obey another configurator.
+        """
         held = self._state().held.get(component)
         if answer is None:
             self._step(Failed(component, life, Cause.CRASH, "it does not answer since it was cut off"))
@@ -106,16 +116,16 @@ class Liveness:
             self._reconnected()
 
     def _reconnected(self) -> None:
-        """We were cut off, for so long that whatever we believe may be outdated; every connection counts as gone."""
+        """This node was cut off for so long that all it knows may be outdated: every connection counts as gone."""
         self._calls.forget_connections()
         self._report(EcologyReachable())
         self._step(Reconnected())
 
-    def _end_unheard(self) -> None:
-        """Who died between the roll-call and the beginning of the watch was called, but has never been heard."""
-        for chunk, life in self._unheard.items():
+    def _end_unseen(self) -> None:
+        """A life that ended between the roll-call and the beginning of the watch was called, but never seen since."""
+        for chunk, life in self._unseen.items():
             self._ended(chunk, life)
-        self._unheard.clear()
+        self._unseen.clear()
 
     def _held_life(self, component: IRI) -> str | None:
         held = self._state().held.get(component)
@@ -129,7 +139,7 @@ class Liveness:
             self._sites.discard(key)
 
     def _await_link(self) -> None:
-        """Who is cut off sees everybody die, and cannot tell; what has become of them is asked afterwards."""
+        """Believe no end while this node is cut off; what has become of the components is asked afterwards."""
 
         def look() -> None:
             if self.bus.link:

@@ -1,4 +1,4 @@
-"""What a configurator has deployed and lost, and whoever wants to know: `status`, `stop`, and the configuration."""
+"""What a configurator has deployed and lost, and the questions it answers: `status`, `stop`, and the configuration."""
 
 from __future__ import annotations
 
@@ -16,12 +16,18 @@ from selfconf.rdf.turtle import to_turtle
 
 
 class DeploymentRecord:
-    """Keeps the record of one task and answers questions about it."""
+    """Keeps the record of one task, and serves it on the bus."""
 
     def __init__(
-        self, bus: Bus, keys: Keys, name: str, order: RunRequest, status: Callable[[], Status], stop: Callable[[], None]
+        self,
+        bus: Bus,
+        keys: Keys,
+        name: str,
+        request: RunRequest,
+        status: Callable[[], Status],
+        stop: Callable[[], None],
     ) -> None:
-        self.bus, self._keys, self._name, self._order = bus, keys, name, order
+        self.bus, self._keys, self._name, self._request = bus, keys, name, request
         self._status, self._stop = status, stop
         self._deployed: tuple[IRI, Configuration, int, float] | None = None
         self._revises: tuple[IRI, Configuration] | None = None
@@ -56,13 +62,13 @@ class DeploymentRecord:
         triples = configuration_triples(
             configuration,
             name,
-            self._order.task,
+            self._request.task,
             epoch=epoch,
             generated=generated,
             revises=self._revises,
             configurator=self._name,
             failures=self._failures.values(),
-            passed_over=self._order.passed_over(configuration),
+            passed_over=self._request.passed_over(configuration),
         )
         return to_turtle(triples)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from selfconf.configurator.machine import Policy
+from selfconf.configurator.state import Policy
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import RunEvent
@@ -14,11 +14,11 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 
-Compose = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
+ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
 
-Report = Callable[[RunEvent], None]
-"""Hears of an event of a run."""
+EventListener = Callable[[RunEvent], None]
+"""Receives an event of a run."""
 
 Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
 """For each component and input, the outputs that might be connected to it next."""
@@ -26,17 +26,18 @@ Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRequest:
-    """What an agent is to do: how to compose, how to mend, and who wants to know."""
+    """A task to run: how to compose, what to do after a loss, and where to report."""
 
     task: Task
-    compose: Compose
+    compose: ComposeFunction
     policy: Policy = Policy.REPAIR
     patient: bool = False
+    """Whether a refusal does not end the run: it waits until the ecology has what the task needs."""
     standby: Callable[[Configuration, frozenset[IRI]], Standby] = lambda configuration, lost: {}
     """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
     passed_over: Callable[[Configuration], Mapping[IRI, Sequence[IRI]]] = lambda configuration: {}
     """For each role of a configuration, the candidates that came before the chosen ones."""
-    report: Report = lambda event: None
-    """Hears what the configurator does and notices, in order."""
-    settle: Callable[[Refusal | Undecided | None], None] = lambda refusal: None
-    """Hears once when the task has ended; with the refusal if that is why."""
+    report: EventListener = lambda event: None
+    """Receives what the configurator does and notices, in order."""
+    ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None
+    """Called once when the task has ended; with the refusal if that is why."""

@@ -35,7 +35,7 @@ from selfconf.configurator.events import (
     Failed,
     Stopped,
 )
-from selfconf.configurator.machine import Loss, Phase, State
+from selfconf.configurator.state import Loss, Phase, State
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.record import DeploymentRecord
@@ -69,37 +69,37 @@ from selfconf.protocol.messages import (
 log = logging.getLogger(__name__)
 
 AT_LEISURE = 0.01
-"""Seconds for which accounts, and turning off whom nobody waits for, stand back while a configuration is deployed."""
+"""Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
 TRY_AGAIN = 5.0
-"""How often, in seconds, a patient configurator looks who may be given another chance."""
+"""How often, in seconds, a patient configurator that waits looks which lost components may be tried again."""
 
 
 class TaskRunner:
     """Runs one task: acts 1 to 4, then watches and configures again, until it is stopped or refused."""
 
     def __init__(
-        self, bus: Bus, ecology: str, order: RunRequest, name: str = "", clock: Callable[[], float] = time.time
+        self, bus: Bus, ecology: str, request: RunRequest, name: str = "", clock: Callable[[], float] = time.time
     ) -> None:
-        self.bus, self.order, self.clock = bus, order, clock
+        self.bus, self.request, self.clock = bus, request, clock
         self.ecology = EcologyView(bus, ecology)
         self.keys = self.ecology.keys
         self.name = name or f"c{secrets.token_hex(4)}"
         self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
-        self.state = State(policy=order.policy, patient=order.patient)
+        self.state = State(policy=request.policy, patient=request.patient)
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._report)
-        self._lives = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
-        self._record = DeploymentRecord(bus, self.keys, self.name, order, self.status, self.stop)
+        self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
+        self._record = DeploymentRecord(bus, self.keys, self.name, request, self.status, self.stop)
         self._watched: set[IRI] = set()
         self._events: deque[Event] = deque()
         self._stepping = False
         self._unreported: list[RunEvent] = []
         self._look_again: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
-        # One subscription for the FAIL of all: connecting to each as it joins would delay its activation.
-        bus.subscribe(self.keys.any_fail(), self._heard_fail, Urgency.EVENT)
+        # One subscription for the FAIL of all components: one for each that joins would delay its activation.
+        bus.subscribe(self.keys.any_fail(), self._received_fail, Urgency.EVENT)
         bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})), Urgency.EVENT)
 
     def start(self) -> None:
@@ -107,7 +107,7 @@ class TaskRunner:
         self._step(Accepted(int(self.clock() * 1000)))
 
     def stop(self) -> None:
-        """Take the configuration down; `order.settle` hears when that is done."""
+        """Take the configuration down; `request.ended` is called when that is done."""
         self._step(Stopped())
 
     @property
@@ -141,7 +141,7 @@ class TaskRunner:
         return self.state
 
     def _stand_by(self, configuration: Configuration) -> None:
-        standby = self.order.standby(configuration, frozenset(self.state.lost))
+        standby = self.request.standby(configuration, frozenset(self.state.lost))
         self._calls.stand_by(configuration, standby)
 
     def _changed_phase(self, before: Phase) -> None:
@@ -156,7 +156,7 @@ class TaskRunner:
         self._look_again = self.bus.later(TRY_AGAIN, self._forgive)
 
     def _forgive(self) -> None:
-        """While there is no other way, whoever may be able to by now is tried again."""
+        """While the task is refused, try lost components again that may be able to act by now."""
         if self.state.phase is not Phase.REFUSED:
             return
         again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
@@ -166,7 +166,7 @@ class TaskRunner:
             self._await_another_chance()
 
     def _may_be_able(self, component: IRI, loss: Loss) -> bool:
-        """Who crashed can be started by its site; who was busy is free since it has obeyed us."""
+        """Whether a site can start a crashed component, or a busy one is free, as it has obeyed its release."""
         if loss.cause is Cause.CRASH:
             found = self.ecology.discovery.found.get(component)
             return found is not None and found.startable
@@ -178,7 +178,7 @@ class TaskRunner:
         return {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
 
     def _notice(self, known: Mapping[IRI, Loss]) -> None:
-        """Note and tell of every component that the machine has just given up, for whatever cause."""
+        """Record and report every component that the machine has just given up, whatever the cause."""
         for component, loss in self.state.lost.items():
             if known.get(component) is not loss:
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
@@ -193,7 +193,7 @@ class TaskRunner:
     def _report_all(self) -> None:
         unreported, self._unreported = self._unreported, []
         for event in unreported:
-            self.order.report(event)
+            self.request.report(event)
 
     # Effects.
 
@@ -224,13 +224,13 @@ class TaskRunner:
                 self._report(TaskStopped(lost=lost) if refusal is None else TaskRefused(refusal, lost))
                 try:
                     self._report_all()
-                finally:  # the end of a task depends on nobody who listens
-                    self._leave()  # whoever could not be told to turn off will notice
-                    self.order.settle(effect.refusal)
+                finally:  # the end of a task must not depend on what receives the reports
+                    self._leave()  # a component that could not be released turns itself off now
+                    self.request.ended(effect.refusal)
 
     def _discovered(self, discovery: Discovery) -> None:
         self.ecology.discovery = discovery
-        self._lives.discovered(discovery)
+        self._liveness.discovered(discovery)
         for complaint in discovery.complaints:
             self._report(AnswerRejected(complaint))
         self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
@@ -240,7 +240,7 @@ class TaskRunner:
         found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
         began = self.bus.now()
         try:
-            outcome = self.order.compose(found, effect.lost, effect.running)
+            outcome = self.request.compose(found, effect.lost, effect.running)
         except SelfconfError as error:
             self.trouble = error
             self._step(Stopped())
@@ -255,7 +255,7 @@ class TaskRunner:
         self._report(FailWatched(component))
         self._watched.add(component)
 
-    def _heard_fail(self, sample: Sample) -> None:
+    def _received_fail(self, sample: Sample) -> None:
         try:
             fail = decode(sample.payload, Fail)
         except PeerError as error:
@@ -271,7 +271,7 @@ class TaskRunner:
         return Status(
             configurator=self.name,
             phase="waiting" if self.state.phase is Phase.REFUSED else self.state.phase.value,
-            template=self.order.task.template.iri,
+            template=self.request.task.template.iri,
             epoch=self.state.epoch,
             since=self.since,
             host=socket.gethostname(),

@@ -13,7 +13,7 @@ import re
 from decimal import Decimal
 from fractions import Fraction
 
-from selfconf.model.term import XSD, Literal, Term
+from selfconf.model.term import XSD_NAMESPACE, Literal, Term
 
 MOST_CHARACTERS = 300
 """A longer text is no measurement. The bound also keeps every decimal within the range of a double, and its fraction
@@ -35,16 +35,16 @@ _WHOLE: dict[str, _Bounds] = {
     "unsignedInt": (0, (1 << 32) - 1),
     "unsignedLong": (0, None),
 }
-WHOLE: dict[str, _Bounds] = {XSD + name: bounds for name, bounds in _WHOLE.items()}
+WHOLE_NUMBERS: dict[str, _Bounds] = {XSD_NAMESPACE + name: bounds for name, bounds in _WHOLE.items()}
 """The datatypes of whole numbers, each with its least and its greatest value."""
-FLOATING = frozenset((XSD + "double", XSD + "float"))
+FLOATING = frozenset((XSD_NAMESPACE + "double", XSD_NAMESPACE + "float"))
 """The datatypes with an exponent; both are read with the range of a double."""
-DATATYPES = frozenset((*WHOLE, XSD + "decimal", *FLOATING))
+DATATYPES = frozenset((*WHOLE_NUMBERS, XSD_NAMESPACE + "decimal", *FLOATING))
 """The datatypes of numbers."""
 _DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
 _LEXICAL = {
-    **dict.fromkeys(WHOLE, re.compile("[+-]?[0-9]+")),
-    XSD + "decimal": re.compile(_DECIMAL),
+    **dict.fromkeys(WHOLE_NUMBERS, re.compile("[+-]?[0-9]+")),
+    XSD_NAMESPACE + "decimal": re.compile(_DECIMAL),
     **dict.fromkeys(FLOATING, re.compile(_DECIMAL + "(?:[eE][+-]?[0-9]+)?")),
 }
 
@@ -62,7 +62,7 @@ def number_of(lexical: str, datatype: str) -> Decimal | None:
         if rounded == 0 or not math.isfinite(rounded):
             return Decimal(0) if rounded == 0 else None
     number = Decimal(lexical)
-    least, greatest = WHOLE.get(datatype, (None, None))
+    least, greatest = WHOLE_NUMBERS.get(datatype, (None, None))
     if (least is not None and number < least) or (greatest is not None and number > greatest):
         return None
     return number
@@ -84,4 +84,4 @@ def plain_number(term: Term) -> int | float | None:
     found = number(term)
     if found is None or not isinstance(term, Literal):
         return None
-    return int(found) if term.datatype in WHOLE else float(found)
+    return int(found) if term.datatype in WHOLE_NUMBERS else float(found)

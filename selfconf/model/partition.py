@@ -8,7 +8,7 @@ Candidates can play together iff, for each variable, the conjunction of their ma
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from selfconf.model.obstacle import Obstacle
@@ -66,33 +66,29 @@ class Partition:
     variables: tuple[Variable, ...] = ()
 
     def without(self, lost: frozenset[IRI]) -> Partition:
-        """The same partition after some components have left the ecology, with the values that only they stated."""
+        """The partition once some components, and with them the values that no other states, have left the ecology."""
         left = tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates)
-        stated = [(1 << len(variable.domain)) - 1 if variable.listed else 0 for variable in self.variables]
-        for number in range(len(stated)):
-            for role in left:
-                for candidate in role:
-                    stated[number] |= max(0, candidate.admits[number])
-        if all(bits == (1 << len(v.domain)) - 1 for bits, v in zip(stated, self.variables, strict=True)):
+        kept = [_places_stated(variable, number, left) for number, variable in enumerate(self.variables)]
+        if all(len(places) == len(variable.domain) for places, variable in zip(kept, self.variables, strict=True)):
             return Partition(left, self.variables)
-        kept = [
-            [bit for bit in range(len(variable.domain)) if bits >> bit & 1]
-            for bits, variable in zip(stated, self.variables, strict=True)
-        ]
         numbers = [number for number, places in enumerate(kept) if places]
-        return Partition(
-            tuple(
-                tuple(
-                    Candidate(c.profile, tuple(_moved(c.admits[number], kept[number]) for number in numbers))
-                    for c in role
-                )
-                for role in left
-            ),
-            tuple(
-                replace(self.variables[n], domain=tuple(self.variables[n].domain[place] for place in kept[n]))
-                for n in numbers
-            ),
-        )
+
+        def narrowed(candidate: Candidate) -> Candidate:
+            admits = tuple(_moved(candidate.admits[number], kept[number]) for number in numbers)
+            return Candidate(candidate.profile, admits)
+
+        domains = ((self.variables[n], tuple(self.variables[n].domain[place] for place in kept[n])) for n in numbers)
+        variables = tuple(replace(variable, domain=domain) for variable, domain in domains)
+        return Partition(tuple(tuple(map(narrowed, role)) for role in left), variables)
+
+
+def _places_stated(variable: Variable, number: int, roles: Iterable[Iterable[Candidate]]) -> list[int]:
+    """Which values of the domain of a variable are listed, or stated by a candidate."""
+    stated = (1 << len(variable.domain)) - 1 if variable.listed else 0
+    for role in roles:
+        for candidate in role:
+            stated |= max(0, candidate.admits[number])
+    return [place for place in range(len(variable.domain)) if stated >> place & 1]
 
 
 def _moved(mask: int, kept: Sequence[int]) -> int:

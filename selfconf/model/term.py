@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-XSD = "http://www.w3.org/2001/XMLSchema#"
+XSD_NAMESPACE = "http://www.w3.org/2001/XMLSchema#"
 
 
 class IRI(str):
@@ -37,12 +37,12 @@ class BlankNode(str):
     __slots__ = ()
 
 
-STRING = IRI(XSD + "string")
+STRING = IRI(XSD_NAMESPACE + "string")
 _BARE = {
-    XSD + "integer": re.compile(r"[+-]?[0-9]+"),
-    XSD + "decimal": re.compile(r"[+-]?[0-9]*\.[0-9]+"),
-    XSD + "double": re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][+-]?[0-9]+"),
-    XSD + "boolean": re.compile("true|false"),
+    XSD_NAMESPACE + "integer": re.compile(r"[+-]?[0-9]+"),
+    XSD_NAMESPACE + "decimal": re.compile(r"[+-]?[0-9]*\.[0-9]+"),
+    XSD_NAMESPACE + "double": re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][+-]?[0-9]+"),
+    XSD_NAMESPACE + "boolean": re.compile("true|false"),
 }
 """What Turtle takes for a literal of a datatype as it stands."""
 

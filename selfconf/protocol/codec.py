@@ -32,13 +32,25 @@ from selfconf.protocol.messages import (
 )
 
 M = TypeVar("M", bound=Message)
+KINDS: dict[type, str] = {
+    Apply: "apply",
+    SetParameters: "setparameters",
+    Release: "release",
+    CallAnswer: "answer",
+    Fail: "fail",
+    Wake: "wake",
+    Page: "page",
+    Stamp: "stamp",
+    Status: "status",
+}
+"""What each message is called on the wire; programs in other languages rely on it, whatever a class is called here."""
 LARGEST = 1 << 20
 """A control message of more bytes than this is refused unread."""
 
 
 def encode(message: Message) -> bytes:
     """The bytes of a message."""
-    body: dict[str, Any] = {"kind": _kind(type(message))}
+    body: dict[str, Any] = {"kind": KINDS[type(message)]}
     for name, _, _ in _FIELDS[type(message)]:
         body[name] = getattr(message, name)
     if isinstance(message, SetParameters):
@@ -54,14 +66,14 @@ def decode(payload: bytes, expected: type[M]) -> M:
         body = json.loads(payload.decode())  # of bytes it would guess the encoding
     except (ValueError, RecursionError) as error:
         raise PeerError(f"not a message: {error}") from None
-    if not isinstance(body, dict) or body.get("kind") != _kind(expected):
-        raise PeerError(f"not a message of kind {_kind(expected)!r}")
+    if not isinstance(body, dict) or body.get("kind") != KINDS[expected]:
+        raise PeerError(f"not a message of kind {KINDS[expected]!r}")
     values: dict[str, Any] = {}
     for name, reader, required in _FIELDS[expected]:
         if name in body:
             values[name] = reader(body[name])
         elif required:
-            raise PeerError(f"a message of kind {_kind(expected)!r} lacks {name!r}")
+            raise PeerError(f"a message of kind {KINDS[expected]!r} lacks {name!r}")
     return expected(**values)
 
 
@@ -88,10 +100,6 @@ def decode_term(body: object) -> Term:
                 None if language is None else _text(language),
             )
     raise PeerError("not a term")
-
-
-def _kind(message: type) -> str:
-    return message.__name__.lower()
 
 
 def _plain(value: object) -> object:

@@ -25,7 +25,7 @@ import hashlib
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from urllib.parse import quote, unquote
+from urllib.parse import quote
 
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
@@ -40,8 +40,9 @@ def checked_name(name: str, what: str) -> str:
     return name
 
 
+@lru_cache(maxsize=1 << 14)
 def component_chunk(component: IRI) -> str:
-    """The chunk that stands for a component."""
+    """The chunk that stands for a component; remembered, as every life that begins or ends is looked up by it."""
     return base64.b32encode(_digest(component)).decode().lower()
 
 
@@ -179,8 +180,3 @@ def site_of(key: str) -> str:
 def call_of(key: str) -> str:
     """The name of the call at the end of a control key."""
     return key.rsplit("/", 1)[-1]
-
-
-def port_of(key: str) -> str:
-    """The port at the end of an output's key."""
-    return unquote(key.rsplit("/", 1)[-1])

@@ -126,7 +126,7 @@ class Page:
 
 @dataclass(frozen=True, slots=True)
 class Stamp:
-    """What goes with each signal: who issued it, in which life, which number it has, and when (seconds)."""
+    """What goes with each signal: its source, in which life, its number there, and its time in seconds."""
 
     component: IRI
     life: str

@@ -41,23 +41,34 @@ def shown(answer: QueryAnswer | Iterator[ox.Triple], form: str, names: Names, ro
 def _solutions(variables: Sequence[str], rows: Sequence[Sequence[Cell]], form: str, names: Names) -> str:
     """SPARQL 1.1 Query Results JSON, CSV or TSV, or a table for people."""
     if form == "json":
-        bindings = [
-            {name: _json(cell) for name, cell in zip(variables, row, strict=True) if cell is not None} for row in rows
-        ]
-        body = {"head": {"vars": list(variables)}, "results": {"bindings": bindings}}
-        return json.dumps(body, ensure_ascii=False)
+        return _json_results(variables, rows)
     if form == "csv":
-        written = io.StringIO()
-        writer = csv.writer(written, lineterminator="\n")
-        writer.writerow(variables)
-        writer.writerows([_plain(cell) for cell in row] for row in rows)
-        return written.getvalue().rstrip("\n")
+        return _csv_results(variables, rows)
     if form == "tsv":
-        lines = ["\t".join(f"?{name}" for name in variables)]
-        return "\n".join((*lines, *("\t".join("" if cell is None else str(cell) for cell in row) for row in rows)))
+        return _tsv_results(variables, rows)
     if not variables:
         return f"{len(rows)} solutions"
     return table(variables, [["" if cell is None else names(turtle.term(cell)) for cell in row] for row in rows])
+
+
+def _json_results(variables: Sequence[str], rows: Sequence[Sequence[Cell]]) -> str:
+    bindings = [
+        {name: _json(cell) for name, cell in zip(variables, row, strict=True) if cell is not None} for row in rows
+    ]
+    return json.dumps({"head": {"vars": list(variables)}, "results": {"bindings": bindings}}, ensure_ascii=False)
+
+
+def _csv_results(variables: Sequence[str], rows: Sequence[Sequence[Cell]]) -> str:
+    written = io.StringIO()
+    writer = csv.writer(written, lineterminator="\n")
+    writer.writerow(variables)
+    writer.writerows([_plain(cell) for cell in row] for row in rows)
+    return written.getvalue().rstrip("\n")
+
+
+def _tsv_results(variables: Sequence[str], rows: Sequence[Sequence[Cell]]) -> str:
+    lines = ["\t".join(f"?{name}" for name in variables)]
+    return "\n".join((*lines, *("\t".join("" if cell is None else str(cell) for cell in row) for row in rows)))
 
 
 def _json(cell: Cell) -> dict[str, Any]:

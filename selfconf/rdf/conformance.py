@@ -24,12 +24,12 @@ from pyshacl.errors import (
 from selfconf.errors import TemplateError
 from selfconf.model.obstacle import ShapeViolated
 from selfconf.model.term import IRI
-from selfconf.rdf.deadline import TimeUp, deadline
+from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.literals import UNORDERED
 from selfconf.rdf.sparql import fault
 
 SHAPE_SECONDS = 30.0
-"""How long one shape may be judged: what a pattern or query of it is matched against is untrusted."""
+"""Processor time that judging by one shape may take: what a pattern or query is matched against is untrusted."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 _ASKING = rdflib.URIRef("urn:selfconf:asking")
 _DEEPEST = 16
@@ -40,7 +40,7 @@ _TARGETS = frozenset(
 _CLASSES = frozenset((rdflib.RDFS.Class, rdflib.OWL.Class))
 """A shape that is a class has its instances as targets (SHACL, 2.1.3.3)."""
 _NOTHING = IRI("urn:selfconf:nothing")
-"""A node that nobody says anything about."""
+"""A node about which nothing is said."""
 _NO_ORDER = (*UNORDERED, ReportableRuntimeError)
 """What comes through pySHACL where two values have no order; the last is its own, for blank nodes."""
 _ILL_FORMED = (
@@ -72,7 +72,7 @@ def violations(
     for reason in faults(shapes).values():
         raise TemplateError(f"the shape {shape!r} is not evaluated: {reason}", file=source)
     try:
-        with deadline(SHAPE_SECONDS):
+        with processor_limit(SHAPE_SECONDS):
             try:
                 return _found(subjects, shapes, shape, focus, source)
             except _NO_ORDER:
@@ -80,8 +80,8 @@ def violations(
                 return _bisected(subjects, shapes, shape, focus, source)
     except TimeUp:
         raise TemplateError(
-            f"judging {len(focus)} components by the shape {shape!r} takes more than {SHAPE_SECONDS:g} s; "
-            "look for a sh:pattern that repeats what is repeated already, such as ^(a+)+$",
+            f"judging {len(focus)} components by the shape {shape!r} takes more than {SHAPE_SECONDS:g} s of processor "
+            "time; look for a sh:pattern that repeats what is repeated already, such as ^(a+)+$",
             file=source,
         ) from None
     except _ILL_FORMED as error:
@@ -91,7 +91,7 @@ def violations(
 def _bisected(
     subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
 ) -> dict[IRI, list[ShapeViolated]]:
-    """The same where pySHACL stops at some nodes, as they have values without an order."""
+    """The violations of each node where pySHACL stops at some, as they have values without an order."""
     try:
         return _found(subjects, shapes, shape, focus, source)
     except _NO_ORDER:

@@ -1,9 +1,12 @@
-"""A time limit for work that strangers may make long, such as matching `^(a+)+$` against what they wrote.
+"""Time limits for work that may be long because of what strangers wrote, such as matching `^(a+)+$` against a text.
 
 SHACL and SPARQL on rdflib are Python, and Python's regular expressions look for signals as they go, so an alarm
 (`setitimer`, POSIX) ends both without a process or a thread of its own. An alarm reaches only the main thread, in which
 every program of selfconf does its work; elsewhere there is no limit. What is raised inside a destructor or a callback
 of the garbage collector is lost, so the alarm goes on ringing until the block is left.
+
+A verdict must not depend on what else the machine is doing. So what decides about files and shapes is limited in
+processor time (`processor_limit`); the time of the clock (`deadline`) is for what a user waits for.
 """
 
 from __future__ import annotations
@@ -11,9 +14,10 @@ from __future__ import annotations
 import signal
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
+from typing import NamedTuple
 
 RINGING = 0.05
 """Seconds between one ring of the alarm and the next."""
@@ -23,23 +27,43 @@ class TimeUp(BaseException):
     """The time is up; no `Exception`, because libraries on the way catch those."""
 
 
+class _Timer(NamedTuple):
+    """A timer of the process: its number, the signal that it sends, and the clock that it goes by."""
+
+    number: int
+    signal: signal.Signals
+    clock: Callable[[], float]
+
+
+def deadline(seconds: float) -> AbstractContextManager[None]:
+    """Raise TimeUp in the block if it takes longer; an outer deadline still counts, and goes on."""
+    return _limited(seconds, _Timer(signal.ITIMER_REAL, signal.SIGALRM, time.monotonic))
+
+
+def processor_limit(seconds: float) -> AbstractContextManager[None]:
+    """Raise TimeUp in the block if it takes more processor time; an outer limit still counts, and goes on.
+
+    The time of all threads of the process counts, and none of other processes.
+    """
+    return _limited(seconds, _Timer(signal.ITIMER_PROF, signal.SIGPROF, time.process_time))
+
+
 @contextmanager
-def deadline(seconds: float) -> Iterator[None]:
-    """Raise TimeUp in the block if it takes longer; an alarm that was set outside of it still counts, and goes on."""
+def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    began = time.monotonic()
-    handler = signal.signal(signal.SIGALRM, _raise)
-    outside, _ = signal.getitimer(signal.ITIMER_REAL)
-    signal.setitimer(signal.ITIMER_REAL, min(seconds, outside or seconds), RINGING)
+    began = timer.clock()
+    handler = signal.signal(timer.signal, _raise)
+    outside, _ = signal.getitimer(timer.number)
+    signal.setitimer(timer.number, min(seconds, outside or seconds), RINGING)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, handler)
+        signal.setitimer(timer.number, 0)
+        signal.signal(timer.signal, handler)
         if outside:
-            signal.setitimer(signal.ITIMER_REAL, max(outside - (time.monotonic() - began), 1e-6), RINGING)
+            signal.setitimer(timer.number, max(outside - (timer.clock() - began), 1e-6), RINGING)
 
 
 def _raise(number: int, frame: FrameType | None) -> None:

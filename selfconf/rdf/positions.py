@@ -15,12 +15,12 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, MutableSequence
+from collections.abc import Iterator, MutableSequence, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any, NamedTuple
 
-from rdflib import RDF, Graph, Literal, URIRef
+from rdflib import RDF, BNode, Graph, Literal, URIRef
 from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
 from rdflib.term import Node
 
@@ -108,6 +108,28 @@ class Positions:
         """The line in which a named node is first described."""
         place = self.of_node(URIRef(iri))
         return None if place is None else place.line
+
+    def at_the_end_of(self, subject: str | None, steps: Sequence[tuple[str, int]]) -> TextPosition | None:
+        """Where the steps of a TemplateError end, or the last place to which they can be followed."""
+        node: Node | None = None if subject is None else URIRef(subject)
+        offset = None if node is None else self.offset(node)
+        for predicate, index in steps:
+            found = self._values(node, predicate) if node is not None else self._roots()
+            if index >= len(found):
+                break
+            offset, node = found[index]
+        return None if offset is None else self.place(offset)
+
+    def _values(self, subject: Node, predicate: str) -> list[tuple[int, Node]]:
+        """The values of a property with their offsets, in the order of the text."""
+        wanted = (subject, URIRef(predicate))
+        return sorted((offsets.object, value) for (*said, value), offsets in self.triples.items() if (*said,) == wanted)
+
+    def _roots(self) -> list[tuple[int, Node]]:
+        """The blank nodes to which nothing leads, with their offsets, in the order of the text."""
+        values = {value for _, _, value in self.triples}
+        roots = {subject for subject, _, _ in self.triples if isinstance(subject, BNode)} - values
+        return sorted((self.offset(node) or 0, node) for node in roots)
 
     def offset(self, node: Node) -> int | None:
         """The offset that belongs to `of_node`."""

@@ -25,6 +25,7 @@ def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
     return IRI(f"urn:selfconf:configuration:{digest}")
 
 
+# complexity: one line for each thing that is stated, in the order in which it is read
 def configuration_triples(
     configuration: Configuration,
     name: IRI,

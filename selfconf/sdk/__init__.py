@@ -19,7 +19,6 @@ be called from any thread. Work that takes long belongs on a thread of its own, 
 from selfconf.sdk.component import Component, Refused, Signal
 from selfconf.sdk.host import Host
 from selfconf.sdk.program import main
-from selfconf.termination import Termination
-from selfconf.termination import parent_environment as lineage
+from selfconf.termination import Termination, parent_environment
 
-__all__ = ["Component", "Host", "Refused", "Signal", "Termination", "lineage", "main"]
+__all__ = ["Component", "Host", "Refused", "Signal", "Termination", "main", "parent_environment"]

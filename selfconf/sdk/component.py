@@ -21,7 +21,7 @@ class Refused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """What an output issued: a JSON value, or bytes as they are, with who issued it, when, and its number."""
+    """What an output issued: a JSON value, or bytes as they are, with its source, its time, and its number."""
 
     value: Any
     source: IRI

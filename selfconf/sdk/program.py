@@ -28,7 +28,7 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     given, _ = parser.parse_known_args(arguments)
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
-        host = join(given.ecology, given.connect)
+        host = open_host(given.ecology, given.connect)
         for kind in kinds:
             host.add(kind())
         run_until_ended(host)
@@ -50,7 +50,7 @@ def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def join(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
+def open_host(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
     """A host for components, in the ecology that `selfconf.rendezvous.find` finds. Raises NetworkError."""
     name, endpoints = rendezvous.find(ecology, connect)
     return Host(client(endpoints), name)

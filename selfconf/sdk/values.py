@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from selfconf.model.number import DATATYPES, plain_number
-from selfconf.model.term import XSD, Literal, Term
+from selfconf.model.term import XSD_NAMESPACE, Literal, Term
 
-BOOLEAN = XSD + "boolean"
+BOOLEAN = XSD_NAMESPACE + "boolean"
 TRUTH = {"true": True, "1": True, "false": False, "0": False}
 """The lexical forms of a truth value (XSD 1.1 Part 2, section 3.3.2)."""
 

@@ -1,17 +1,17 @@
 """Why there is no configuration: a derivation of irreducible reasons, cheapest first.
 
-1. Roles that contradict themselves or have too few candidates, each a reason by itself. Nobody needs more than that.
-2. Arc consistency runs a role out of candidates. The requirements that its derivation used, from that role back to
-   the needs that nobody serves, cannot hold together.
+1. Roles that contradict themselves or have too few candidates, each a reason by itself. They are reason enough.
+2. Arc consistency leaves a role without candidates (a domain wipe-out). The constraints that its derivation used, from
+   that role back to the needs that nothing supports, cannot hold together.
 3. Matching fails: Hall's set of roles.
-4. Otherwise the clause-learning engine names assumptions that cannot hold together, again and again with one of
-   them left out, until each is needed.
+4. Otherwise the clause-learning engine names assumptions that cannot hold together (an unsatisfiable core), again and
+   again with one of them left out, until each is needed.
 
 What 2 and 3 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component only:
-then any of its roles can be left out. So is everything together where there is no such engine: a question of the kind
-"can these hold together?" for about k log(n / k) subsets, k being what remains of n. Each is decided on a problem with
-only these requirements in force, which is small when they are few.
-Irreducible does not mean smallest.
+then the rest is possible without any one of its roles. So is the set of all constraints where there is no such engine:
+a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains of n. Each is
+decided on a subproblem with only these constraints in force, which is small when they are few.
+Irreducible (a minimal unsatisfiable subset) does not mean smallest.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from selfconf.model.refusal import (
     ValueUnknown,
 )
 from selfconf.search.budget import Budget
-from selfconf.search.engines import ClauseSolver, first_solution, shortage, solver_available
+from selfconf.search.engines import ClauseSolver, HallSet, first_solution, hall_set, solver_available
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import (
     Constraint,
@@ -45,9 +45,9 @@ from selfconf.search.reduction import (
     Shared,
     all_of,
     consistent,
-    likeness,
     pruned,
-    relaxed,
+    signature,
+    subproblem,
 )
 
 EXPLANATION_STEPS = 1_000_000
@@ -57,18 +57,18 @@ QUESTION_STEPS = 1000
 
 
 def refusal(given: LazyReduction, steps: int = EXPLANATION_STEPS) -> Refusal:
-    """The refusal of a problem that has no solution."""
+    """Return the refusal of a problem that has no solution."""
     problem = given.problem
     template = problem.task.template.iri
-    plain = tuple(_plain(problem))
-    if plain:
-        return Refusal(template, plain)
-    questions = Questions(given.reduced, Budget(steps))
-    found = core(questions)
-    return Refusal(template, (_worded(problem, given.reduced, found),), irreducible=questions.settled)
+    unary = tuple(_reasons_of_single_roles(problem))
+    if unary:
+        return Refusal(template, unary)
+    oracle = FeasibilityOracle(given.reduced, Budget(steps))
+    found = core(oracle)
+    return Refusal(template, (_Wording(problem, given.reduced, found).reason(),), irreducible=oracle.complete)
 
 
-def _plain(problem: Problem) -> Iterator[Reason]:
+def _reasons_of_single_roles(problem: Problem) -> Iterator[Reason]:
     for role, candidates in zip(problem.roles, problem.candidates, strict=True):
         if role.maximum is not None and role.maximum < role.minimum:
             yield Contradiction(role.iri, role.minimum, role.maximum)
@@ -79,202 +79,217 @@ def _plain(problem: Problem) -> Iterator[Reason]:
             yield ValueUnknown(problem.roles[position].iri, parameter)
 
 
-class Questions:
-    """Asks which requirements can hold together, within a budget."""
+class FeasibilityOracle:
+    """Decides which constraints of a problem can hold together, within a budget for all questions."""
 
     def __init__(self, given: ReducedProblem, budget: Budget) -> None:
         self.given, self.budget = given, budget
-        self.settled = True
+        self.complete = True
         """False once a question was left open: then what remains may be reducible."""
 
-    def possible(self, force: Iterable[Constraint]) -> bool | Undecided:
-        """Whether these requirements can hold together."""
-        wanted = set(force)
+    def feasible(self, constraints: Iterable[Constraint]) -> bool | Undecided:
+        """Return whether constraints can hold together, all others being dropped."""
+        wanted = set(constraints)
         distinct = Distinct() in wanted
-        part = relaxed(self.given, wanted)
-        if part.short() is not None:
+        part = subproblem(self.given, wanted)
+        if part.wiped_out() is not None or (distinct and self._hall_set(part, wanted)):
             return False
-        if distinct:
-            required = {r.role for r in wanted if isinstance(r, Played)}
-            slots = [role for role in part.slots if role in required]
-            if shortage(slots, [[o.component for o in options] for options in part.options]):
-                return False
-        first = self.budget.part(QUESTION_STEPS) if solver_available() else self.budget
-        found = first_solution(part, first, distinct)
-        if isinstance(found, Undecided) and solver_available():
+        aided = solver_available()
+        found = first_solution(part, self.budget.part(QUESTION_STEPS) if aided else self.budget, distinct)
+        if isinstance(found, Undecided) and aided:
             with ClauseSolver(part, distinct=distinct) as clauses:
                 return clauses.solve((), self.budget)
         return found if isinstance(found, Undecided) else found is not None
 
-    def irreducible(self, together: Sequence[Constraint]) -> tuple[Constraint, ...]:
-        """Of requirements that cannot hold together, as many as still cannot, but could without any one of them."""
-        order = sorted(together, key=_rank)
-        return tuple(sorted(self._explain((), order, False), key=order.index)) if order else ()
+    def _hall_set(self, part: ReducedProblem, constraints: set[Constraint]) -> HallSet | None:
+        # Roles that need not be played could leave their slots empty, and lack nothing.
+        required = {one.role for one in constraints if isinstance(one, Played)}
+        return hall_set([role for role in part.slots if role in required], part.components())
 
-    def _explain(
+    def irreducible(self, together: Sequence[Constraint]) -> tuple[Constraint, ...]:
+        """Return some of the constraints that cannot hold together, but could without any one of them: QuickXplain."""
+        order = sorted(together, key=_preference)
+        return tuple(sorted(self._quickxplain((), order, False), key=order.index)) if order else ()
+
+    def _quickxplain(
         self, background: tuple[Constraint, ...], rest: Sequence[Constraint], changed: bool
     ) -> tuple[Constraint, ...]:
-        if changed and self._impossible(background):
+        if changed and self._infeasible(background):
             return ()
         if len(rest) == 1:
             return tuple(rest)
         half = len(rest) // 2
         first, second = tuple(rest[:half]), tuple(rest[half:])
-        of_second = self._explain((*background, *first), second, True)
-        of_first = self._explain((*background, *of_second), first, bool(of_second))
+        of_second = self._quickxplain((*background, *first), second, True)
+        of_first = self._quickxplain((*background, *of_second), first, bool(of_second))
         return (*of_first, *of_second)
 
-    def _impossible(self, together: tuple[Constraint, ...]) -> bool:
-        if not any(isinstance(r, Played) for r in together):
+    def _infeasible(self, together: tuple[Constraint, ...]) -> bool:
+        # With no role to be played, the empty assignment meets every other constraint.
+        if not any(isinstance(one, Played) for one in together):
             return False
-        answer = self.possible(together)
+        answer = self.feasible(together)
         if isinstance(answer, Undecided):
-            self.settled = False
+            self.complete = False
             return False
         return not answer
 
 
-def _rank(requirement: Constraint) -> int:
-    """QuickXplain drops what comes late: first roles, then needs, then what people think of last."""
-    return [Played, Fed, Shared, Distinct].index(type(requirement))
+def _preference(constraint: Constraint) -> int:
+    """Return how late a constraint comes: QuickXplain drops late ones if it can, and readers think of roles first."""
+    return [Played, Fed, Shared, Distinct].index(type(constraint))
 
 
-def core(questions: Questions) -> tuple[Constraint, ...]:
-    """An irreducible set of requirements that cannot hold together."""
-    given = questions.given
-    whole = pruned(given)
-    role = whole.short()
+def core(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
+    """Return an irreducible set of constraints that cannot hold together."""
+    given = oracle.given
+    role = pruned(given).wiped_out()
     if role is not None:
-        return questions.irreducible(derivation(given, role))
-    lack = shortage(given.slots, [[o.component for o in options] for options in given.options])
+        return oracle.irreducible(derivation(given, role))
+    lack = hall_set(given.slots, given.components())
     if lack is not None:
         together: tuple[Constraint, ...] = (*map(Played, lack.roles), Distinct())
-        return together if lack.wanted == lack.found + 1 else questions.irreducible(together)
+        return together if lack.wanted == lack.found + 1 else oracle.irreducible(together)
     if not solver_available():
-        return questions.irreducible(all_of(given))
-    return _clash(questions)
+        return oracle.irreducible(all_of(given))
+    return _core_by_deletion(oracle)
 
 
-def _clash(questions: Questions) -> tuple[Constraint, ...]:
-    """Assumptions that the clause-learning engine finds to clash, made irreducible by leaving out one at a time.
+def _core_by_deletion(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
+    """Return a core of the clause-learning engine, made irreducible by leaving out one constraint at a time.
 
-    All questions go to one solver, which keeps what it learned; each answer "no" names a smaller set to go on with.
+    All questions go to one solver, which keeps what it learned; each answer "no" names a smaller core to go on with.
     """
-    everything = sorted(all_of(questions.given), key=_rank)
-    with ClauseSolver(questions.given, guarded=True) as clauses:
-        left = [clauses.guards[r] for r in everything if r in clauses.guards]
+    constraints = sorted(all_of(oracle.given), key=_preference)
+    with ClauseSolver(oracle.given, guarded=True) as clauses:
+        left = [clauses.guards[one] for one in constraints if one in clauses.guards]
         needed: set[int] = set()
-        if clauses.solve(left, questions.budget) is False:
+        if clauses.solve(left, oracle.budget) is False:
             named = clauses.core()
             left = [guard for guard in left if guard in named]
         for guard in reversed(list(left)):
             if guard not in left:
                 continue
-            answer = clauses.solve([other for other in left if other != guard], questions.budget)
+            answer = clauses.solve([other for other in left if other != guard], oracle.budget)
             if answer is False:
+                # A core need not name what was found to be needed, which is in every core of what is left.
                 named = clauses.core() | needed
                 left = [other for other in left if other in named]
             else:
                 needed.add(guard)
-                questions.settled &= answer is True
-        return tuple(r for r in everything if clauses.guards.get(r) in set(left))
+                oracle.complete &= answer is True
+        remaining = set(left)
+        return tuple(one for one in constraints if clauses.guards.get(one) in remaining)
 
 
 def derivation(given: ReducedProblem, role: int) -> tuple[Constraint, ...]:
-    """The requirements by which arc consistency empties a role: back from it to what nobody gives."""
+    """Return the constraints by which arc consistency leaves a role without candidates, from it back to the causes."""
     played = list(dict.fromkeys(given.slots))
     kinds = given.kinds()
-    _, departures = consistent(kinds, len(given.needs), given.values, played)
-    before = {id(departure.kind): place for place, departure in enumerate(departures)}
-    givers: dict[int, list[InterchangeabilityClass]] = {}
+    _, removals = consistent(kinds, len(given.needs), given.values, played)
+    place_of = {id(removal.kind): place for place, removal in enumerate(removals)}
+    supporting: dict[int, list[InterchangeabilityClass]] = {}
     for kind in kinds:
-        for need in kind.gives:
-            givers.setdefault(need, []).append(kind)
+        for need in kind.supports:
+            supporting.setdefault(need, []).append(kind)
     found: dict[Constraint, None] = {Played(role): None}
-    waiting = [before[id(kind)] for kind in kinds if kind.role == role and id(kind) in before]
+    waiting = [place_of[id(kind)] for kind in kinds if kind.role == role and id(kind) in place_of]
     seen = set(waiting)
     while waiting:
         place = waiting.pop()
-        departure = departures[place]
-        if departure.need is not None:
-            found[Fed(departure.need)] = None
-            causes = givers.get(departure.need, [])
+        removal = removals[place]
+        if removal.need is not None:
+            found[Fed(removal.need)] = None
+            causes = supporting.get(removal.need, [])
         else:
-            found[Shared(departure.variable or 0)] = None
+            found[Shared(removal.variable or 0)] = None
             found.update(dict.fromkeys(map(Played, played)))
             causes = kinds
-        for kind in causes:
-            earlier = before.get(id(kind), place)
+        # What supported the need, or admitted the value, had been removed before: these removals are causes too.
+        for earlier in [place_of.get(id(kind), place) for kind in causes]:
             if earlier < place and earlier not in seen:
                 seen.add(earlier)
                 waiting.append(earlier)
     return tuple(found)
 
 
-def _worded(problem: Problem, given: ReducedProblem, found: Sequence[Constraint]) -> Reason:
-    roles = tuple(problem.roles[r.role].iri for r in found if isinstance(r, Played))
-    told = tuple(_told(problem, given, r) for r in found)
-    needs = [r for r in found if isinstance(r, Fed)]
-    shared = [r for r in found if isinstance(r, Shared)]
-    if not needs and not shared and Distinct() in found:
-        numbers = [r.role for r in found if isinstance(r, Played)]
-        everybody = {o.component for role in numbers for o in given.options[role]}
-        lack = shortage(
-            [role for role in given.slots if role in numbers],
-            [[c.profile.component for c in candidates] for candidates in problem.candidates],
+class _Wording:
+    """Puts constraints that cannot hold together into the terms of the template."""
+
+    def __init__(self, problem: Problem, given: ReducedProblem, found: Sequence[Constraint]) -> None:
+        self.problem, self.given, self.found = problem, given, found
+        self.played = [one.role for one in found if isinstance(one, Played)]
+        self.roles = tuple(problem.roles[role].iri for role in self.played)
+        self.requirements = tuple(map(self._requirement, found))
+
+    def reason(self) -> Reason:
+        """Return the reason by its kind: too few components, an input that is not fed, or else a conflict."""
+        fed, shared = (any(isinstance(one, kind) for one in self.found) for kind in (Fed, Shared))
+        distinct = Distinct() in self.found
+        if distinct and not fed and not shared:
+            return self._too_few_distinct()
+        steps = self._derivation_steps() if fed and not shared and not distinct else ()
+        if not steps:
+            parameters = tuple(one.parameter for one in self.requirements if isinstance(one, model.OneValue))
+            roles = self.roles or tuple(role.iri for role in self.problem.roles)
+            return Conflict(roles, parameters, self.requirements)
+        cause, *consequences = steps
+        return InputUnfed(
+            cause.role,
+            cause.component,
+            cause.input,
+            cause.signal,
+            cause.sources,
+            self.requirements,
+            tuple(consequences),
+            cause.optional,
         )
-        found_number = len(everybody) if lack is None else lack.found
-        return TooFewDistinct(roles, sum(problem.roles[r].minimum for r in numbers), found_number)
-    if needs and not shared and Distinct() not in found:
-        steps = list(_steps(problem, given, found))
-        if steps:
-            first = steps[0]
-            return InputUnfed(
-                first.role,
-                first.component,
-                first.input,
-                first.signal,
-                first.sources,
-                told,
-                tuple(steps[1:]),
-                first.optional,
-            )
-    return Conflict(roles or tuple(role.iri for role in problem.roles), _parameters(told), told)
 
+    def _too_few_distinct(self) -> TooFewDistinct:
+        # Counted among all candidates, of which the reduced problem has only those that can matter.
+        lack = hall_set(
+            [role for role in self.given.slots if role in self.played],
+            [[c.profile.component for c in candidates] for candidates in self.problem.candidates],
+        )
+        among_options = {o.component for role in self.played for o in self.given.options[role]}
+        wanted = sum(self.problem.roles[role].minimum for role in self.played)
+        return TooFewDistinct(self.roles, wanted, len(among_options) if lack is None else lack.found)
 
-def _parameters(told: Iterable[model.Requirement]) -> tuple[str, ...]:
-    return tuple(r.parameter for r in told if isinstance(r, model.OneValue))
+    def _derivation_steps(self) -> Sequence[DerivationStep]:
+        """Return the derivation with these constraints alone, if arc consistency makes one from needs alone."""
+        part = subproblem(self.given, set(self.found))
+        if part.wiped_out() is None or any(removal.need is None for removal in part.removals):
+            return ()
+        removed: dict[tuple[int, int], list[InterchangeabilityClass]] = {}
+        for removal in part.removals:
+            removed.setdefault((removal.kind.role, removal.need or 0), []).append(removal.kind)
+        return [self._step(role, need, kinds) for (role, need), kinds in removed.items()]
 
-
-def _steps(problem: Problem, given: ReducedProblem, found: Sequence[Constraint]) -> Iterator[DerivationStep]:
-    """The derivation with these requirements alone, if arc consistency makes one: who leaves, and why."""
-    part = relaxed(given, set(found))
-    if part.short() is None or any(departure.need is None for departure in part.departures):
-        return
-    leaving: dict[tuple[int, int], list[InterchangeabilityClass]] = {}
-    for departure in part.departures:
-        leaving.setdefault((departure.kind.role, departure.need or 0), []).append(departure.kind)
-    for (role, number), kinds in leaving.items():
-        need = given.needs[number]
+    def _step(self, role: int, number: int, kinds: Sequence[InterchangeabilityClass]) -> DerivationStep:
+        """Return the step by which classes of a role are removed, as a need of theirs has no support."""
+        problem, need = self.problem, self.given.needs[number]
         profile = problem.candidates[role][min(kind.number for kind in kinds)].profile
-        wanting = [name for name, signal in profile.inputs if signal == need.signal]
-        unfed = next(name for name in wanting if problem.feeding(role, name) == need.sources)
+        unfed = next(
+            name
+            for name, signal in profile.inputs
+            if signal == need.signal and problem.feeding(role, name) == need.sources
+        )
         feeding = [problem.roles[source] for source in dict.fromkeys(source for source, _ in need.sources)]
         sources = tuple(feeder.iri for feeder in feeding)
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
-        same = {like for kind in kinds for like in kind.likes}
-        more = sum(map(same.__contains__, map(likeness, problem.candidates[role]))) - 1
-        yield DerivationStep(problem.roles[role].iri, profile.component, more, unfed, need.signal, sources, optional)
+        signatures = {one for kind in kinds for one in kind.signatures}
+        others = sum(map(signatures.__contains__, map(signature, problem.candidates[role]))) - 1
+        return DerivationStep(problem.roles[role].iri, profile.component, others, unfed, need.signal, sources, optional)
 
-
-def _told(problem: Problem, given: ReducedProblem, requirement: Constraint) -> model.Requirement:
-    """A requirement in the words of the template."""
-    if isinstance(requirement, Played):
-        return model.RolePlayed(problem.roles[requirement.role].iri)
-    if isinstance(requirement, Fed):
-        need = given.needs[requirement.need]
-        return model.InputFed(problem.roles[need.role].iri, need.signal, need.input)
-    if isinstance(requirement, Shared):
-        names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
-        return model.OneValue(names[problem.variables[requirement.variable].parameter])
-    return model.OneRoleEach()
+    def _requirement(self, constraint: Constraint) -> model.Requirement:
+        """Return a constraint in the words of the template."""
+        problem = self.problem
+        if isinstance(constraint, Played):
+            return model.RolePlayed(problem.roles[constraint.role].iri)
+        if isinstance(constraint, Fed):
+            need = self.given.needs[constraint.need]
+            return model.InputFed(problem.roles[need.role].iri, need.signal, need.input)
+        if isinstance(constraint, Shared):
+            names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
+            return model.OneValue(names[problem.variables[constraint.variable].parameter])
+        return model.OneRoleEach()

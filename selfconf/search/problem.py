@@ -3,11 +3,12 @@
 *Given* roles in their order, for each role its candidates in theirs, and the interactions between roles; *wanted*
 as many distinct components per role as it asks for at least, so that every input of every component is matched by
 an output of a component that plays a role feeding it (component mutual compatibility rule, section 2.3 of the
-paper), and so that the free parameters have a value that everybody allows.
+paper), and so that each free parameter has a value that all of the components admit.
 
-*Slots.* A role that asks for at least k components has k slots; a solution fills every slot. Solutions are compared
-slot by slot, in the order of the roles and, within a slot, of the candidates; the answer is the least of them. It
-is unique, so that no strategy can change it: it can only take longer.
+*Slots.* A role that asks for at least k components has k slots, which are the variables of a constraint satisfaction
+problem, the candidates being their values; a solution fills every slot. Solutions are compared slot by slot, in the
+order of the roles and, within a slot, of the candidates; the answer is the least of them. It is unique, so that no
+strategy can change it: it can only take longer.
 
 *Extension.* A least solution is then extended: as long as there is a candidate that fits, the first one (in the
 order of the roles, then of the candidates) is added, up to the role's maximum. It fits if it plays no role yet, each
@@ -24,7 +25,7 @@ from selfconf.model.configuration import Assignment, Configuration, Connection, 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.model.profile import Input, Output, Profile
-from selfconf.model.template import Interaction, Role, Task
+from selfconf.model.template import Role, Task
 from selfconf.model.term import IRI, Term
 
 Playing = Sequence[Sequence[Candidate]]
@@ -44,7 +45,7 @@ class Link(NamedTuple):
 
 
 class Problem:
-    """A task, its partition and the hierarchy under which signals match; never changed once made."""
+    """A task, its partition and the hierarchy under which signals match; not changed once made."""
 
     def __init__(self, task: Task, partition: Partition, hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
         self.task, self.partition, self.hierarchy = task, partition, hierarchy
@@ -56,7 +57,7 @@ class Problem:
         fed: list[list[int]] = [[] for _ in self.roles]
         for interaction in task.template.interactions:
             source, sink = index[interaction.source], index[interaction.sink]
-            feeding[sink].append(_link(interaction, source))
+            feeding[sink].append(Link(source, interaction.output, interaction.input))
             if sink not in fed[source]:
                 fed[source].append(sink)
         self.links: tuple[tuple[Link, ...], ...] = tuple(map(tuple, feeding))
@@ -68,7 +69,7 @@ class Problem:
         )
         """For each role, the roles that feed it."""
         self.open_values: tuple[int, ...] = tuple(self._open(variable) for variable in self.variables)
-        """What each variable may be before anybody plays.
+        """The values that each variable may have before any slot is filled, as a mask.
 
         A parameter that is also set needs a value of the domain, as does one that lists its values.
         """
@@ -77,7 +78,7 @@ class Problem:
     def unvalued(self) -> tuple[tuple[int, str], ...]:
         """The roles that set something to a parameter that has no value and can get none, with its name.
 
-        Nobody can play them.
+        No component can play them.
         """
         known = {*self.task.bindings, *(variable.parameter for variable in self.variables)}
         names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}
@@ -90,7 +91,7 @@ class Problem:
 
     @property
     def valueless(self) -> bool:
-        """Whether a role that somebody has to play sets something to a parameter that can get no value."""
+        """Whether a role that has to be played sets something to a parameter that can get no value."""
         return any(self.roles[position].minimum for position, _ in self.unvalued)
 
     def _open(self, variable: Variable) -> int:
@@ -98,12 +99,12 @@ class Problem:
         return (1 << len(variable.domain)) - 1 if is_set or variable.listed else ANY_VALUE
 
     def feeding(self, role: int, name: str | None) -> Sources:
-        """What may feed an input of a role, by its name; None stands for one that no interaction names."""
+        """Return what may feed an input of a role, by its name; None stands for one that no interaction names."""
         some = [(source, output) for source, output, wanted in self.links[role] if wanted in (None, name)]
         return tuple(dict.fromkeys(some))
 
     def matches(self, output: Output, link: Link, wanted: Input) -> bool:
-        """Whether an output feeds an input along a link: the names, where given, and the signal types."""
+        """Return whether an output feeds an input along a link, by the names, where given, and the signal types."""
         return (
             (link.output is None or link.output == output.name)
             and (link.input is None or link.input == wanted.name)
@@ -111,7 +112,7 @@ class Problem:
         )
 
     def feeders(self, role: int, wanted: Input, playing: Playing) -> Iterator[tuple[Profile, Output]]:
-        """Who feeds an input of a component that plays `role`, and from which output."""
+        """Yield the profiles, with their outputs, that feed an input of a component that plays a role."""
         for link in self.links[role]:
             for candidate in playing[link.source]:
                 for output in candidate.profile.outputs:
@@ -119,7 +120,7 @@ class Problem:
                         yield candidate.profile, output
 
     def compatible(self, role: int, profile: Profile, playing: Playing) -> bool:
-        """The component mutual compatibility rule: each input of the sink is matched by an output of a source."""
+        """Return whether each input of a sink is matched by an output of a source: the mutual compatibility rule."""
         if not profile.inputs:
             return True
         lacking: dict[IRI, list[str]] = {}
@@ -131,25 +132,21 @@ class Problem:
                 for name, offered, _ in candidate.profile.outputs:
                     if output is None or output == name:
                         for signal in (offered,) if flat else above(offered):
-                            if signal not in lacking:
-                                continue
-                            if only is not None and lacking[signal] != [only]:
-                                lacking[signal] = [other for other in lacking[signal] if other != only]
-                            else:
-                                del lacking[signal]
+                            if signal in lacking:
+                                _strike_out(lacking, signal, only)
                 if not lacking:
                     return True
         return False
 
     def narrowed(self, values: tuple[int, ...], candidate: Candidate) -> tuple[int, ...] | None:
-        """What the variables may still be once a candidate plays too, or None if some variable has no value left."""
+        """Return the values left to the variables once a candidate plays too; None if some variable has none left."""
         narrowed = tuple([value & allowed for value, allowed in zip(values, candidate.admits, strict=True)])
         return None if 0 in narrowed else narrowed
 
     def solved(self, playing: Playing, running: Configuration | None = None) -> Configuration:
-        """The configuration that a solution stands for, extended by every further candidate that fits.
+        """Return the configuration that a solution stands for, extended by every further candidate that fits.
 
-        With a running configuration, what runs and plays the same role there is tried before all others.
+        With a running configuration, components that play the same role there are tried before all others.
         """
         extended = [list(role) for role in playing]
         values = self.open_values
@@ -166,79 +163,49 @@ class Problem:
         return self.configuration(extended, self._extend(extended, values, self.candidates))
 
     def _extend(self, playing: list[list[Candidate]], values: tuple[int, ...], candidates: Playing) -> tuple[int, ...]:
-        """Add every one of some candidates that fits, the first one first; returns what the variables may be then.
-
-        Who is taken or allows no value left never fits later; who is unfed may, once a role that feeds his gets
-        outputs that it did not have: he waits for that. So nearly every candidate is looked at once.
-        """
+        """Add every one of some candidates that fits, the first one first; return the values left to the variables."""
         closed = {position for position, _ in self.unvalued}
         open_roles = [
             p
             for p, role in enumerate(self.roles)
             if p not in closed and (role.maximum is None or len(playing[p]) < role.maximum)
         ]
-        if not open_roles:
-            return values
-        taken = {candidate.profile.component for role in playing for candidate in role}
-        offered = [{candidate.profile.outputs for candidate in role} for role in playing]
-        trying = [(p, index) for p in open_roles for index in range(len(candidates[p]))]
-        waiting: dict[int, list[tuple[int, int]]] = {}
-        unfed: dict[int, set[tuple[tuple[Input, ...], tuple[Output, ...]]]] = {}
-        while trying:
-            position, index = heappop(trying)
-            candidate, maximum = candidates[position][index], self.roles[position].maximum
-            profile = candidate.profile
-            if profile.component in taken or (maximum is not None and len(playing[position]) >= maximum):
-                continue
-            narrowed = self.narrowed(values, candidate)
-            if narrowed is None:
-                continue
-            ports = profile.inputs, profile.outputs
-            playing[position].append(candidate)
-            if ports in unfed.get(position, ()) or not self.compatible(position, profile, playing):
-                playing[position].pop()
-                waiting.setdefault(position, []).append((position, index))
-                unfed.setdefault(position, set()).add(ports)
-                continue
-            values = narrowed
-            taken.add(profile.component)
-            if profile.outputs not in offered[position]:
-                offered[position].add(profile.outputs)
-                for sink in self.sinks[position]:
-                    unfed.pop(sink, None)
-                    for one in waiting.pop(sink, ()):
-                        heappush(trying, one)
-        return values
+        return _Extension(self, playing, values, candidates).over(open_roles) if open_roles else values
 
     def configuration(self, playing: Playing, values: tuple[int, ...]) -> Configuration:
-        """<B, S>: S is every matching pair of ports along the interactions."""
-        template = self.task.template
-        names = {parameter.iri: parameter.name for parameter in template.parameters}
+        """Return <B, S> for candidates that play the roles: S is every matching pair of ports of an interaction."""
+        bindings = self._bindings(values)
+        return Configuration(
+            template=self.task.template.iri,
+            assignments=tuple(
+                Assignment(role.iri, tuple(candidate.profile.component for candidate in chosen))
+                for role, chosen in zip(self.roles, playing, strict=True)
+            ),
+            connections=self._connections(playing),
+            settings=tuple(self._settings(playing, bindings)),
+            bindings=dict(sorted(bindings.items())),
+        )
+
+    def _bindings(self, values: tuple[int, ...]) -> dict[str, Term]:
+        """Return the values of the parameters by name: those bound, and for each free one the first that is left."""
         bindings = self.task.by_name()
+        names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}
         for variable, mask in zip(self.variables, values, strict=True):
             value = variable.first(mask)
             if value is not None:
                 bindings[names[variable.parameter]] = value
-        connections = [
+        return bindings
+
+    def _connections(self, playing: Playing) -> tuple[Connection, ...]:
+        connections = {
             Connection(source.component, output.name, candidate.profile.component, wanted.name)
             for position, role in enumerate(playing)
             for candidate in role
             for wanted in candidate.profile.inputs
             for source, output in self.feeders(position, wanted, playing)
-        ]
+        }
         order = {c.profile.component: place for place, c in enumerate(c for role in playing for c in role)}
-        return Configuration(
-            template=template.iri,
-            assignments=tuple(
-                Assignment(role.iri, tuple(candidate.profile.component for candidate in chosen))
-                for role, chosen in zip(self.roles, playing, strict=True)
-            ),
-            connections=tuple(
-                sorted(set(connections), key=lambda c: (order[c.source], c.output, order[c.sink], c.input))
-            ),
-            settings=tuple(self._settings(playing, bindings)),
-            bindings=dict(sorted(bindings.items())),
-        )
+        return tuple(sorted(connections, key=lambda c: (order[c.source], c.output, order[c.sink], c.input)))
 
     def _settings(self, playing: Playing, bindings: Mapping[str, Term]) -> Iterator[ParameterSetting]:
         names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}
@@ -253,5 +220,74 @@ class Problem:
                             yield ParameterSetting(candidate.profile.component, parameter.name, value)
 
 
-def _link(interaction: Interaction, source: int) -> Link:
-    return Link(source, interaction.output, interaction.input)
+def _strike_out(lacking: dict[IRI, list[str]], signal: IRI, only: str | None) -> None:
+    """Take away the inputs of a signal that are fed: all of them, or the only one that the interaction names."""
+    if only is not None and lacking[signal] != [only]:
+        lacking[signal] = [other for other in lacking[signal] if other != only]
+    else:
+        del lacking[signal]
+
+
+class _Extension:
+    """Adds further candidates to what plays already, each as soon as it fits.
+
+    A candidate that is taken or admits no value left never fits later. One that is unfed may, once a role that feeds
+    its own gets outputs that it did not have: it waits for that. So nearly every candidate is looked at once.
+    """
+
+    def __init__(
+        self, problem: Problem, playing: list[list[Candidate]], values: tuple[int, ...], candidates: Playing
+    ) -> None:
+        self.problem, self.playing, self.values, self.candidates = problem, playing, values, candidates
+        self.taken = {candidate.profile.component for role in playing for candidate in role}
+        self.offered = [{candidate.profile.outputs for candidate in role} for role in playing]
+        self.trying: list[tuple[int, int]] = []
+        """Roles and numbers of candidates, as a heap: the first one is tried next."""
+        self.waiting: dict[int, list[tuple[int, int]]] = {}
+        """For each role the candidates that wait to be fed."""
+        self.unfed: dict[int, set[tuple[tuple[Input, ...], tuple[Output, ...]]]] = {}
+        """For each role the ports with which a candidate waits: another one with these need not be tried."""
+
+    def over(self, roles: Sequence[int]) -> tuple[int, ...]:
+        """Extend what plays the roles, and return the values left to the variables."""
+        # Ascending pairs are a heap already.
+        self.trying = [(role, number) for role in roles for number in range(len(self.candidates[role]))]
+        while self.trying:
+            role, number = heappop(self.trying)
+            candidate, maximum = self.candidates[role][number], self.problem.roles[role].maximum
+            if candidate.profile.component in self.taken or (
+                maximum is not None and len(self.playing[role]) >= maximum
+            ):
+                continue
+            narrowed = self.problem.narrowed(self.values, candidate)
+            if narrowed is None:
+                continue
+            if not self._added(role, candidate):
+                self.waiting.setdefault(role, []).append((role, number))
+                continue
+            self.values = narrowed
+            self.taken.add(candidate.profile.component)
+            if candidate.profile.outputs not in self.offered[role]:
+                self.offered[role].add(candidate.profile.outputs)
+                self._wake_sinks(role)
+        return self.values
+
+    def _added(self, role: int, candidate: Candidate) -> bool:
+        """Let a candidate play a role, if each of its inputs is then matched, perhaps by an output of its own."""
+        profile = candidate.profile
+        ports = profile.inputs, profile.outputs
+        if ports in self.unfed.get(role, ()):
+            return False
+        self.playing[role].append(candidate)
+        if self.problem.compatible(role, profile, self.playing):
+            return True
+        self.playing[role].pop()
+        self.unfed.setdefault(role, set()).add(ports)
+        return False
+
+    def _wake_sinks(self, role: int) -> None:
+        """Try again what waits in the roles that a role feeds."""
+        for sink in self.problem.sinks[role]:
+            self.unfed.pop(sink, None)
+            for one in self.waiting.pop(sink, ()):
+                heappush(self.trying, one)

@@ -91,9 +91,8 @@ def nearest(problem: Problem, running: Configuration, steps: int | None = None) 
             search.meet(found)
             budget = Budget(steps)
             found = search.by_clauses(budget)
-        if not budget.steps:
+        if found is None or not budget.steps:
             found = search.nearest_of(found, problem.solved(playing, running), search.incumbent)
-    assert found is not None  # a solution exists, and only a budget that ended keeps the engines from one
     return Reconfiguration(found, *preserved(found, running), proved=bool(budget.steps))
 
 
@@ -139,9 +138,10 @@ class _NearestSearch:
             self._score, self.incumbent = score, configuration
         return score
 
-    def nearest_of(self, *configurations: Configuration | None) -> Configuration | None:
-        """Return the nearest of some configurations, of equals the first one."""
-        return max(configurations, key=lambda one: (-1, -1) if one is None else preserved(one, self.running))
+    def nearest_of(self, *configurations: Configuration | None) -> Configuration:
+        """Return the nearest of some configurations, at least one of which is there; of equals the first one."""
+        met = [configuration for configuration in configurations if configuration is not None]
+        return max(met, key=lambda configuration: preserved(configuration, self.running))
 
     def with_fewest_losses(self, budget: Budget) -> Configuration | None:
         """Return the best configuration with the fewest losses, one at least; None if the budget ends before."""
@@ -170,12 +170,11 @@ class _NearestSearch:
 
         When the budget ends before the proof, the answer is the best that the solver has met.
         """
-        problem = self.problem
-        # A component that runs may be the only one to keep a connection, so that it is no match for one of its class.
-        with ClauseSolver(pruned(reduced(problem, self.available))) as clauses:
+        # A component that runs may be the only one to keep a connection: it is distinguished from those of its class.
+        with ClauseSolver(pruned(reduced(self.problem, self.available))) as clauses:
             plays = {
                 (role, option.number): literal
-                for role, options in enumerate(clauses.compact.options)
+                for role, options in enumerate(clauses.reduced.options)
                 for option, literal in zip(options, clauses.plays[role], strict=True)
             }
             stays = {(role, number) for role, some in enumerate(self.eligible) for number, _ in some}
@@ -183,22 +182,27 @@ class _NearestSearch:
             clauses.prefer(keeping)
             if clauses.solve((), budget) is not True:
                 return None
-            connecting = [
-                self._connection_literal(clauses, plays, connection) for connection in self.running.connections
-            ]
-            proved = (
-                clauses.maximise(keeping, budget)
-                # A model of the connections' literals is needed before they can be counted: hence the call in between.
-                and clauses.solve((), budget) is True
-                and clauses.maximise([literal for literal in connecting if literal], budget)
-            )
+            proved = self._maximised(clauses, plays, keeping, budget)
             # With a budget of its own: what was maximised is not thrown away for want of the steps to name the first.
             chosen = clauses.least(Budget(max(LEAST_STEPS, budget.steps or 0)))
-            if not proved or isinstance(chosen, Undecided):
+            if isinstance(chosen, Undecided):
+                chosen, proved = clauses.chosen(), False
+            if not proved:
                 budget.steps = 0
-            return problem.solved(
-                assigned(problem, clauses.chosen() if isinstance(chosen, Undecided) else chosen), self.running
-            )
+            return self.problem.solved(assigned(self.problem, chosen), self.running)
+
+    def _maximised(
+        self, clauses: ClauseSolver, plays: dict[tuple[int, int], int], keeping: list[int], budget: Budget
+    ) -> bool:
+        """Keep the most components, and then the most connections; return whether that is proved."""
+        literals = [self._connection_literal(clauses, plays, connection) for connection in self.running.connections]
+        connecting = [literal for literal in literals if literal]
+        return (
+            clauses.maximise(keeping, budget)
+            # A model of the connections' literals is needed before they can be counted: hence the call in between.
+            and clauses.solve((), budget) is True
+            and clauses.maximise(connecting, budget)
+        )
 
     def _connection_literal(
         self, clauses: ClauseSolver, plays: dict[tuple[int, int], int], connection: Connection

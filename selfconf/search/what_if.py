@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
 from selfconf.search import reconfigure
 from selfconf.search.problem import Problem
 
@@ -16,21 +17,23 @@ def consequences(
     running: Configuration,
     search: Callable[[Problem, Configuration], Configuration | Refusal] = reconfigure.nearest_configuration,
 ) -> Iterator[Consequence]:
-    """The loss of each component of a configuration by itself, in the order of the roles."""
+    """Yield what the loss of each component of a configuration would bring, one by one, in the order of the roles."""
     for assignment in running.assignments:
         for component in assignment.components:
             left = Problem(problem.task, problem.partition.without(frozenset((component,))), problem.hierarchy)
-            after = search(left, running)
-            if isinstance(after, Refusal):
-                yield Consequence(component, assignment.role, after)
-            else:
-                before, now = running.components, after.components
-                playing = [(one, new.role) for new in after.assignments for one in new.components]
-                yield Consequence(
-                    component,
-                    assignment.role,
-                    after,
-                    tuple(one for one in now if one not in before),
-                    tuple(one for one in before if one not in now and one != component),
-                    tuple((one, role) for one, role in playing if one in before and running.role_of(one) != role),
-                )
+            yield _consequence(component, assignment.role, running, search(left, running))
+
+
+def _consequence(component: IRI, role: IRI, running: Configuration, after: Configuration | Refusal) -> Consequence:
+    if isinstance(after, Refusal):
+        return Consequence(component, role, after)
+    before, now = running.components, after.components
+    playing = [(one, assignment.role) for assignment in after.assignments for one in assignment.components]
+    return Consequence(
+        component,
+        role,
+        after,
+        started=tuple(one for one in now if one not in before),
+        stopped=tuple(one for one in before if one not in now and one != component),
+        moved=tuple((one, new) for one, new in playing if one in before and running.role_of(one) != new),
+    )

@@ -73,7 +73,7 @@ class Site:
         self.processes.start(advertisement.profile)
 
     def _read_shelf(self) -> list[_ServedAdvertisement]:
-        """What is replied, made once for all who ask."""
+        """What is replied, made once for all questions."""
         return [
             _ServedAdvertisement(
                 self.keys.advertisement(self.name, component),

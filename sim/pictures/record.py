@@ -6,8 +6,11 @@ import math
 from bisect import bisect_right
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sim.geometry import wrap
-from sim.pictures.arrays import Bytes
+from sim.pictures.colours import SOURCES
 from sim.pictures.wiring import Wiring
 
 
@@ -42,13 +45,13 @@ class Failure:
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
+class CameraImage:
     """An image (h, w, 3) of bytes that a camera took, and the lines of text that belong under it.
 
     `lost` says that the tracker did not find the robot in it.
     """
 
-    image: Bytes
+    image: NDArray[np.uint8]
     time: float
     caption: str = ""
     lost: bool = False
@@ -65,7 +68,7 @@ class RunRecord:
     supplies: tuple[Supply, ...] = ()
     failures: tuple[Failure, ...] = ()
     goal: tuple[float, float] | None = None
-    sights: tuple[Sight, ...] = ()
+    sights: tuple[CameraImage, ...] = ()
     wirings: tuple[Wiring, ...] = ()
     title: str = "A run"
     subtitle: str = ""
@@ -91,6 +94,10 @@ class RunRecord:
     def sources(self) -> tuple[str, ...]:
         """The components that supplied the pose, in the order in which they first did."""
         return tuple(dict.fromkeys(supply.component for supply in self.supplies))
+
+    def colours(self) -> dict[str, str]:
+        """Return the colour of each component that supplied the pose."""
+        return {source: SOURCES[k % len(SOURCES)] for k, source in enumerate(self.sources)}
 
     def at(self, time: float) -> Sample:
         """Return where the robot was at a time, between two samples on a straight line."""

@@ -3,47 +3,26 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from sim.astrid import PLATE_HEIGHT, SONAR_ANGLES, SONAR_HEIGHT, SONAR_RING, TRACK, WHEEL_RADIUS
-from sim.pictures.matter import Matter
-from sim.pictures.record import Sample
-from sim.pictures.solids import Solid, ball, box, cone, upright
+from sim.pictures.mesh import Material, Solid, ball, box, cone, upright
 
-RED = Matter("#c8262b", gloss=0.5)
-BLACK = Matter("#1d1f24", gloss=0.35)
-RUBBER = Matter("#26282d")
-METAL = Matter("#aab0ba", gloss=0.6)
-GOLD = Matter("#c9a24a", gloss=0.5)
-MAGENTA = Matter("#ff00ff", glow=0.5)
-CYAN = Matter("#00ffff", glow=0.5)
+RED = Material("#c8262b", gloss=0.5)
+BLACK = Material("#1d1f24", gloss=0.35)
+RUBBER = Material("#26282d")
+METAL = Material("#aab0ba", gloss=0.6)
+GOLD = Material("#c9a24a", gloss=0.5)
+MAGENTA = Material("#ff00ff")
+CYAN = Material("#00ffff")
 
 SIDEWAYS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Axes of a round solid that lies on its side, along y."""
 
 
-def robot(at: Sample) -> list[Solid]:
-    """Return Astrid's solids where she stands."""
-    turn = upright(at.theta)
-    placed = []
-    for solid in _solids():
-        x, y, z = turn.T @ np.asarray(solid.centre) + (at.x, at.y, 0.0)
-        placed.append(replace(solid, centre=(float(x), float(y), float(z)), turn=solid.turn @ turn))
-    return placed
-
-
-def shade(at: Sample) -> list[Solid]:
-    """Return the few solids that stand for Astrid where only her rough shape matters: in the light of the sky."""
-    return [
-        cone(BLACK, (at.x, at.y, 0.04), 0.26, 0.19, 0.19),
-        cone(BLACK, (at.x, at.y, 0.30), 0.64, 0.07, 0.07),
-        cone(BLACK, (at.x, at.y, 0.94), 0.15, 0.15, 0.15),
-    ]
-
-
-def _solids() -> list[Solid]:
+def robot() -> list[Solid]:
+    """Return Astrid's solids, where she stands at the origin and faces along x."""
     solids: list[Solid] = [
         cone(BLACK, (0, 0, 0.045), 0.035, 0.150, 0.172),
         cone(RED, (0, 0, 0.080), 0.155, 0.186, 0.200),

@@ -6,24 +6,16 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Port:
-    """An input or output of a component: its name and the type of its signal, in words fit for a label."""
-
-    name: str
-    signal: str = ""
-
-
-@dataclass(frozen=True)
 class Part:
-    """A component in a configuration: its name, the role it plays, its ports, and how it fares.
+    """A component in a configuration: its name, the role it plays, the names of its ports, and how it fares.
 
     `failed` marks a component that raised FAIL and left; `fresh` one that has just taken its place.
     """
 
     name: str
     role: str = ""
-    inputs: tuple[Port, ...] = ()
-    outputs: tuple[Port, ...] = ()
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
     failed: bool = False
     fresh: bool = False
 
@@ -51,8 +43,8 @@ class Wiring:
         names = [part.name for part in self.parts]
         if len(set(names)) < len(names):
             raise ValueError(f"a component is named twice in {self.title!r}")
-        outputs = {(part.name, port.name) for part in self.parts for port in part.outputs}
-        inputs = {(part.name, port.name) for part in self.parts for port in part.inputs}
+        outputs = {(part.name, port) for part in self.parts for port in part.outputs}
+        inputs = {(part.name, port) for part in self.parts for port in part.inputs}
         for link in self.links:
             if (link.source, link.output) not in outputs or (link.sink, link.input) not in inputs:
                 raise ValueError(f"{link} joins ports that the parts of {self.title!r} do not have")

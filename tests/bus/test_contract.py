@@ -87,7 +87,7 @@ def test_nothing_is_heard_once_a_subscription_is_undone_not_even_what_was_on_the
     assert not heard
 
 
-def test_a_publisher_is_told_when_there_begins_to_be_a_subscriber_and_when_there_is_none_again(
+def test_a_publisher_notices_when_there_begins_to_be_a_subscriber_and_when_there_is_none_again(
     net: Net, top: str
 ) -> None:
     one, two, three = net.node(), net.node(), net.node()
@@ -106,7 +106,7 @@ def test_a_publisher_is_told_when_there_begins_to_be_a_subscriber_and_when_there
     assert net.until(lambda: matches == [True, False])
 
 
-def test_a_publisher_that_comes_late_is_told_of_the_subscriber_there_is(net: Net, top: str) -> None:
+def test_a_publisher_that_comes_late_notices_the_subscriber_there_is(net: Net, top: str) -> None:
     one, two = net.node(), net.node()
     two.subscribe(f"{top}/pose", lambda _: None)
     net.settle()
@@ -115,7 +115,7 @@ def test_a_publisher_that_comes_late_is_told_of_the_subscriber_there_is(net: Net
     assert net.until(lambda: matches == [True])
 
 
-def test_a_publisher_is_told_when_its_last_subscriber_dies(net: Net, top: str) -> None:
+def test_a_publisher_notices_when_its_last_subscriber_dies(net: Net, top: str) -> None:
     one, two = net.node(), net.node()
     matches: list[bool] = []
     two.subscribe(f"{top}/pose", lambda _: None)
@@ -125,7 +125,7 @@ def test_a_publisher_is_told_when_its_last_subscriber_dies(net: Net, top: str) -
     assert net.until(lambda: matches == [True, False])
 
 
-def test_a_latched_signal_reaches_who_comes_late(net: Net, top: str) -> None:
+def test_a_latched_signal_reaches_a_subscriber_that_comes_late(net: Net, top: str) -> None:
     one, two = net.node(), net.node()
 
     def matched(matching: bool) -> None:
@@ -155,7 +155,7 @@ def test_samples_may_be_put_from_any_thread(net: Net, top: str) -> None:
 # Questions.
 
 
-def test_a_question_that_nobody_serves_ends_at_once_with_nothing(net: Net, top: str) -> None:
+def test_a_question_without_a_queryable_ends_at_once_with_nothing(net: Net, top: str) -> None:
     node = net.node()
     replies: list[Replies] = []
     began = node.now()
@@ -180,7 +180,7 @@ def test_a_question_is_answered_with_what_came_along(net: Net, top: str) -> None
     assert replies == [Replies((Sample(f"{top}/@ctl/state", b"got it", b"page"),))]
 
 
-def test_a_question_reaches_all_who_serve_it_and_ends_with_the_last(net: Net, top: str) -> None:
+def test_a_question_reaches_all_queryables_and_ends_with_the_last(net: Net, top: str) -> None:
     asking = net.node()
     waiting: list[Request] = []
     for name in ("a", "b", "c"):
@@ -236,7 +236,7 @@ def test_a_refusal_is_heard_with_its_reason(net: Net, top: str) -> None:
     assert replies == [Replies((), ("not today",), True)]
 
 
-def test_who_never_finishes_is_not_waited_for_longer_than_asked(net: Net, top: str) -> None:
+def test_a_queryable_that_never_finishes_is_not_waited_for_longer_than_asked(net: Net, top: str) -> None:
     asking, quick, stuck = net.node(), net.node(), net.node()
     kept: list[Request] = []
 
@@ -278,7 +278,7 @@ def test_an_answer_may_come_after_a_while_and_finishing_twice_does_nothing(net: 
     assert payloads(list(replies[0].samples)) == [b"at last"]
 
 
-def test_who_has_undone_serving_is_not_asked(net: Net, top: str) -> None:
+def test_a_queryable_that_was_undone_is_not_asked(net: Net, top: str) -> None:
     one, two = net.node(), net.node()
     asked: list[Request] = []
     undo = two.serve(f"{top}/a", asked.append)
@@ -306,7 +306,7 @@ def test_a_broad_question_does_not_reach_a_control_call(net: Net, top: str) -> N
 # Lives.
 
 
-def test_a_watcher_hears_who_lives_already_who_comes_and_who_goes(net: Net, top: str) -> None:
+def test_a_watch_shows_lives_that_are_there_that_begin_and_that_end(net: Net, top: str) -> None:
     one, two, watching = net.node(), net.node(), net.node()
     undo = one.announce(f"{top}/c/a/live/1")
     net.settle()
@@ -337,7 +337,7 @@ def test_a_watch_that_is_undone_hears_no_more(net: Net, top: str) -> None:
     assert not heard
 
 
-def test_a_watch_undone_inside_a_callback_is_not_told_of_what_was_on_the_way(net: Net, top: str) -> None:
+def test_a_watch_undone_inside_a_callback_receives_nothing_of_what_was_on_the_way(net: Net, top: str) -> None:
     one, two = net.node(), net.node()
     heard: list[str] = []
 
@@ -354,7 +354,7 @@ def test_a_watch_undone_inside_a_callback_is_not_told_of_what_was_on_the_way(net
     assert len(undos) == 5
 
 
-def test_a_roll_call_names_exactly_those_who_live(net: Net, top: str) -> None:
+def test_a_roll_call_names_exactly_the_lives_there_are(net: Net, top: str) -> None:
     one, two, asking = net.node(), net.node(), net.node()
     one.announce(f"{top}/live/b")
     undo = one.announce(f"{top}/live/c")
@@ -368,7 +368,7 @@ def test_a_roll_call_names_exactly_those_who_live(net: Net, top: str) -> None:
     assert called == [(f"{top}/live/a", f"{top}/live/b")]
 
 
-def test_a_roll_call_where_nobody_lives_is_empty(net: Net, top: str) -> None:
+def test_a_roll_call_without_lives_is_empty(net: Net, top: str) -> None:
     called: list[tuple[str, ...]] = []
     net.node().roll_call(f"{top}/live/*", 3.0, called.append)
     assert net.until(lambda: called == [()])

@@ -17,7 +17,7 @@ def test_polling_with_nothing_to_say_returns_at_once() -> None:
     assert loop.now() - began < 0.5
 
 
-def test_polling_waits_no_longer_than_it_is_told() -> None:
+def test_polling_waits_no_longer_than_asked() -> None:
     loop = Loop()
     began = loop.now()
     loop.poll(0.03)
@@ -48,7 +48,7 @@ def test_polling_waits_for_a_timer_that_is_due_before_the_deadline() -> None:
     assert said == ["timer"]
 
 
-def test_a_timer_that_was_undone_is_not_waited_for_longer_than_told() -> None:
+def test_a_timer_that_was_undone_is_not_waited_for() -> None:
     loop = Loop()
     loop.later(0.01, lambda: None)()
     began = loop.now()

@@ -123,7 +123,7 @@ def test_nodes_that_are_cut_off_hear_nothing_of_each_other_and_see_each_other_di
     assert matches == [True, False, True]
 
 
-def test_a_node_that_reaches_nobody_knows_that_it_is_cut_off() -> None:
+def test_a_node_that_reaches_no_other_knows_that_it_is_cut_off() -> None:
     network = Network()
     one, two = network.node(), network.node()
     assert one.link
@@ -135,7 +135,7 @@ def test_a_node_that_reaches_nobody_knows_that_it_is_cut_off() -> None:
     assert one.link  # it is alone, not cut off
 
 
-def test_who_dies_in_the_middle_of_an_answer_is_waited_for_until_the_time_is_over() -> None:
+def test_a_node_that_dies_in_the_middle_of_its_answer_is_waited_for_until_the_time_is_over() -> None:
     network = Network()
     one, two = network.node(), network.node()
 

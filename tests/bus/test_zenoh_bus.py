@@ -14,7 +14,7 @@ from selfconf.errors import NetworkError
 
 
 def free_endpoint() -> str:
-    """An endpoint on which nobody listens."""
+    """An endpoint on which nothing listens."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
@@ -29,7 +29,7 @@ def until(condition: Callable[[], bool], *buses: ZenohBus, seconds: float = 10.0
     return condition()
 
 
-def test_a_client_whom_nobody_answers_says_where_it_has_asked() -> None:
+def test_a_client_without_an_answer_says_where_it_has_asked() -> None:
     endpoint = free_endpoint()
     with pytest.raises(NetworkError, match=f"nobody answers at {endpoint}"):
         client([endpoint], seconds=0.2)

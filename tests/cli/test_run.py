@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.sdk.supervision import GRACE
+from tests.cli.endpoints import oxigraph
 from tests.cli.processes import Home, component_of, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
 
@@ -144,6 +145,31 @@ def test_a_run_with_advertisements_brings_a_site_of_its_own_and_takes_it_away_ag
     assert run.end(signal.SIGINT) == 0
     assert list(home.runtime.glob("*.json")) == []
     assert all(f"here is {name}\n" in run.complaints for name in ("sonar", "encoder", "tracker", "control", "drive"))
+
+
+def test_a_run_takes_its_advertisements_from_an_endpoint(home: Home) -> None:
+    for name in EVERYBODY:
+        dormant(home, name)
+    held = {f"urn:{name}": (home.folder / "ads" / f"{name}.ttl").read_text() for name in EVERYBODY}
+    with oxigraph("", held) as url:
+        run = home.run("--endpoint", f"{url}?union-default-graph")
+        run.act("running")
+        assert home.active(*EVERYBODY) == TASK | {"tracker"}
+        assert run.end(signal.SIGINT) == 0
+    assert list(home.runtime.glob("*.json")) == []
+
+
+def test_a_run_starts_no_commands_that_somebody_on_the_way_could_have_written(home: Home) -> None:
+    run = home.run("--endpoint", "http://192.0.2.7/query")
+    assert run.ended() == 2
+    assert run.complaints.count("\n") == 1
+    assert "give an https:// URL" in run.complaints
+
+
+def test_a_run_has_one_ecology(home: Home) -> None:
+    run = home.run("--endpoint", "http://127.0.0.1:9/query", "--ads", "ads")
+    assert run.ended() == 2
+    assert "--ads and --endpoint are two ecologies" in run.complaints
 
 
 def test_no_peer_is_one_sentence_and_exit_code_2(home: Home) -> None:

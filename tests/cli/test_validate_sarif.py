@@ -16,7 +16,7 @@ from selfconf.cli.main import main
 from selfconf.cli.reports import sarif
 from selfconf.model.codes import CODES
 from selfconf.model.diagnostic import Diagnostic, report
-from tests.bad_files import BAD, checked, judges_bad_files
+from tests.bad_files import BAD, checked
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 Faults = Callable[[str], list[str]]
@@ -46,7 +46,6 @@ def results(text: str) -> list[Any]:
 
 
 @pytest.mark.slow
-@judges_bad_files
 def test_the_log_of_every_bad_file_keeps_to_the_schema(faults: Faults) -> None:
     text = sarif.render(report(map(str, BAD), (found for path in BAD for found in checked(path).diagnostics)))
     assert len(results(text)) >= len(BAD)

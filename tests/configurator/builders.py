@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom
 from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Stopped
-from selfconf.configurator.machine import Phase, Policy, State, step
+from selfconf.configurator.machine import step
+from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.term import IRI, Literal
@@ -65,7 +66,7 @@ class History:
         )
 
     def all_answer(self) -> list[Effect]:
-        """Everybody who is waited for does as it was told, until nobody is."""
+        """Let every component obey its pending call, until none is pending."""
         new: list[Effect] = []
         while self.state.pending:
             component, call = min(self.state.pending)

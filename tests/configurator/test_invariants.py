@@ -19,7 +19,8 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
-from selfconf.configurator.machine import OBEYED, Phase, Policy, State, step
+from selfconf.configurator.machine import OBEYED, step
+from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -194,7 +195,7 @@ def test_the_machine_is_a_function(numbers: list[tuple[int, ...]]) -> None:
         assert (one, effects) == (other, again)
 
 
-def test_whoever_is_named_lost_was_held_once() -> None:
+def test_a_component_that_is_named_lost_was_held_once() -> None:
     state = state_in(Phase.RUNNING)
     after, _ = step(state, Failed(IRI("urn:c:stranger"), "1", Cause.FAIL))
     assert after == state

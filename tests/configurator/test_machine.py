@@ -28,7 +28,8 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
-from selfconf.configurator.machine import Phase, Policy, State, wiring
+from selfconf.configurator.machine import wiring
+from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Connection
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict, Wire
@@ -68,7 +69,7 @@ def test_a_task_goes_through_the_four_acts() -> None:
     assert history.state.phase is Phase.RUNNING
 
 
-def test_every_input_is_told_all_the_outputs_that_it_follows() -> None:
+def test_the_wiring_names_all_the_outputs_that_an_input_follows() -> None:
     both = navigation()
     both = type(both)(
         both.template,
@@ -99,7 +100,7 @@ def test_a_configuration_without_settings_runs_as_soon_as_all_are_active() -> No
     assert last == [Running(plain)]
 
 
-def test_a_configuration_of_nobody_runs_at_once() -> None:
+def test_a_configuration_without_components_runs_at_once() -> None:
     nobody = type(navigation())(navigation().template, ())
     history = History().accepted()
     assert history.composed(nobody) == [Running(nobody)]
@@ -229,7 +230,7 @@ def test_after_a_failure_the_rest_is_kept() -> None:
     assert history.state.target == navigation(ODOMETRY)
 
 
-def test_who_has_to_begin_is_told_before_who_waits_for_its_signals() -> None:
+def test_a_new_component_is_applied_to_before_one_that_waits_for_its_signals() -> None:
     first, then = (
         replace(configuration, assignments=configuration.assignments[::-1])
         for configuration in (navigation(), navigation(ODOMETRY))
@@ -240,7 +241,7 @@ def test_who_has_to_begin_is_told_before_who_waits_for_its_signals() -> None:
     assert applied(history.composed(then)) == [ODOMETRY, CONTROL]
 
 
-def test_dismantling_releases_everybody_before_the_search() -> None:
+def test_dismantling_releases_all_components_before_the_search() -> None:
     history = History(DISMANTLE).running()
     effects = history.hear(Failed(TRACKER, "1", Cause.FAIL))
     assert sorted(released(effects)) == sorted([TRACKER, CONTROL, DRIVE])
@@ -262,7 +263,7 @@ def test_the_goal_is_set_again_after_dismantling() -> None:
     assert sum(isinstance(effect, SetOn) for effect in history.effects) == 2
 
 
-def test_whoever_is_not_needed_any_more_is_released() -> None:
+def test_a_component_that_is_not_needed_any_more_is_released() -> None:
     alone = navigation(ODOMETRY)
     alone = type(alone)(alone.template, alone.assignments[:1])
     history = History().running()
@@ -273,7 +274,7 @@ def test_whoever_is_not_needed_any_more_is_released() -> None:
     assert history.state.watched == {ODOMETRY}
 
 
-def test_a_component_that_crashed_is_not_told_to_turn_off_but_owed_it() -> None:
+def test_a_component_that_crashed_is_not_released_but_owed_a_release() -> None:
     history = History().running()
     effects = history.hear(Failed(TRACKER, "1", Cause.CRASH))
     assert released(effects) == []
@@ -386,7 +387,7 @@ def test_patience_does_not_miss_what_appears_while_everything_is_taken_down() ->
     assert history.all_answer() == [Discover()]
 
 
-def test_patience_ends_when_it_is_told_to() -> None:
+def test_patience_ends_with_a_stop() -> None:
     history = History(PATIENT).accepted()
     history.composed(REFUSAL)
     assert history.hear(Stopped()) == [Finish()]
@@ -405,7 +406,7 @@ def test_a_new_life_of_a_lost_component_is_not_the_one_that_was_lost() -> None:
     assert TRACKER not in history.state.lost
 
 
-def test_a_component_that_seemed_dead_and_lives_was_only_cut_off_and_is_told_again_to_turn_off() -> None:
+def test_a_component_that_seemed_dead_and_lives_was_only_cut_off_and_is_released_again() -> None:
     history = History().running()
     history.hear(Failed(TRACKER, "1", Cause.CRASH))
     history.composed(navigation(ODOMETRY))
@@ -418,7 +419,7 @@ def test_a_component_that_seemed_dead_and_lives_was_only_cut_off_and_is_told_aga
     assert history.hear(Appeared({TRACKER: "1"})) == []
 
 
-def test_who_is_applied_to_again_is_owed_no_release() -> None:
+def test_a_component_that_is_applied_to_again_is_owed_no_release() -> None:
     history = History().running()
     history.hear(Failed(TRACKER, "1", Cause.CRASH), Appeared({TRACKER: "1"}))
     history.composed(navigation())
@@ -440,7 +441,7 @@ def test_a_release_that_could_not_be_delivered_stays_owed() -> None:
     assert not history.state.owed
 
 
-def test_after_being_cut_off_everybody_is_applied_to_anew() -> None:
+def test_after_being_cut_off_all_components_are_applied_to_anew() -> None:
     history = History().running()
     assert history.hear(Reconnected()) == [Discover()]
     history.hear(Discovered())
@@ -486,7 +487,7 @@ def test_a_stop_while_dismantling_for_a_search_ends_it() -> None:
     assert history.state.phase is Phase.STOPPED
 
 
-def test_a_stop_does_not_wait_for_who_cannot_be_reached() -> None:
+def test_a_stop_does_not_wait_for_a_component_that_cannot_be_reached() -> None:
     history = History().running()
     history.hear(Stopped())
     for component in (TRACKER, CONTROL):
@@ -495,7 +496,7 @@ def test_a_stop_does_not_wait_for_who_cannot_be_reached() -> None:
     assert history.state.owed.keys() == {DRIVE}
 
 
-def test_a_stop_waits_for_one_that_was_just_told_to_turn_off() -> None:
+def test_a_stop_waits_for_a_component_that_was_just_released() -> None:
     history = History().running()
     history.hear(Failed(TRACKER, "1", Cause.FAIL), Stopped())
     for component in (CONTROL, DRIVE):

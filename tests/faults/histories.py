@@ -1,8 +1,16 @@
 """Histories in which everything goes wrong, each replayed by its seed.
 
 A history runs the paper's ecology on a network that loses, delays and doubles messages, while components fail, crash
-and come back, nodes are cut off, and configurators die. Then the faults cease, everybody reaches everybody, and after
-a while the ecology must be in order: `disorder` names everything that is not.
+and come back, nodes are cut off, and configurators die. Then the faults cease, every node reaches every other, and
+after a while the ecology must be in order: `disorder` names everything that is not.
+
+*Replaying a failure.* A history that ends in disorder fails its test; the first line of the message has its seed, then
+comes what happened, in order, and what is not in order. Its seed decides everything in it, the network included, so
+`python -m pytest tests/faults --seed N` lets the failure happen again, as long as the code and the list of mishaps in
+`run` are unchanged. The test whose name ends in `[0]` then is seed N, the others are the seeds that follow; give its
+name to run seed N alone, and add `--log-level DEBUG` to see every change of a configurator's phase:
+
+    python -m pytest --seed N 'tests/faults/test_histories.py::test_after_every_history_the_ecology_is_in_order[0]'
 """
 
 from __future__ import annotations
@@ -12,7 +20,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from selfconf.bus.memory import Faults
-from selfconf.configurator.machine import Phase, Policy, wiring
+from selfconf.configurator.machine import wiring
+from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import TaskRunner
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.messages import Cause
@@ -80,7 +89,7 @@ class History:
     def disorder(self) -> Iterator[str]:
         """Everything that is not in order."""
         wanted: dict[str, TaskRunner] = {}
-        names = {body.profile.component: name for name, body in self.lab.bodies.items()}
+        names = {runtime.profile.component: name for name, runtime in self.lab.runtimes.items()}
         for agent in self.living():
             phase = agent.state.phase
             if phase is Phase.RUNNING and agent.configuration is not None:
@@ -104,29 +113,33 @@ class History:
 
     def _wrong(self, name: str, agent: TaskRunner) -> Iterator[str]:
         """What is wrong with a component that acts for a configurator."""
-        body, configuration = self.lab.bodies[name], agent.configuration
+        runtime, configuration = self.lab.runtimes[name], agent.configuration
         assert configuration is not None
-        if body.activation.supervisor != agent.supervisor:
-            yield f"{name} obeys {body.activation.supervisor}"
-        wires = wiring(configuration)[body.profile.component]
+        if runtime.activation.supervisor != agent.supervisor:
+            yield f"{name} obeys {runtime.activation.supervisor}"
+        wires = wiring(configuration)[runtime.profile.component]
         wanted = {(port, wire.component, wire.output) for port, followed in wires.items() for wire in followed}
-        followed = {(port, wire.component, wire.output) for port, wire in body.inputs.followed}
+        followed = {(port, wire.component, wire.output) for port, wire in runtime.inputs.followed}
         if wanted != followed:
             yield f"{name} follows {sorted(followed)}, not {sorted(wanted)}"
         said = self.lab.components[name].said
         for setting in configuration.settings:
-            if setting.component == body.profile.component:
+            if setting.component == runtime.profile.component:
                 since = len(said) - said[::-1].index(("started",))
                 if (setting.name, str(setting.value)) not in said[since:]:
                     yield f"{name} was not told its {setting.name}"
 
     def _hasty_refusal(self, agent: TaskRunner) -> Iterator[str]:
         """A refusal that is waited out must still be right."""
-        alive = {body.profile.component for name, body in self.lab.bodies.items() if self.lab.node_of(name).open}
+        alive = {
+            runtime.profile.component for name, runtime in self.lab.runtimes.items() if self.lab.node_of(name).open
+        }
         found = {c: a for site in self.sites for c, a in site.shelf.advertisements.items() if c in alive}
-        if not isinstance(agent.order.compose(found, frozenset(agent.state.lost), None), Refusal):
+        if not isinstance(agent.request.compose(found, frozenset(agent.state.lost), None), Refusal):
             yield f"{agent.name} has given up, although there is a configuration"
-        free = {body.profile.component for body in self.lab.bodies.values() if body.activation.supervisor is None}
+        free = {
+            runtime.profile.component for runtime in self.lab.runtimes.values() if runtime.activation.supervisor is None
+        }
         for component, loss in agent.state.lost.items():
             if component in alive and loss.cause is Cause.CRASH:
                 yield f"{agent.name} thinks that {component.short} is dead"
@@ -160,7 +173,7 @@ class History:
             self._revive(name)
 
     def _restart(self) -> None:
-        names = {body.profile.component: name for name, body in self.lab.bodies.items()}
+        names = {runtime.profile.component: name for name, runtime in self.lab.runtimes.items()}
         lost = sorted({names[component] for agent in self.living() for component in agent.state.lost})
         name = self.chance.choice(lost or COMPONENTS)
         if self.lab.node_of(name).open:
@@ -184,7 +197,7 @@ class History:
     def _emit(self) -> None:
         name = self._some()
         if name is not None:
-            for output in self.lab.bodies[name].profile.outputs:
+            for output in self.lab.runtimes[name].profile.outputs:
                 self.lab.components[name].emit(output.name, self.lab.network.time)
 
     def _isolate(self) -> None:

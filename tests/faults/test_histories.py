@@ -1,6 +1,6 @@
 """Hundreds of histories in which everything goes wrong; each ends in order, or its seed is printed.
 
-`python -m pytest tests/faults --seed N` runs the histories from seed N on instead, one for each batch.
+How to replay one is said at the head of `tests/faults/histories.py`.
 """
 
 from __future__ import annotations

@@ -21,8 +21,6 @@ ROOT = HERE.parents[1]
 MOST_BRANCHES = 15
 """The greatest cyclomatic complexity of a function that has no comment `# complexity: ...` before it."""
 CONVENTIONS = {
-    "NAME": "each command has its name",
-    "HELP": "each command has its help",
     "EXAMPLE": "each command has its example",
     "add_arguments": "each command declares its arguments",
     "run": "each command is run",

@@ -8,12 +8,12 @@ from fractions import Fraction
 import pytest
 
 from selfconf.model.number import fraction, number, plain_number
-from selfconf.model.term import IRI, XSD, Literal
+from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 
 
 def literal(lexical: str, datatype: str) -> Literal:
     """A literal of one of XML Schema's datatypes."""
-    return Literal(lexical, IRI(XSD + datatype))
+    return Literal(lexical, IRI(XSD_NAMESPACE + datatype))
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,6 @@ from selfconf.model.diagnostic import Report
 from selfconf.query import process as asking
 from selfconf.query.endpoint import ENDPOINT_PATIENCE
 from selfconf.rdf import conformance as shacl
-from selfconf.rdf import deadline
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.shacl import value_tests as values
@@ -28,7 +27,7 @@ from selfconf.rdf.sparql import read_only as queries
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.validation import file_check as scrutiny
+from selfconf.rdf.validation import checking, file_check
 from selfconf.rdf.validation.checking import SourceText, validate
 
 # An alarm that rings while the garbage collector calls back is lost there, and rings again.
@@ -178,11 +177,21 @@ def test_a_catastrophic_pattern_ends_in_an_error(
 
 
 def test_a_file_that_takes_too_long_ends_in_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scrutiny, "FILE_SECONDS", 0.3)
+    monkeypatch.setattr(file_check, "FILE_SECONDS", 0.3)
     triples = "\n".join(f":x{n} sh:nodeKind :y{n} ." for n in range(20_000))
     report = check(triples)
     assert [found.code for found in report.diagnostics] == ["SC-S05"]
     assert report.unreadable == {"a.ttl"}
+
+
+def test_a_file_with_a_problem_and_too_many_statements_is_refused_before_it_is_checked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(checking, "MOST_STATEMENTS", 50)
+    monkeypatch.setattr(file_check.FileCheck, "of", None)  # it is not asked
+    (problem,) = check("\n".join(f":x{n} sh:nodeKind :y{n} ." for n in range(51))).diagnostics
+    assert (problem.code, problem.line) == ("SC-S05", 1)
+    assert "51 statements" in problem.message
 
 
 @pytest.mark.parametrize(
@@ -212,22 +221,12 @@ def test_a_query_that_would_hold_up_the_engine_is_not_handed_to_it(query: str) -
     assert [each.code for each in found] == ["SC-T13"]
 
 
-def test_a_time_limit_within_another_leaves_the_outer_one_alone() -> None:
-    def endless() -> None:
-        with deadline.deadline(30):
-            pass
-        while True:
-            pass
-
-    with pytest.raises(deadline.TimeUp), deadline.deadline(0.2):
-        endless()
-
-
 def test_the_page_on_limits_names_the_limits_there_are() -> None:
     page = (Path(__file__).parents[2] / "docs" / "untrusted.md").read_text()
     for words in (
         f"{LARGEST_FILE >> 20} MiB | SC-S05",
-        f"{scrutiny.FILE_SECONDS:g} s | SC-S05",
+        f"{checking.MOST_STATEMENTS:,} | SC-S05",
+        f"{file_check.FILE_SECONDS:g} s | SC-S05",
         f"{queries.LONGEST_QUERY:,} characters, brackets {queries.DEEPEST_QUERY} deep",
         f"{values.PATTERN_SECONDS:g} s | `configure` says which pattern",
         f"{shacl.SHAPE_SECONDS:g} s | `configure` says which shape",

@@ -127,26 +127,36 @@ def folder(path: Path) -> Iterator[None]:
 def differences(recorded: Any, found: Any, path: str = "") -> Iterator[str]:
     """Where two JSON values differ, a line each."""
     if isinstance(recorded, dict) and isinstance(found, dict):
-        for name in sorted({*recorded, *found}):
-            where = f"{path}.{name}" if path else name
-            if name not in found:
-                yield f"{where}: is gone, was {_short(recorded[name])}"
-            elif name not in recorded:
-                yield f"{where}: is new, {_short(found[name])}"
-            else:
-                yield from differences(recorded[name], found[name], where)
-        if list(recorded) != list(found) and set(recorded) == set(found):
-            yield f"{path}: members in another order, {list(found)} for {list(recorded)}"
+        yield from _members(recorded, found, path)
     elif isinstance(recorded, list) and isinstance(found, list) and len(recorded) == len(found):
         for number, pair in enumerate(zip(recorded, found, strict=True)):
             yield from differences(*pair, f"{path}[{number}]")
     elif isinstance(recorded, str) and isinstance(found, str) and recorded != found:
-        same = next((at for at, pair in enumerate(zip(recorded, found, strict=False)) if pair[0] != pair[1]), 0)
-        begins = max(0, same - 40) if len(recorded) > 300 else 0
+        begins = max(0, _same(recorded, found) - 40) if len(recorded) > 300 else 0
         where = f" from character {begins}" if begins else ""
-        yield f"{path}{where}: was {_short(recorded[begins : begins + 160])}, is {_short(found[begins : begins + 160])}"
+        was, now = recorded[begins : begins + 160], found[begins : begins + 160]
+        yield f"{path}{where}: was {_short(was)}, is {_short(now)}"
     elif recorded != found or type(recorded) is not type(found):
         yield f"{path}: was {_short(recorded)}, is {_short(found)}"
+
+
+def _members(recorded: dict[str, Any], found: dict[str, Any], path: str) -> Iterator[str]:
+    for name in sorted({*recorded, *found}):
+        where = f"{path}.{name}" if path else name
+        if name not in found:
+            yield f"{where}: is gone, was {_short(recorded[name])}"
+        elif name not in recorded:
+            yield f"{where}: is new, {_short(found[name])}"
+        else:
+            yield from differences(recorded[name], found[name], where)
+    if list(recorded) != list(found) and set(recorded) == set(found):
+        yield f"{path}: members in another order, {list(found)} for {list(recorded)}"
+
+
+def _same(one: str, other: str) -> int:
+    """How many characters two different texts begin with alike."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((place for place, (a, b) in pairs if a != b), min(len(one), len(other)))
 
 
 def _short(value: Any) -> str:

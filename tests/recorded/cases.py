@@ -49,7 +49,7 @@ def _cases(seed: int, options: tuple[str, ...], ontology: tuple[str, ...]) -> It
     name = f"ecology-{seed:04}"
     task = (*_TEMPLATE, *options)
     yield Case(f"{name} configure json", ("configure", *task, "--format", "json"))
-    form = {1: "text", 2: "turtle", 3: "mermaid"}.get(seed % 12)
+    form = {1: "text", 2: "turtle", 3: "mermaid"}.get(seed % 15)
     if form:
         yield Case(f"{name} configure {form}", ("configure", *task, "--format", form))
     judged = tuple(option for option in options if option != "--what-if")
@@ -57,7 +57,7 @@ def _cases(seed: int, options: tuple[str, ...], ontology: tuple[str, ...]) -> It
         place = judged.index("--steps")
         judged = judged[:place] + judged[place + 2 :]
     asked = (*_TEMPLATE, *judged)
-    if seed % 12 == 4:
+    if seed % 15 == 4:
         yield Case(f"{name} partition json", ("partition", *asked, "--format", "json"))
     if seed % 40 == 5:
         yield Case(f"{name} partition text", ("partition", *asked))

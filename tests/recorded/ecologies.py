@@ -14,7 +14,7 @@ from tests.recorded.drafts import Draft
 from tests.recorded.flaws import FLAWS, MALFORMED
 from tests.recorded.shapes import HEAD, ONTOLOGY
 
-TROUBLES = ("syntax", "role", "unbound", "unknown parameter", "literal signal", "empty")
+TROUBLES = ("syntax", "role", "counts", "unbound", "unknown parameter", "literal signal", "empty")
 """What makes an ecology unreadable, or a task not a task."""
 
 
@@ -68,6 +68,8 @@ def _options(draft: Draft) -> tuple[list[str], tuple[str, ...]]:
     if draft.reasoning != "syntactic" or chance.often(0.1):
         options += ["--reasoning", draft.reasoning]
     strategy = chance.one(("first",) * 14 + ("best",) * 4 + ("paper",) * 2)
+    if strategy == "paper" and any(parameter.startswith(":level ") for parameter in draft.parameters):
+        strategy = "first"  # the paper has nothing to say of a parameter that is set and has no value
     if strategy != "first":
         options += ["--strategy", strategy]
     if strategy == "best" and chance.often(0.9):
@@ -88,6 +90,10 @@ def _trouble(chance: Chance, files: dict[str, str], options: list[str]) -> None:
         files["ads/all.ttl"] += ':broken a sc:Component, :K0 ; sc:hasOutput [ sc:name "out" .\n'
     elif trouble == "role":
         files["template.ttl"] = files["template.ttl"].replace(":r1 a sc:Role ;", ":r1 a sh:NodeShape ;")
+    elif trouble == "counts":
+        files["template.ttl"] = files["template.ttl"].replace(
+            ":r0 a sc:Role", ":r0 sc:minCount 3 ; sc:maxCount 2 ; a sc:Role"
+        )
     elif trouble == "unbound":
         options += ["--bind", "no equals sign"]
     elif trouble == "unknown parameter":

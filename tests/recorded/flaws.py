@@ -70,23 +70,17 @@ def several_robots(draft: Draft) -> None:
         ]
 
 
-def counts_contradict(draft: Draft) -> None:
-    """A role asks for more than it allows."""
-    role = draft.chance.one(draft.roles)
-    role.minimum, role.maximum, role.counted = 3, 2, True
-
-
 def nothing_to_set(draft: Draft) -> None:
     """A parameter is set and has no value."""
     role = draft.chance.one(draft.roles)
     role.sets.append("sc:sets [ sc:parameterType :Level ; sc:value :level ]")
     draft.parameters.append(':level a sc:Parameter ; sc:name "level" ; sh:datatype xsd:integer .\n')
-    stated = draft.chance.often(0.8)
-    if stated:
+    looked_for, stated = draft.chance.often(0.9), draft.chance.one((0.0, 0.0, 0.6))
+    if looked_for:
         role.sets.append("sh:property [ sh:path :level-of ; sh:in ( :level ) ]")
     for component in draft.components:
         component.said.append('sc:hasParameter [ sc:name "level" ; sc:parameterType :Level ]')
-        if stated and draft.chance.often(0.5):
+        if looked_for and draft.chance.often(stated):
             component.said.append(f":level-of {draft.chance.below(3)}")
 
 
@@ -118,7 +112,7 @@ def two_dialects(draft: Draft) -> None:
 FLAWS: tuple[Flaw, ...] = (
     *(nobody_of_a_kind,) * 4, *(one_is_gone,) * 6, *(too_much_is_asked,) * 3, *(roles_share,) * 9,
     *(no_such_signal,) * 4, *(not_fed,) * 4, *(a_source_asks_for_nobody,) * 4, *(several_robots,) * 9,
-    *(counts_contradict,) * 1, *(nothing_to_set,) * 4, *(unlike_partners,) * 3, *(two_dialects,) * 9,
+    *(nothing_to_set,) * 6, *(unlike_partners,) * 3, *(two_dialects,) * 9,
 )  # fmt: skip
 """Some are more frequent than others, so that every reason occurs."""
 MALFORMED = (

@@ -16,6 +16,7 @@ from tests.recorded import cases
 from tests.recorded.answers import Answer, differences, taken_apart
 from tests.recorded.record import GROUPS, answers, compared, load
 
+pytestmark = pytest.mark.slow
 pytest.importorskip("pysat", reason="with fewer solvers, fewer searches are decided: install the extra solvers")
 
 

@@ -78,7 +78,7 @@ def test_components_of_one_host_live_and_end_together(tmp_path: Path) -> None:
     assert host.runtimes == []
 
 
-def test_a_host_runs_until_it_is_told(tmp_path: Path) -> None:
+def test_a_host_runs_until_the_condition_holds(tmp_path: Path) -> None:
     network = Network()
     host = Host(network.node(), "lab")
     told: list[bool] = []

@@ -18,7 +18,7 @@ class Lamp(Component):
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody is waited for."""
+    """No endpoint is waited for."""
     for module in ("selfconf.sdk.program", "selfconf.rendezvous"):
         monkeypatch.setattr(f"{module}.client", partial(client, seconds=0.1))
 
@@ -43,7 +43,7 @@ def test_a_program_that_finds_no_ecology_says_so_in_one_sentence(
     assert said.count("\n") == 1
 
 
-def test_the_environment_that_a_site_gives_is_heeded(
+def test_the_environment_that_a_site_gives_names_the_ecology(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("SELFCONF_ECOLOGY", "home")

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.model.number import DATATYPES, WHOLE
-from selfconf.model.term import IRI, XSD, BlankNode, Literal, Term
+from selfconf.model.number import DATATYPES, WHOLE_NUMBERS
+from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal, Term
 from selfconf.sdk.values import as_python
 
 
 def typed(lexical: str, datatype: str) -> Literal:
-    return Literal(lexical, IRI(XSD + datatype))
+    return Literal(lexical, IRI(XSD_NAMESPACE + datatype))
 
 
 def test_xsd_has_sixteen_datatypes_of_numbers_thirteen_of_them_whole() -> None:
-    assert (len(DATATYPES), len(WHOLE)) == (16, 13)
+    assert (len(DATATYPES), len(WHOLE_NUMBERS)) == (16, 13)
 
 
 @pytest.mark.parametrize("datatype", sorted(DATATYPES), ids=lambda datatype: IRI(datatype).short)
@@ -22,7 +22,7 @@ def test_a_number_of_every_numeric_datatype_is_a_number_in_python(datatype: str)
     lexical = "-1" if datatype.endswith(("nonPositiveInteger", "negativeInteger")) else "1"
     value = as_python(Literal(lexical, IRI(datatype)))
     assert value == int(lexical)
-    assert type(value) is (int if datatype in WHOLE else float)
+    assert type(value) is (int if datatype in WHOLE_NUMBERS else float)
 
 
 @pytest.mark.parametrize(

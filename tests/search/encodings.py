@@ -87,7 +87,7 @@ def _facts(problem: Problem) -> Iterator[str]:
 
 
 def _values(problem: Problem, variable: int) -> range:
-    """The numbers of the values of a variable, the last of them, unless it is set, a value that nobody names."""
+    """The numbers of the values of a variable, the last of them, unless it is set, a value that no candidate names."""
     one = problem.variables[variable]
     is_set = any(p.is_set for p in problem.task.template.parameters if p.iri == one.parameter)
     return range(len(one.domain) + (not is_set))

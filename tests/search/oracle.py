@@ -1,4 +1,4 @@
-"""The semantics once more, by enumeration: nothing here comes from the search, and nothing here is clever."""
+"""The semantics by enumeration: an oracle that shares no code with the search, and has no optimisation."""
 
 from __future__ import annotations
 
@@ -60,19 +60,19 @@ class World:
         ]
 
     def values(self, players: Sequence[Sequence[Candidate]]) -> list[set[int] | None]:
-        """For each variable the numbers of the values that every player allows; None where nobody constrains it."""
+        """For each variable the numbers of the values that every player allows; None where no player constrains it."""
         found: list[set[int] | None] = []
         for number, variable in enumerate(self.variables):
             masks = [c.admits[number] for role in players for c in role]
             is_set = any(p.is_set for p in self.template.parameters if p.iri == variable.parameter)
-            if not is_set and all(mask < 0 for mask in masks):  # a value that nobody names will do
+            if not is_set and all(mask < 0 for mask in masks):  # any value that no candidate names will do
                 found.append(None)
             else:
                 found.append({k for k in range(len(variable.domain)) if all(mask >> k & 1 for mask in masks)})
         return found
 
     def unset(self, players: Sequence[Sequence[Candidate]]) -> bool:
-        """Whether somebody is to be set to a parameter that is not bound and of which nobody states a value."""
+        """Return whether a player is to be set to a parameter that is not bound and has no stated value."""
         known = {*self.task.bindings, *(variable.parameter for variable in self.variables)}
         parameters = {parameter.iri for parameter in self.template.parameters}
         return any(
@@ -83,10 +83,10 @@ class World:
         )
 
     def valid(self, players: Sequence[Sequence[Candidate]]) -> bool:
-        """Distinct, fed, and of one mind about the free parameters."""
-        everybody = [candidate.profile.component for role in players for candidate in role]
+        """Return whether players are distinct, fed, and share a value of each free parameter."""
+        components = [candidate.profile.component for role in players for candidate in role]
         return (
-            len(everybody) == len(set(everybody))
+            len(components) == len(set(components))
             and not self.unfed(players)
             and not self.unset(players)
             and all(allowed is None or allowed for allowed in self.values(players))

@@ -1,4 +1,4 @@
-"""The problems that everybody should know, worked through."""
+"""The problems that a reader should know first, worked through."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from selfconf.certificate import broken_conditions
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.template import Parameter, Setting
-from selfconf.search.engines import clause_learning as sat
+from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
-from selfconf.search.strategies import first as solve
-from selfconf.search.strategies import paper
+from selfconf.search.strategies import first, paper
 from tests.search.worlds import component, iri, problem
 
 SCAN, ODOMETRY, POSE, VELOCITY = "scan:RangeScan", "odometry:Odometry2D", "pose:PlanarPose2D", "velocity:Velocity2D"
@@ -22,7 +21,7 @@ SCAN, ODOMETRY, POSE, VELOCITY = "scan:RangeScan", "odometry:Odometry2D", "pose:
 
 def configured(problem: Problem) -> Configuration:
     """The first configuration of a problem that has one, accepted by the certificate."""
-    answer = solve.search(problem)
+    answer = first.search(problem)
     assert isinstance(answer, Configuration), answer
     assert broken_conditions(problem.task, problem.partition, answer, problem.hierarchy) == []
     return answer
@@ -49,7 +48,7 @@ def test_the_person_tracker_is_chosen_as_it_is_tried_first() -> None:
     assert len(answer.connections) == 4
 
 
-def test_without_the_tracker_the_rest_stays_and_odometry_takes_its_part() -> None:
+def test_without_the_tracker_the_rest_stays_and_odometry_plays_its_role() -> None:
     given = navigation("person-tracker", "absolute-odometry")
     left = Problem(given.task, given.partition.without(frozenset({iri("person-tracker")})))
     assert [c.short for c in configured(left).components][2] == "absolute-odometry"
@@ -62,12 +61,12 @@ def test_two_roles_may_share_their_candidates() -> None:
         {"tuner": [component("tuner", outputs="s:Audio")], "one": speakers, "other": speakers}, "tuner>one tuner>other"
     )
     assert [c.short for c in configured(given).components] == ["tuner", "left", "right"]
-    assert paper.algorithm_1(given) == solve.search(given)
+    assert paper.algorithm_1(given) == first.search(given)
 
 
 def test_one_more_role_than_shared_candidates_is_too_many() -> None:
     speakers = [component("left"), component("right")]
-    answer = solve.search(problem({"a": speakers, "b": speakers, "c": speakers}))
+    answer = first.search(problem({"a": speakers, "b": speakers, "c": speakers}))
     assert isinstance(answer, Refusal)
     assert str(answer.reasons[0]) == (
         "the roles a, b and c together ask for 3 different components, and only 2 are eligible"
@@ -86,7 +85,7 @@ def test_a_tuner_plays_to_every_speaker_there_is() -> None:
     assert len(answer.connections) == 5
 
 
-def test_any_robot_will_do_but_it_is_one_and_the_same() -> None:
+def test_any_robot_will_do_if_all_components_share_it() -> None:
     given = problem(
         {
             "sonar": [component("sonar-a", outputs=SCAN), component("sonar-b", outputs=SCAN)],
@@ -101,13 +100,13 @@ def test_any_robot_will_do_but_it_is_one_and_the_same() -> None:
     assert answer.bindings == {"robot": iri("Pippi")}
 
 
-def test_robots_that_share_no_part_are_the_reason() -> None:
+def test_roles_without_a_robot_in_common_are_the_reason() -> None:
     given = problem(
         {"sonar": [component("sonar-a")], "drive": [component("drive-b")]},
         values={"sonar": {"sonar-a": 0b01}, "drive": {"drive-b": 0b10}},
         domain=("Astrid", "Pippi"),
     )
-    answer = solve.search(given)
+    answer = first.search(given)
     assert isinstance(answer, Refusal)
     assert str(answer.reasons[0]) == "the roles sonar and drive cannot all be played with one robot for all"
 
@@ -139,7 +138,7 @@ def test_a_configuration_of_the_3_sat_template_satisfies_the_formula() -> None:
 
 
 def test_a_formula_that_cannot_be_satisfied_is_refused_with_the_clauses_that_clash() -> None:
-    answer = solve.search(formula("A", "a", "BC", "bC"))
+    answer = first.search(formula("A", "a", "BC", "bC"))
     assert isinstance(answer, Refusal)
     (reason,) = answer.reasons
     assert {str(r) for r in reason.requirements} == {
@@ -152,29 +151,29 @@ def test_a_formula_that_cannot_be_satisfied_is_refused_with_the_clauses_that_cla
 def test_roles_that_feed_each_other_are_played_if_they_can_be() -> None:
     cycle = {"a": [component("x", "i:S", "o:T")], "b": [component("y", "i:T", "o:S")]}
     assert len(configured(problem(cycle, "a>b b>a")).connections) == 2
-    assert isinstance(solve.search(problem(cycle, "a>b")), Refusal)
+    assert isinstance(first.search(problem(cycle, "a>b")), Refusal)
 
 
 def test_an_empty_ecology_and_an_empty_template_have_clear_answers() -> None:
-    empty = solve.search(problem({"a": [], "b": []}))
+    empty = first.search(problem({"a": [], "b": []}))
     assert isinstance(empty, Refusal)
     assert [reason.code for reason in empty.reasons] == ["too-few-eligible"] * 2
     assert configured(problem({})).components == ()
 
 
-def test_a_role_that_asks_for_more_than_it_allows_is_told_so() -> None:
-    answer = solve.search(problem({"a": [component("x"), component("y")]}, counts={"a": (2, 1)}))
+def test_a_role_that_asks_for_more_than_it_allows_is_a_contradiction() -> None:
+    answer = first.search(problem({"a": [component("x"), component("y")]}, counts={"a": (2, 1)}))
     assert isinstance(answer, Refusal)
     assert answer.reasons[0].code == "contradictory-count"
 
 
-def test_a_parameter_that_nobody_gives_a_value_is_asked_for() -> None:
+def test_a_parameter_without_a_value_is_asked_for() -> None:
     given = problem({"a": [component("x")]})
     role = replace(given.roles[0], settings=(Setting(iri("Goal"), iri("goal")),))
     template = replace(
         given.task.template, roles=(role,), parameters=(Parameter(iri("goal"), "goal", in_shape=True, is_set=True),)
     )
-    answer = solve.search(Problem(replace(given.task, template=template), given.partition))
+    answer = first.search(Problem(replace(given.task, template=template), given.partition))
     assert isinstance(answer, Refusal)
     assert answer.reasons[0].code == "value-unknown"
     assert "bind goal" in str(answer.reasons[0])
@@ -186,13 +185,13 @@ def test_ten_thousand_roles_are_no_deeper_than_the_stack() -> None:
     chain = " ".join(f"r{k}>r{k + 1}" for k in range(size - 1))
     assert len(configured(problem(roles, chain)).components) == size
     roles["r1"] = [component("c1", "i:T", "o:S")]
-    answer = solve.search(problem(roles, chain))
+    answer = first.search(problem(roles, chain))
     assert isinstance(answer, Refusal)
     assert answer.reasons[0].role == iri("r1")
 
 
 def test_steps_that_are_used_up_are_no_refusal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sat, "find_spec", lambda name: None)
+    monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
     tangled = formula("ABC", "ABc", "AbC", "Abc", "aBC", "aBc", "abC", "abc")
-    assert isinstance(solve.decide(tangled, 3), Undecided)
-    assert isinstance(solve.decide(tangled, 100_000), Refusal)
+    assert isinstance(first.decide(tangled, 3), Undecided)
+    assert isinstance(first.decide(tangled, 100_000), Refusal)

@@ -1,4 +1,4 @@
-"""Every repair of a refusal works, and no fewer components would do."""
+"""Every relaxation of a refused task makes it possible, and no fewer components to add would."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition, A
 from selfconf.search import relaxations
 from selfconf.search.problem import Problem
 from selfconf.search.relaxations import relaxed_by, wanted_of, with_relaxations
-from selfconf.search.strategies import first as solve
+from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -28,27 +28,27 @@ def _possible(problem: Problem) -> bool:
 
 @given(problems(roles=3, components=4))
 @agreement()
-def test_every_repair_works_and_adds_as_few_as_possible(problem: Problem) -> None:
-    refused = solve.search(problem)
+def test_every_relaxation_works_and_adds_as_few_components_as_possible(problem: Problem) -> None:
+    refused = first.search(problem)
     if not isinstance(refused, Refusal):
         return
-    mending = with_relaxations(problem, refused).repairs
-    for repair in mending:
-        assert str(repair)
-        assert repair.code
-        assert repair.role in {role.iri for role in problem.roles}
-        assert _possible(relaxed_by(problem, repair)), repair
-    asked = {repair.role for repair in mending if isinstance(repair, AskForOne)}
+    found = with_relaxations(problem, refused).repairs
+    for one in found:
+        assert str(one)
+        assert one.code
+        assert one.role in {role.iri for role in problem.roles}
+        assert _possible(relaxed_by(problem, one)), one
+    asked = {one.role for one in found if isinstance(one, AskForOne)}
     assert asked == {
         role.iri
         for role in problem.roles
         if role.minimum == 0 and role.maximum != 0 and _possible(relaxed_by(problem, AskForOne(role.iri)))
     }
-    added = [repair for repair in mending if isinstance(repair, AddComponents)]
-    for some in [repair.additions for repair in added]:
+    added = [one for one in found if isinstance(one, AddComponents)]
+    for some in [one.additions for one in added]:
         for place, addition in enumerate(some):
             for output in addition.outputs:
-                less = replace(addition, outputs=tuple(one for one in addition.outputs if one != output))
+                less = replace(addition, outputs=tuple(other for other in addition.outputs if other != output))
                 assert not _possible(relaxed_by(problem, AddComponents((*some[:place], less, *some[place + 1 :]))))
     fewest = sum(addition.count for addition in added[0].additions) if added else 3
     for size in range(1, min(fewest, 3)):
@@ -65,28 +65,28 @@ def test_what_is_lacking_is_asked_for_by_signal() -> None:
         "position>control",
         counts={"position": (1, None)},
     )
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
     assert words[0] == "add one more component for the role position that issues Bump and Pose"
 
 
 def test_a_near_miss_that_would_do_is_offered_first() -> None:
     given_ = problem({"position": [], "control": [component("cap", "p:Pose")]}, "position>control")
     near = NearMiss(iri("position"), iri("tracker"), OF_PIPPI)
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
     candidate = Candidate(component("tracker", outputs="p:Pose"))
-    first = with_relaxations(given_, refused, [(near, candidate)]).repairs[0]
-    assert isinstance(first, AcceptNearMiss)
-    assert str(first) == "let tracker play position, although its support is Pippi, not Astrid"
+    offered = with_relaxations(given_, refused, [(near, candidate)]).repairs[0]
+    assert isinstance(offered, AcceptNearMiss)
+    assert str(offered) == "let tracker play position, although its support is Pippi, not Astrid"
 
 
-def test_a_near_miss_that_stands_for_others_elsewhere_can_be_spared() -> None:
+def test_a_near_miss_that_is_the_first_of_its_class_elsewhere_is_distinguished() -> None:
     eyes = [component(name, outputs="p:Pose") for name in ("a", "b")]
     given_ = problem({"position": eyes, "spare": []})
     near = NearMiss(iri("spare"), iri("a"), OF_PIPPI)
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
     assert isinstance(with_relaxations(given_, refused, [(near, Candidate(eyes[0]))]).repairs[0], AcceptNearMiss)
 
@@ -97,16 +97,16 @@ def test_an_optional_role_that_is_needed_may_be_asked_for_one() -> None:
         "sonar>control",
         {"sonar": (0, 1)},
     )
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
     assert str(with_relaxations(given_, refused).repairs[0]) == "let the role sonar ask for one (sc:minCount 1)"
 
 
 def test_a_role_that_asks_for_too_many_may_ask_for_fewer() -> None:
     given_ = problem({"speaker": [component("left"), component("right")]}, counts={"speaker": (4, None)})
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
     assert words == [
         "add 2 more components for the role speaker",
         "let the role speaker ask for 2 (sc:minCount 2)",
@@ -115,17 +115,17 @@ def test_a_role_that_asks_for_too_many_may_ask_for_fewer() -> None:
 
 def test_a_link_that_is_missing_is_found() -> None:
     given_ = problem({"eye": [component("camera", outputs="i:Image")], "mind": [component("cap", "i:Image")]})
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
     assert "let the role eye feed the role mind (sc:feeds)" in [
-        str(repair) for repair in with_relaxations(given_, refused).repairs
+        str(one) for one in with_relaxations(given_, refused).repairs
     ]
 
 
 def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(relaxations, "TRIAL_STEPS", 100)
     given_ = problem({f"r{number}": [component(f"c{other}") for other in range(59)] for number in range(60)})
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
     assert str(next(relaxations.relaxations(given_, refused))) == "add one more component for the role r0"
 
@@ -133,9 +133,9 @@ def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatc
 def test_an_output_that_is_not_needed_is_not_asked_for() -> None:
     minds = [component("deaf", "p:Pose b:Bump"), component("cap", "p:Pose")]
     given_ = problem({"sensor": [], "control": minds}, "sensor>control")
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
     assert words[0] == "add one more component for the role sensor that issues Pose"
 
 
@@ -144,9 +144,9 @@ def test_what_one_addition_issues_is_not_asked_of_another() -> None:
         {"a": [], "b": [], "control": [component("cap", "p:Pose")], "drive": [component("car", "v:Velocity")]},
         "a>control b>drive b>control",
     )
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
     both = "one more component for the role a and one more component for the role b that issues Velocity and Pose"
     assert words[0] == f"add {both}"
 
@@ -156,27 +156,27 @@ def test_a_link_by_name_is_not_the_plain_one() -> None:
         given_ = problem(
             {"eye": [component("camera", outputs="i:Image")], "mind": [component("cap", "i:Image")]}, named
         )
-        refused = solve.search(given_)
+        refused = first.search(given_)
         assert isinstance(refused, Refusal)
         assert "let the role eye feed the role mind (sc:feeds)" in [
-            str(repair) for repair in with_relaxations(given_, refused).repairs
+            str(one) for one in with_relaxations(given_, refused).repairs
         ]
 
 
-def test_a_role_that_allows_nobody_is_not_told_to_ask_for_one() -> None:
+def test_a_role_that_allows_no_component_is_not_advised_to_ask_for_one() -> None:
     given_ = problem(
         {"sonar": [component("ring", outputs="s:Scan")], "control": [component("cap", "s:Scan")]},
         "sonar>control",
         {"sonar": (0, 0)},
     )
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
     assert not [one for one in with_relaxations(given_, refused).repairs if isinstance(one, AskForOne)]
 
 
-def test_who_asks_for_far_too_many_is_told_how_many_there_are() -> None:
+def test_a_role_that_asks_for_far_too_many_is_advised_to_ask_for_those_there_are() -> None:
     given_ = problem({"speaker": [component("left"), component("right")]}, counts={"speaker": (10**12, None)})
-    refused = solve.search(given_)
+    refused = first.search(given_)
     assert isinstance(refused, Refusal)
-    words = [str(repair) for repair in with_relaxations(given_, refused).repairs]
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
     assert words == ["let the role speaker ask for 2 (sc:minCount 2)"]

@@ -1,4 +1,4 @@
-"""What would replace each component, or that nothing would."""
+"""The consequences of losing each component: what would replace it, or that nothing would."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from hypothesis import given
 
 from selfconf.model.configuration import Configuration
 from selfconf.search.problem import Problem
-from selfconf.search.strategies import first as solve
+from selfconf.search.strategies import first
 from selfconf.search.what_if import consequences
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, problem, problems
@@ -15,7 +15,7 @@ from tests.search.worlds import agreement, component, problem, problems
 @given(problems(roles=3))
 @agreement(0.3)
 def test_a_single_point_of_failure_is_one_without_which_nothing_is_possible(problem: Problem) -> None:
-    running = solve.search(problem)
+    running = first.search(problem)
     if isinstance(running, Configuration):
         found = list(consequences(problem, running))
         assert [loss.component for loss in found] == list(running.components)
@@ -25,7 +25,7 @@ def test_a_single_point_of_failure_is_one_without_which_nothing_is_possible(prob
             assert loss.component not in loss.started
 
 
-def test_each_component_is_told_what_would_come_instead() -> None:
+def test_for_each_component_its_replacement_is_named() -> None:
     given_ = problem(
         {
             "position": [component("tracker", outputs="p:Pose"), component("odometry", outputs="p:Pose")],
@@ -33,7 +33,7 @@ def test_each_component_is_told_what_would_come_instead() -> None:
         },
         "position>control",
     )
-    running = solve.search(given_)
+    running = first.search(given_)
     assert isinstance(running, Configuration)
     assert [str(loss) for loss in consequences(given_, running)] == [
         "tracker (position): odometry",
@@ -41,10 +41,10 @@ def test_each_component_is_told_what_would_come_instead() -> None:
     ]
 
 
-def test_who_would_play_another_role_is_told() -> None:
+def test_a_component_that_would_play_another_role_is_named_with_it() -> None:
     a, b, x = component("a"), component("b"), component("x")
     given_ = problem({"first": [a, x], "second": [b, x]}, counts={"second": (1, None)})
-    running = solve.search(given_)
+    running = first.search(given_)
     assert isinstance(running, Configuration)
     assert [str(loss) for loss in consequences(given_, running)] == [
         "a (first): x as first",

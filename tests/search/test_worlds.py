@@ -1,4 +1,4 @@
-"""What random worlds are worth: most questions of the search only arise where there are solutions and connections."""
+"""The random problems are worth testing with: most have solutions, and many of these have connections."""
 
 from __future__ import annotations
 

@@ -20,12 +20,13 @@ from tests.effort import NIGHTLY, examples
 
 
 def agreement(share: float = 1.0) -> settings:
-    """How many worlds a test sees: 500 where every push runs, 50 in a quick run, 10,000 at night."""
+    """How many problems a test draws: 500 for every push, 50 in a quick run, 10,000 at night."""
     return settings(
         max_examples=examples(int(500 * share)),
         deadline=None,
         derandomize=not NIGHTLY,
         database=None,
+        print_blob=True,  # a failure then says how to replay it
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
 
@@ -240,7 +241,10 @@ def _candidates(
     players: Sequence[int],
     common: Sequence[int],
 ) -> tuple[Candidate, ...]:
-    """The candidates of a role in an order of its own; whoever is meant to play it is one and allows what is common."""
+    """Return the candidates of a role in an order of its own.
+
+    Components that are meant to play it are among them, and admit the common value of each variable.
+    """
     order = draw(st.permutations(range(len(profiles)))) if draw(st.booleans()) else range(len(profiles))
     left_out = draw(st.sets(st.sampled_from(NUMBERS), max_size=1)) - set(players)
     return tuple(

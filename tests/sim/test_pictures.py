@@ -12,6 +12,7 @@ import pytest
 
 pytest.importorskip("numpy", reason="pictures need numpy: install the extra sim")
 pytest.importorskip("PIL", reason="pictures need Pillow: install the extra sim")
+pytest.importorskip("mitsuba", reason="pictures need Mitsuba: install the extra sim")
 
 import numpy as np
 from PIL import Image
@@ -20,57 +21,51 @@ from rdflib import Graph, Literal, URIRef
 from sim.apartment import HOME, Apartment, read_apartment
 from sim.astrid import PLATE_HEIGHT
 from sim.pictures import (
+    CameraImage,
     Failure,
     Link,
     Part,
-    Port,
     Quality,
     RunRecord,
     Sample,
-    Sight,
     Supply,
     Wiring,
     draw,
     film,
-    still,
 )
-from sim.pictures.diagram import draw_wiring
+from sim.pictures.camera_strip import chosen, plate, strip
+from sim.pictures.colours import BLUE, FAIL, ORANGE, linear, rgb, to_linear, to_screen
+from sim.pictures.diagram import ROW, TOP, arrange, draw_wiring
 from sim.pictures.floor import lay
 from sim.pictures.house import extent, house
-from sim.pictures.ink import image, svg
-from sim.pictures.layout import arrange
-from sim.pictures.lettering import Style, shortened, width
-from sim.pictures.matter import Matter
-from sim.pictures.palette import BLUE, FAIL, ORANGE, linear, rgb, to_linear, to_screen
-from sim.pictures.sight import view_area
-from sim.pictures.solids import ball, box, cone, look, upright
-from sim.pictures.strip import chosen, plate, strip
-from sim.pictures.view import View
+from sim.pictures.mesh import Material, Solid, ball, box, cone, upright
+from sim.pictures.robot import robot
+from sim.pictures.scene import Scene
+from sim.pictures.svg import Style, image, shortened, source, width
+from sim.pictures.view_area import view_area
+from sim.pictures.viewpoint import perspective, plan
 
-TINY = Quality(
-    (420, 300), exposures=1, skies=2, density=60, map_step=0.05, film_size=(220, 130), film_exposures=1, frames=4
-)
-GREY = Matter("#808080")
+TINY = Quality((420, 300), samples=1, density=60, film_size=(220, 130), film_samples=1, film_density=60, frames=4)
+GREY = Material("#808080")
 HOSTILE = "<script>&\"'\x00]]> ]\ud800 \u202e漢字\n" + "long " * 60
 
 
 def wiring(*names: str, failed: str = "") -> Wiring:
     """A chain of components, each of which feeds the next."""
     parts = [
-        Part(name, "a role", (Port("in", "Signal"),) if k else (), (Port("out", "Signal"),), failed=name == failed)
-        for k, name in enumerate(names)
+        Part(name, "a role", ("in",) if k else (), ("out",), failed=name == failed) for k, name in enumerate(names)
     ]
     links = [Link(one, "out", other, "in") for one, other in pairwise(names)]
     return Wiring("A chain", tuple(parts), tuple(links))
 
 
-def camera_image(spot: tuple[int, int] | None) -> Sight:
+def camera_image(spot: tuple[int, int] | None) -> CameraImage:
     """An image of a room with the plate at a spot, or nowhere."""
     picture = np.full((120, 160, 3), (120, 110, 90), np.uint8)
     if spot is not None:
         x, y = spot
         picture[y : y + 12, x : x + 10], picture[y : y + 12, x + 10 : x + 20] = (0, 220, 220), (220, 0, 220)
-    return Sight(picture, 1.0, "x 1.0 m", lost=spot is None)
+    return CameraImage(picture, 1.0, "x 1.0 m", lost=spot is None)
 
 
 @pytest.fixture(scope="module")
@@ -143,12 +138,11 @@ def test_the_path_is_blue_by_the_tracker_and_orange_by_odometry(
     run: RunRecord, apartment: Apartment, album: list[Path]
 ) -> None:
     frame = (0.035 * 420, 84 + 6, 0.965 * 420, 300 - 62 - 14)
-    view = still.plan(house(apartment), TINY.size, frame)
+    view = plan(house(apartment), TINY.size, frame)
     with Image.open(album[1]) as picture:
         for k, colour in ((4, BLUE), (15, ORANGE)):
-            at = np.array([[run.samples[k].x], [run.samples[k].y], [0.0]])
-            column, row, _ = view.project(at)
-            shown = np.array(picture.convert("RGB").getpixel((int(column[0]), int(row[0]))), float)
+            column, row = view.project(np.array([[run.samples[k].x, run.samples[k].y, 0.0]]))[0]
+            shown = np.array(picture.convert("RGB").getpixel((int(column), int(row))), float)
             wanted = np.array(rgb(colour), float)
             # Shade dims a colour; which of its parts is the largest stays.
             cosine = shown @ wanted / np.linalg.norm(shown) / np.linalg.norm(wanted)
@@ -158,11 +152,13 @@ def test_the_path_is_blue_by_the_tracker_and_orange_by_odometry(
 def test_what_is_painted_on_the_floor_is_not_there_before_its_time(run: RunRecord, apartment: Apartment) -> None:
     floor = lay(extent(apartment), apartment.rooms, (), (), run, 100.0)
     for k, colour in ((4, BLUE), (15, ORANGE), (10, FAIL)):
-        at = floor.pixels(np.array([[run.samples[k].x], [run.samples[k].y]], np.float32))[0]
-        assert floor.painted.reshape(-1, 3)[at] == pytest.approx(linear(colour), abs=0.02)
-        assert floor.moment.ravel()[at] == pytest.approx(run.samples[k].time, abs=0.51)
-    nowhere = floor.pixels(np.array([[1.0], [3.0]], np.float32))[0]
-    assert math.isinf(floor.moment.ravel()[nowhere])
+        sample = run.samples[k]
+        column, row = (int(part) for part in floor.place(sample.x, sample.y))
+        assert floor.until(run, sample.time)[row, column] == pytest.approx(linear(colour), abs=0.1)
+        before = floor.until(run, sample.time - 0.8)[row, column]
+        assert (before == floor.bare[row, column]).all()
+    column, row = (int(part) for part in floor.place(1.0, 3.0))
+    assert (floor.painted[row, column] == floor.bare[row, column]).all()
 
 
 @pytest.mark.parametrize(
@@ -222,34 +218,52 @@ def test_the_film_shows_a_failure_for_some_frames_at_its_time(run: RunRecord) ->
 # The scene
 
 
-def test_rays_meet_the_outsides_of_solids_at_the_right_depth() -> None:
-    solids = [
-        box(GREY, (0, 0, 1), (2, 2, 2)),
-        ball(GREY, (4, 0, 1), (1, 1, 1)),
-        cone(GREY, (8, 0, 0), 2, 1, 0.5),
-    ]
-    points = np.array([[-2.0, -2.0, 0.0], [10.0, 2.0, 2.0]])
-    for number, solid in enumerate(solids):
-        view = View.parallel((0.0, 0.0, -1.0), points, 0.05)
-        seen = look([solid], view)
-        top = np.array([[solid.centre[0] + 0.01], [0.01], [2.0]])
-        column, row, depth = view.project(top)
-        assert seen.depth[int(row[0]), int(column[0])] == pytest.approx(depth[0], abs=1e-3), number
+@pytest.mark.parametrize(
+    ("solid", "volume"),
+    [
+        (box(GREY, (1, 2, 3), (2, 3, 4), turn=upright(0.7)), 24.0),
+        (box(GREY, (1, 2, 3), (2, 3, 4), 0.0005), 24.0),
+        (cone(GREY, (8, 0, 0), 2, 1, 0.5), math.pi * 2 / 3 * 1.75),
+        (ball(GREY, (4, 0, 1), (1, 2, 3)), 8 * math.pi),
+    ],
+    ids=["turned box", "sharp box", "cone", "ball"],
+)
+def test_solids_are_closed_and_face_outwards(solid: Solid, volume: float) -> None:
+    corners = solid.points[solid.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    # The divergence theorem: only a closed surface whose faces all turn outwards has the volume.
+    assert (across * corners[:, 0]).sum() / 6.0 == pytest.approx(volume, rel=0.03)
+    outward = (across[:, None] * solid.normals[solid.faces]).sum(axis=2)
+    assert (outward > -1e-9).all()
+    assert np.linalg.norm(solid.normals, axis=1) == pytest.approx(1.0)
 
 
-def test_normals_point_outwards_whichever_way_a_solid_is_turned() -> None:
-    solid = box(GREY, (1, 2, 3), (2, 1, 1), turn=upright(0.7))
-    ahead = np.array([[math.cos(0.7)], [math.sin(0.7)], [0.0]])
-    surface = (np.array([[1.0], [2.0], [3.0]]) + ahead).astype(np.float32)
-    assert solid.normal(solid.local(surface)) == pytest.approx(ahead, abs=1e-3)
+def test_a_picture_shows_things_where_the_view_projects_them() -> None:
+    places = {"#ff0000": (-1.0, 0.5, 0.3), "#00ff00": (1.2, -0.6, 0.3), "#0000ff": (0.9, 0.9, 0.3)}
+    solids = [ball(Material(colour), place, (0.2, 0.2, 0.2)) for colour, place in places.items()]
+    scene = Scene(solids, robot(), (-2.0, -2.0, 2.0, 2.0), np.full((8, 8, 3), 0.5, np.float32))
+    # A frame that lies off the middle, so that the picture's principal point does as well.
+    view = perspective(solids, (240, 160), (90.0, 10.0, 230.0, 80.0))
+    whole = scene.picture(view, 4)
+    window = (80, 5, 240, 90)
+    part = scene.picture(view, 4, window)
+    for k, place in enumerate(places.values()):
+        column, row = (int(pixel) for pixel in view.project(np.array([place]))[0])
+        for shown in (whole[row, column], part[row - window[1], column - window[0]]):
+            assert shown.argmax() == k
+            assert shown[k] > 2 * np.delete(shown, k).max()
 
 
-def test_a_window_of_a_view_sees_what_the_whole_view_sees_there(apartment: Apartment) -> None:
-    solids = house(apartment)
-    view = still.perspective(solids, (200, 120), (5, 5, 195, 115))
-    window = (slice(30, 70), slice(50, 120))
-    whole, part = look(solids, view), look(solids, view.cropped(window))
-    assert (part.which == whole.which[window]).mean() > 0.995
+def test_the_robot_is_where_it_was_put_and_nowhere_before() -> None:
+    solids = [box(GREY, (0, 0, 0.1), (4, 4, 0.02))]
+    scene = Scene(solids, robot(), (-2.0, -2.0, 2.0, 2.0), np.full((8, 8, 3), 0.5, np.float32))
+    view = plan(solids, (120, 120), (10, 10, 110, 110))
+    column, row = (int(pixel) for pixel in view.project(np.array([[1.0, -0.5, PLATE_HEIGHT]]))[0])
+    empty = scene.picture(view, 4)[row, column]
+    scene.change(Sample(0.0, 1.0 - 0.085, -0.5))
+    magenta = scene.picture(view, 4)[row, column]
+    assert magenta[1] < 0.5 * min(magenta[0], magenta[2])
+    assert np.ptp(empty) < 0.3 * empty.max()
 
 
 def test_colours_survive_the_way_to_linear_light_and_back() -> None:
@@ -264,16 +278,22 @@ def test_moving_the_sofa_in_turtle_moves_it_in_the_picture(apartment: Apartment,
     plan.set((sofa, HOME.x, Literal(2.4)))
     moved = read_apartment(plan)
     before, after = (
-        {tuple(round(part, 3) for part in solid.centre) for solid in house(home)} for home in (apartment, moved)
+        {
+            tuple(np.round(np.append(solid.points.min(axis=0), np.ptp(solid.points)), 3).tolist())
+            for solid in house(home)
+        }
+        for home in (apartment, moved)
     )
-    shifted = {(round(x + 1.11, 3), y, z) for x, y, z in before - after}
+    shifted = {(round(x + 1.11, 3), *rest) for x, *rest in before - after}
     assert shifted == after - before
 
 
 def test_furniture_of_an_unknown_kind_is_drawn_as_a_block(apartment: Apartment) -> None:
     oddity = replace(apartment.furniture[0], kind="Harpsichord", height=1.3)
-    home = replace(apartment, furniture=(oddity,))
-    assert max(solid.centre[2] + solid.half[2] for solid in house(home)[1:-5]) <= 1.31
+    walls = replace(apartment, furniture=(), cameras=())
+    solids = house(replace(walls, furniture=(oddity,)))
+    assert len(solids) == len(house(walls)) + 1
+    assert max(solid.points[:, 2].max() for solid in solids) == pytest.approx(1.3)
 
 
 def test_the_view_area_is_what_the_camera_sees_of_the_living_room(apartment: Apartment) -> None:
@@ -294,50 +314,52 @@ def test_the_svg_is_xml_and_names_every_component(album: list[Path], run: RunRec
 
 
 def test_hostile_names_are_escaped_and_cannot_break_the_drawing() -> None:
-    part = Part(HOSTILE, HOSTILE, outputs=(Port(HOSTILE, HOSTILE),))
-    sink = Part("sink", inputs=(Port(HOSTILE, HOSTILE),))
+    part = Part(HOSTILE, HOSTILE, outputs=(HOSTILE,))
+    sink = Part("sink", inputs=(HOSTILE,))
     drawing = draw_wiring(Wiring(HOSTILE, (part, sink), (Link(HOSTILE, HOSTILE, "sink", HOSTILE),)))
-    text = svg(drawing)
+    text = source(drawing)
     assert "<script" not in text
     root = ElementTree.fromstring(text.encode("utf-8", "strict"))
     assert "<script>&" in "".join(root.itertext())
-    assert drawing.width < 1500
-    assert image(drawing, 1).width == drawing.width
+    assert int(drawing.get("width", "0")) < 1500
+    assert image(drawing).width == int(drawing.get("width", "0"))
 
 
 def test_components_stand_in_the_order_in_which_they_feed_each_other() -> None:
-    layout = arrange(wiring("a", "b", "c", "d"))
-    assert [layout.boxes[name].layer for name in "abcd"] == [0, 1, 2, 3]
-    ends = [layout.boxes[name].x for name in "abcd"]
-    assert ends == sorted(ends)
+    boxes, curves = arrange(wiring("a", "b", "c", "d"))
+    assert [box.part.name for box in sorted(boxes, key=lambda box: box.x)] == list("abcd")
+    assert len(curves) == 3
 
 
-def test_boxes_of_a_diagram_never_overlap() -> None:
-    parts = tuple(
-        Part(f"p{k}", inputs=tuple(Port(f"i{j}") for j in range(k)), outputs=(Port("out", "T"),)) for k in range(7)
-    )
+def test_boxes_of_a_diagram_never_overlap_and_links_join_their_ports() -> None:
+    parts = tuple(Part(f"p{k}", inputs=tuple(f"i{j}" for j in range(k)), outputs=("out",)) for k in range(7))
     links = tuple(Link(f"p{j}", "out", f"p{k}", f"i{j}") for k in range(7) for j in range(k))
-    boxes = [box_ for layer in arrange(Wiring("all to all", parts, links)).layers for box_ in layer]
+    boxes, curves = arrange(Wiring("all to all", parts, links))
     for k, one in enumerate(boxes):
         for other in boxes[k + 1 :]:
             apart = one.x + one.width < other.x or other.x + other.width < one.x
             assert apart or one.y + one.height <= other.y or other.y + other.height <= one.y
+    outputs = {(round(box.x + box.width), round(box.y + TOP + ROW / 2)) for box in boxes}
+    inputs = {(round(b.x), round(b.y + TOP + ROW * (k + 0.5))) for b in boxes for k in range(len(b.part.inputs))}
+    assert {(round(curve[0][0]), round(curve[0][1])) for curve in curves} <= outputs
+    assert {(round(curve[-1][0]), round(curve[-1][1])) for curve in curves} == inputs
 
 
 def test_a_configuration_that_feeds_itself_is_drawn_with_links_that_run_back() -> None:
     loop = wiring("a", "b")
     back = replace(
         loop,
-        parts=(replace(loop.parts[0], inputs=(Port("in", "Signal"),)), loop.parts[1]),
+        parts=(replace(loop.parts[0], inputs=("in",)), loop.parts[1]),
         links=(*loop.links, Link("b", "out", "a", "in"), Link("b", "out", "b", "in")),
     )
-    layout = arrange(back)
-    assert [link.sink for link in layout.backward] == ["a", "b"]
-    assert "<svg" in svg(draw_wiring(back))
+    _, curves = arrange(back)
+    assert sum(curve[-1][0] < curve[0][0] for curve in curves) == 2
+    assert min(y for curve in curves for _, y in curve) >= 60.0
+    assert "<svg" in source(draw_wiring(back))
 
 
 def test_an_empty_configuration_has_a_diagram_too() -> None:
-    assert "configurator" in svg(draw_wiring(Wiring("Nothing", ())))
+    assert "configurator" in source(draw_wiring(Wiring("Nothing", ())))
 
 
 def test_wirings_with_links_to_nowhere_or_double_names_are_refused() -> None:

@@ -22,6 +22,7 @@ from selfconf.site import Site
 from tests.lab import PREFIXES, iri, write_advertisements
 from tests.site.served import KEYS, ask, serve
 
+pytestmark = pytest.mark.process
 SLEEPER = iri("sleeper")
 
 
@@ -99,7 +100,7 @@ def test_a_component_that_runs_is_not_started_twice_and_ends_with_its_site(
     assert len([path for path in folder.iterdir() if path.name.isdigit()]) == 1
 
 
-def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_told(
+def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_reported(
     network: Network, tmp_path: Path, sites: Callable[[Path], Site]
 ) -> None:
     site = sites(dormant(tmp_path / "here", f"{sys.executable} -c 'raise SystemExit(3)'"))
@@ -150,13 +151,13 @@ def test_only_what_the_site_itself_advertises_with_a_command_can_be_started(
     assert site.processes.by_component == {}
 
 
-def test_a_site_that_is_not_told_its_ecology_starts_nothing(network: Network, tmp_path: Path) -> None:
+def test_a_site_without_an_environment_starts_nothing(network: Network, tmp_path: Path) -> None:
     site = serve(network, dormant(tmp_path / "here", "true"))
     with pytest.raises(PeerError, match="cannot start"):
         site.start(SLEEPER)
 
 
-def test_a_broad_question_wakes_nobody(network: Network, tmp_path: Path, sites: Callable[[Path], Site]) -> None:
+def test_a_broad_question_starts_no_component(network: Network, tmp_path: Path, sites: Callable[[Path], Site]) -> None:
     site = sites(dormant(tmp_path / "here", python("pass")))
     for key in ("**", "selfconf/lab/site/**", "selfconf/**"):
         ask(network, key, encode(Wake(SLEEPER)))
@@ -194,7 +195,7 @@ def test_processes_that_do_not_want_to_end_are_waited_for_together(
     assert time.monotonic() - began < 2.0
 
 
-def test_the_end_of_a_process_that_was_started_again_at_once_is_told_once_for_each(
+def test_each_end_of_a_process_that_is_started_again_at_once_is_reported_once(
     network: Network, tmp_path: Path, sites: Callable[[Path], Site]
 ) -> None:
     code = 'import os; count = len(os.listdir()); open(str(count), "w"); raise SystemExit(count)'

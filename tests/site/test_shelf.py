@@ -116,7 +116,7 @@ def test_of_two_advertisements_of_one_component_the_first_counts_and_the_other_i
     assert "b.ttl" in complaints[0]
 
 
-def test_a_folder_that_is_called_like_a_file_is_named_not_stumbled_over(tmp_path: Path) -> None:
+def test_an_empty_folder_that_is_called_like_a_file_is_no_trouble(tmp_path: Path) -> None:
     (tmp_path / "folder.ttl").mkdir()
     complaints: list[str] = []
     shelf = Shelf([tmp_path], complaints.append)

@@ -31,7 +31,7 @@ def test_one_advertisement_may_be_asked_for_alone_or_all_come(network: Network, 
     assert len(ask(network, KEYS.advertisement("home", iri("person-tracker"))).samples) == 1
 
 
-def test_a_change_is_told_and_the_next_answer_has_a_new_revision(network: Network, tmp_path: Path) -> None:
+def test_a_change_is_announced_and_the_next_answer_has_a_new_revision(network: Network, tmp_path: Path) -> None:
     serve(network, write_advertisements(tmp_path, "tracker"))
     told: list[Sample] = []
     network.node().subscribe(KEYS.changed(), told.append)
@@ -44,7 +44,7 @@ def test_a_change_is_told_and_the_next_answer_has_a_new_revision(network: Networ
     assert {page.total for page in after} == {2}
 
 
-def test_nothing_is_told_while_nothing_changes(network: Network, tmp_path: Path) -> None:
+def test_nothing_is_announced_while_nothing_changes(network: Network, tmp_path: Path) -> None:
     serve(network, write_advertisements(tmp_path, "tracker"))
     told: list[Sample] = []
     network.node().subscribe(KEYS.changed(), told.append)

@@ -22,21 +22,26 @@ def render(report: Report) -> str:
     suites = ElementTree.Element("testsuites", {"name": "selfconf validate", **totals})
     suite = ElementTree.SubElement(suites, "testsuite", {"name": "selfconf validate", "skipped": "0", **totals})
     for file in report.files:
-        case = ElementTree.SubElement(suite, "testcase", {"classname": "selfconf.validate", "name": _xml(file)})
-        found = [diagnostic for diagnostic in report.diagnostics if diagnostic.file == file]
-        errors = [diagnostic for diagnostic in found if diagnostic.severity is Severity.ERROR]
-        if errors or file in report.unreadable:
-            kind = "error" if file in report.unreadable else "failure"
-            first = errors[0].message if errors else "cannot be read"
-            code = errors[0].code if errors else "SC-S03"
-            outcome = ElementTree.SubElement(case, kind, {"message": _xml(first), "type": code})
-            outcome.text = _xml("\n".join(line(diagnostic) for diagnostic in errors))
-        warnings = [diagnostic for diagnostic in found if diagnostic.severity is Severity.WARNING]
-        if warnings:
-            output = ElementTree.SubElement(case, "system-out")
-            output.text = _xml("\n".join(line(diagnostic) for diagnostic in warnings))
+        _add_case(suite, file, report)
     ElementTree.indent(suites)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(suites, encoding="unicode") + "\n"
+
+
+def _add_case(suite: ElementTree.Element, file: str, report: Report) -> None:
+    """The test case of one file."""
+    case = ElementTree.SubElement(suite, "testcase", {"classname": "selfconf.validate", "name": _xml(file)})
+    found = [diagnostic for diagnostic in report.diagnostics if diagnostic.file == file]
+    errors = [diagnostic for diagnostic in found if diagnostic.severity is Severity.ERROR]
+    if errors or file in report.unreadable:
+        kind = "error" if file in report.unreadable else "failure"
+        first = errors[0].message if errors else "cannot be read"
+        code = errors[0].code if errors else "SC-S03"
+        outcome = ElementTree.SubElement(case, kind, {"message": _xml(first), "type": code})
+        outcome.text = _xml("\n".join(line(diagnostic) for diagnostic in errors))
+    warnings = [diagnostic for diagnostic in found if diagnostic.severity is Severity.WARNING]
+    if warnings:
+        output = ElementTree.SubElement(case, "system-out")
+        output.text = _xml("\n".join(line(diagnostic) for diagnostic in warnings))
 
 
 def _xml(text: str) -> str:

@@ -16,7 +16,7 @@ def render(report: Report) -> str:
 
 
 def illustrate(report: Report) -> str:
-    """The same for a terminal: in colour, with the line of the file underlined below each problem."""
+    """The problems for a terminal: in colour, with the line of the file underlined below each."""
     return "".join(f"{_coloured(found)}\n{_underlined(found)}" for found in report.diagnostics)
 
 

@@ -1,12 +1,12 @@
-"""Folding: documents of Turtle as clauses, with what blank nodes say inside the clause that leads to them.
+"""Inlining: documents of Turtle as statements, with what is said of a blank node inside the statement that leads to it.
 
 Making an object of every triple costs more than parsing it. So Oxigraph's parser is connected to Oxigraph's own
-serialiser, a few hundred triples at a time, and what comes out is text of one form only: a line for each predicate of
-a subject, which is a clause (`selfconf.rdf.clauses`).
+serialiser, a few hundred triples at a time, and what comes out is text in one layout only: a line for each predicate of
+a subject, which is a statement (`selfconf.rdf.advertisements.statements`).
 
-Blank nodes become part of the clause that leads to them: `sc:hasInput [ sc:name "pose" ; ... ]`, as their author
+Blank nodes become part of the statement that leads to them: `sc:hasInput [ sc:name "pose" ; ... ]`, as their author
 wrote them. That is sound where every blank node is written in brackets or as a list, so that exactly one statement
-leads to it. Labels of blank nodes have become names before (`selfconf.rdf.pieces`).
+leads to it. Labels of blank nodes have become names before (`selfconf.rdf.advertisements.segments`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from selfconf.rdf.advertisements.statements import END, NotInlinableError, State
 from selfconf.rdf.vocabulary import FIRST, NIL, REST
 
 CHUNK_TRIPLES = 512
-"""Triples per piece of text: the text of so many stays in the processor's cache."""
+"""Triples that are written at a time: the text of so many stays in the processor's cache."""
 _DEPTH = 30
 """How deep blank nodes may lie in blank nodes, where these are not written one after the other."""
 _CELL = [f"<{FIRST}>", f"<{REST}>"]
@@ -33,24 +33,25 @@ _OBJECT = re.compile(r'<[^<>]*>|"(?:[^"\\]|\\.)*"(?:@[A-Za-z0-9-]+|\^\^<[^<>]*>)
 def inlined(
     text: bytes, source: str, base: str | None, statements: StatementTable
 ) -> dict[str, list[Statement]] | None:
-    """What a document without labels of blank nodes says of each named subject, blank nodes folded into the clauses.
+    """What a document without labels of blank nodes says of each named subject, blank nodes inlined.
 
-    None where that cannot be done: blank nodes that nobody leads to, or that are components. Raises TurtleError.
+    None where that cannot be done: blank nodes that no statement leads to, or that are components. Raises TurtleError.
     """
     try:
         try:
-            subjects = _soon(text, base, statements)
+            subjects = _while_reading(text, base, statements)
         except NotInlinableError:
             subjects = None
-        return _late(text, base, statements) if subjects is None else subjects
+        return _afterwards(text, base, statements) if subjects is None else subjects
     except (SyntaxError, MemoryError) as error:
-        raise turtle.not_turtle(error, source) from None
+        raise turtle.not_turtle(error, source, text) from None
     except NotInlinableError:
         return None
 
 
-def _soon(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]] | None:
-    """The same while reading; None where what brackets say does not come just before or after them, as in lists."""
+# complexity: this loop is most of what loading costs; a call for each of its branches would add a tenth
+def _while_reading(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]] | None:
+    """Inline while reading; None where what brackets say does not come just before or after them, as in lists."""
     triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
     subjects: dict[str, list[Statement]] = {}
     nodes: dict[str, str] = {}
@@ -65,7 +66,7 @@ def _soon(text: bytes, base: str | None, statements: StatementTable) -> dict[str
             if subject != last:
                 if subject[0] == "_":
                     if "_:" in rest:
-                        rest = NEXT.join([_folded(line, take) for line in rest.split(NEXT)])
+                        rest = NEXT.join([_with_brackets(line, take) for line in rest.split(NEXT)])
                     if subject == node:  # a string at the end of the brackets comes after them
                         content = f"{content}{NEXT}{rest}" if content else rest
                         line = f"{predicate} [ {content} ]"
@@ -91,7 +92,7 @@ def _soon(text: bytes, base: str | None, statements: StatementTable) -> dict[str
 
 
 def _leads(line: str) -> bool:
-    """Whether the object of a clause is a blank node. Raises BeyondFoldingError if it has others besides."""
+    """Whether the object of a statement is a blank node. Raises NotInlinableError if it has others besides."""
     said = line[line.index(" ") + 1 :]
     if said.startswith("_:") and " " not in said:
         return True
@@ -100,8 +101,8 @@ def _leads(line: str) -> bool:
     return False
 
 
-def _folded(line: str, take: Callable[[str], str]) -> str:
-    """A clause of a blank node, with what its own blank node says in brackets."""
+def _with_brackets(line: str, take: Callable[[str], str]) -> str:
+    """A statement about a blank node, with what its own blank node says in brackets."""
     if "_:" not in line or not _leads(line):
         return line
     predicate, _, node = line.partition(" ")
@@ -111,8 +112,8 @@ def _folded(line: str, take: Callable[[str], str]) -> str:
         raise NotInlinableError from None
 
 
-def _late(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]]:
-    """The same once all is read, with lists, and each blank node of several objects in a clause of its own."""
+def _afterwards(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]]:
+    """Inline once all is read, with lists, and each blank node of several objects in a statement of its own."""
     triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
     lines: dict[str, list[str]] = {}
     while segment := ox.serialize(islice(triples, CHUNK_TRIPLES), format=ox.RdfFormat.TURTLE):
@@ -127,7 +128,7 @@ def _late(text: bytes, base: str | None, statements: StatementTable) -> dict[str
 
 
 def _nested(said: Iterable[str], lines: dict[str, list[str]], depth: int) -> Iterator[str]:
-    """Clauses with what blank nodes say in the place of these, which are taken out of `lines`."""
+    """Statements with what is said of blank nodes in the place of these, which are taken out of `lines`."""
     if depth > _DEPTH:
         raise NotInlinableError
     for line in said:

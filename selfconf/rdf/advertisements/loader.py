@@ -1,9 +1,9 @@
 """Advertisements by the hundred thousand: from the bytes of a document to profiles, without a store in between.
 
-A component is its IRI and a tuple of clauses that it shares with others (`selfconf.rdf.clauses`). Its profile and its
-triples are made from them when somebody asks, which for a component that no role wants is never. A document that
-cannot be folded into clauses is read by `advertisements.read` instead, and so is each component about which anything
-is unusual: the careful reader is the authority on what conforms, and on how to say what does not.
+A component is its IRI and a tuple of statements that it shares with others (`statements`). Its profile and its triples
+are made from them when they are asked for, which for a component that no role wants is never. A document that cannot be
+inlined is read by the careful reader (`reader.read`) instead, and so is each component about which anything is
+unusual: the careful reader is the authority on what conforms, and on how to say what does not.
 
 A port may have a name of its own, and be described elsewhere. What is said of it there says as much of the port as if
 it stood in brackets, so that is how it is read: `sc:hasInput :in` as `sc:hasInput [ sc:name "in" ; ... ]`, which most
@@ -39,7 +39,7 @@ _NONE: frozenset[IRI] = frozenset()
 
 
 class LoadedAdvertisement(Advertisement):
-    """An advertisement as clauses, of which profile and triples are made when somebody asks."""
+    """An advertisement as statements, of which profile and triples are made when they are asked for."""
 
     __slots__ = ("_origin", "_profile", "_statements")
 
@@ -149,7 +149,7 @@ def _merged(component: IRI, types: frozenset[IRI], statements: tuple[Statement, 
 
 
 def _keyed(statement: Statement, component: IRI) -> list[Keyed]:
-    """The properties that a clause states, each behind what they are ordered by; remembered if all may share them."""
+    """The properties that a statement gives, each behind what they are ordered by; remembered if all may share them."""
     pairs = statement.properties
     own = [(p, _own(v, component) if isinstance(v, BlankNode) and statement.bracketed else v) for p, v in pairs]
     keyed = [(property_order(pair), pair) for pair in own]
@@ -159,7 +159,7 @@ def _keyed(statement: Statement, component: IRI) -> list[Keyed]:
 
 
 def _own(value: BlankNode, component: IRI) -> BlankNode:
-    """A blank node of a clause that several components share, made the component's own."""
+    """A blank node of a statement that several components share, made the component's own."""
     return BlankNode(f"{value}.{blake2s(component.encode(), digest_size=8).hexdigest()}")
 
 
@@ -209,7 +209,7 @@ class Origin:
         return document
 
     def _thing(self, name: str) -> Mapping[Node, list[tuple[IRI, Term]]]:
-        """What is said about a thing: always with the same blank nodes, whoever asks."""
+        """What is said about a thing, each time with the same blank nodes."""
         if name not in self.things:
             return {}
         if name not in self._parsed:
@@ -225,10 +225,13 @@ def _written(subject: str, statements: Iterable[Statement]) -> str:
     return f"{subject} {NEXT.join(statement.text for statement in statements)}{END}"
 
 
+# complexity: the loop over all components; calls in it would cost a tenth of the load
 def read(
     text: bytes, source: str, base: str | None = None, segments: SegmentCache | None = None
 ) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
-    """What `advertisements.read` makes of a document, sooner and smaller; documents may share their pieces.
+    """Every advertisement of a document, in the order of the text, and those that do not conform.
+
+    What the careful reader finds, in less time and memory; documents may share their segments.
 
     Raises TurtleError.
     """
@@ -263,7 +266,7 @@ def read(
 def _judged(
     found: Iterable[Advertisement | tuple[str, list[Statement]]], origin: Origin, known: StatementTable
 ) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
-    """The same advertisements, after a second look at those about which something is unusual."""
+    """All advertisements, with the careful reader's verdict on those about which something is unusual."""
     good: list[Advertisement] = []
     bad: list[MalformedAdvertisement] = []
     for one in found:

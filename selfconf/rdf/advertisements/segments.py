@@ -1,17 +1,18 @@
-"""Documents as pieces of text, each of which is parsed once, however many components say it.
+"""Documents as segments of text, each of which is parsed once, however many components say the same.
 
 Recognising text that has been read before takes a hundredth of the time of reading it. So a document is cut, by one
-regular expression, behind each subject and at the semicolons and full stops between its clauses; only the pieces that
-are new are read, each under a subject of its own, all in one call (`selfconf.rdf.folding`). Of these, many differ
-from others in nothing but strings and digits: labels, serial numbers, coordinates, names of ports. Their common form
-is read once, and filled in for each (`selfconf.rdf.forms`).
+regular expression, behind each subject and at the semicolons and full stops between its statements; only the segments
+that are new are read, each under a subject of its own, all in one call (`inlining`). Of these, many differ from others
+in nothing but strings and digits: labels, serial numbers, coordinates, names of ports. What they have in common is read
+once, and filled in for each (`token_templates`).
 
 Cutting must know which semicolons and full stops separate, so it knows strings, IRIs, comments and brackets: each
-piece consists of whole tokens, with balanced brackets. Therefore the pieces, one by one, say what the document says,
-and none can reach into the next; if one is no clause, then the document is no Turtle. Labels of blank nodes hold in the
-whole document: they become names that no other document has (RDF 1.1 Concepts, section 3.5). Whatever the expression
-does not follow (directives further down, escapes in names, deep brackets), and whatever turns out to be wrong, is left
-to `fold`, which reads the whole document and knows the lines and columns. So is a document in which most is new.
+segment consists of whole tokens, with balanced brackets. Therefore the segments, one by one, say what the document
+says, and none can reach into the next; if one is no statement, then the document is no Turtle. Labels of blank nodes
+hold in the whole document: they become names that no other document has (RDF 1.1 Concepts, section 3.5). Whatever the
+expression does not follow (directives further down, escapes in names, deep brackets), and whatever turns out to be
+wrong, is left to `inlined`, which reads the whole document and knows the lines and columns. So is a document in which
+most is new.
 """
 
 from __future__ import annotations
@@ -25,17 +26,17 @@ import pyoxigraph as ox
 from selfconf.errors import TurtleError
 from selfconf.rdf.advertisements.inlining import inlined
 from selfconf.rdf.advertisements.statements import NotInlinableError, Statement, StatementTable
-from selfconf.rdf.advertisements.token_templates import TokenTemplates, shaped
+from selfconf.rdf.advertisements.token_templates import TokenTemplates, patterns_of
 from selfconf.rdf.turtle import SKOLEM
 
 WINDOW = 1 << 17
-"""Octets that are cut in one call: their pieces stay in the processor's cache."""
+"""Octets that are cut in one call: their segments stay in the processor's cache."""
 NEW_SEGMENTS = 2_000
-"""New pieces after which documents in which most is new are read the other way."""
+"""New segments after which documents in which most is new are read as a whole."""
 BRACKET_DEPTH = 3
 """How deep brackets may lie in brackets."""
-SEGMENT = "urn:selfconf:piece:"
-"""What the subjects are called under which pieces are read."""
+SEGMENT = "urn:selfconf:segment:"
+"""What the subjects are called under which segments are read."""
 _TOKEN = (
     rb'"""[^"\\]*(?:(?:\\.|""?(?!"))[^"\\]*)*"""|"(?!"")[^"\\\n\r]*(?:\\.[^"\\\n\r]*)*"'
     rb"|'''[^'\\]*(?:(?:\\.|''?(?!'))[^'\\]*)*'''|'(?!'')[^'\\\n\r]*(?:\\.[^'\\\n\r]*)*'"
@@ -78,32 +79,32 @@ _LABEL = re.compile(
 _MISPLACED = re.compile(rb"(?:[;\[\0]|\^\^)\s*<%b[^>]*>(?!\Z|\0)" % SKOLEM.encode())
 """A blank node as a predicate or a datatype."""
 _LETTERS = str.maketrans("0123456789", "ghijklmnop")
-"""Letters for digits, which would all become holes of forms."""
+"""Letters for digits, which would all become holes of templates."""
 _END, _SEMICOLON = b".;"
 
 
 @dataclass(slots=True)
 class Context:
-    """What goes before the statements of a document, and what pieces mean after it."""
+    """What goes before the statements of a document, and what segments mean after it."""
 
     head: bytes
     prefixes: dict[bytes, str]
     known: dict[bytes, tuple[Statement, ...]] = field(default_factory=dict)
-    """Of each piece that has been read, what it says."""
+    """Of each segment that has been read, what it says."""
     near: dict[bytes, str] = field(default_factory=dict)
     """What goes before names in the same folder, and behind `#` in the same document."""
     templates: TokenTemplates = field(default_factory=TokenTemplates)
-    """What pieces have in common that differ in strings and digits."""
+    """What segments have in common that differ in strings and digits."""
 
 
 class SegmentCache(StatementTable):
-    """Every clause of one or more documents, and the pieces of text that have been found to say them."""
+    """Every statement of one or more documents, and the segments of text that have been found to make them."""
 
     def __init__(self) -> None:
         super().__init__()
         self._contexts: dict[tuple[bytes, ...], Context] = {}
         self.seen = self.new = 0
-        """How many pieces have been met, and how many for the first time."""
+        """How many segments have been met, and how many for the first time."""
 
     @property
     def pays(self) -> bool:
@@ -111,7 +112,7 @@ class SegmentCache(StatementTable):
         return self.new < NEW_SEGMENTS or 2 * self.new < self.seen
 
     def context(self, head: bytes, base: str | None) -> Context:
-        """What pieces mean after some directives; `base` matters where IRIs are relative. Raises SyntaxError."""
+        """What segments mean after some directives; `base` matters where IRIs are relative. Raises SyntaxError."""
         directives = tuple(filter(None, _HEAD_PARTS.findall(head)))
         key = (*directives, b"" if base is None else base.encode())
         if key not in self._contexts:
@@ -122,19 +123,19 @@ class SegmentCache(StatementTable):
         return self._contexts[key]
 
     def learn(self, cut: Sequence[bytes], context: Context, source: str, base: str | None) -> bool:
-        """Read the pieces that are new. False if there is one that cannot be read by itself."""
+        """Read the segments that are new. False if there is one that cannot be read by itself."""
         unknown = set(cut).difference(context.known)
         new = [segment for segment in unknown if segment[-1] in (_END, _SEMICOLON)]
         self.seen += len(cut) - len(unknown) + len(new)  # the others are subjects
         if not new:
             return self.pays
         try:
-            shapes = shaped(new)
-            samples = context.templates.wanted(shapes)
+            patterns = patterns_of(new)
+            samples = context.templates.wanted(patterns)
             said = self._read(list(samples.values()), context, source, base)
-            for shape, sample in samples.items():
-                context.templates.learn(shape, said[sample], self)
-            odd = context.templates.fill(new, shapes, context.known, self)
+            for pattern, sample in samples.items():
+                context.templates.learn(pattern, said[sample], self)
+            odd = context.templates.fill(new, patterns, context.known, self)
             self.new += len(odd)
             if self.pays:
                 for segment, found in self._read(odd, context, source, base).items():
@@ -146,7 +147,7 @@ class SegmentCache(StatementTable):
     def _read(
         self, segments: Sequence[bytes], context: Context, source: str, base: str | None
     ) -> Mapping[bytes, list[Statement]]:
-        """What pieces say, each read by itself. Raises TurtleError or BeyondFoldingError."""
+        """What segments say, each read by itself. Raises TurtleError or NotInlinableError."""
         if not segments:
             return {}
         text = [
@@ -167,7 +168,9 @@ class SegmentCache(StatementTable):
 def inlined_document(
     text: bytes, source: str, base: str | None, segments: SegmentCache
 ) -> dict[str, list[Statement]] | None:
-    """What a document says of each named subject, from its pieces where much is known; None where `fold` cannot tell.
+    """What a document says of each named subject, from its segments where much is known.
+
+    None where that cannot be told without the careful reader.
 
     Blank nodes with labels have the names of `selfconf.rdf.turtle.SKOLEM`. Raises TurtleError.
     """
@@ -179,7 +182,7 @@ def inlined_document(
 
 
 def _unlabelled(cut: list[bytes], name: bytes) -> list[bytes] | None:
-    """Pieces with names for the labels of blank nodes; None if one has a label where none may stand."""
+    """Segments with names for the labels of blank nodes; None if one has a label where none may stand."""
     labelled = [number for number, segment in enumerate(cut) if b"_:" in segment]
     elsewhere: list[bytes] = []
 
@@ -200,8 +203,9 @@ def _unlabelled(cut: list[bytes], name: bytes) -> list[bytes] | None:
     return cut
 
 
+# complexity: the loop over all segments; calls in it would double what it costs
 def _assembled(text: bytes, source: str, base: str | None, segments: SegmentCache) -> dict[str, list[Statement]] | None:
-    """The same from its pieces; None where that cannot be done."""
+    """What a document says of each named subject, from its segments; None where that cannot be done."""
     text = text if text.endswith(b"\n") else text + b"\n"
     head = _HEAD.match(text)
     assert head is not None
@@ -230,7 +234,7 @@ def _assembled(text: bytes, source: str, base: str | None, segments: SegmentCach
                         return None
                     said, last = subjects[subject] if subject in subjects else subjects.setdefault(subject, []), segment
                 ended = False
-            elif ended:  # a clause where a subject has to stand
+            elif ended:  # a statement where a subject has to stand
                 return None
             else:
                 said += statements
@@ -239,7 +243,7 @@ def _assembled(text: bytes, source: str, base: str | None, segments: SegmentCach
 
 
 def _windows(text: bytes, position: int) -> Iterator[list[bytes] | None]:
-    """The pieces of whole statements, some thousands at a time; None where the document cannot be cut."""
+    """The segments of whole sentences of Turtle, some thousands at a time; None where the document cannot be cut."""
     size = WINDOW
     while True:
         begin = _BEGIN.match(text, position)
@@ -264,7 +268,7 @@ def _windows(text: bytes, position: int) -> Iterator[list[bytes] | None]:
 
 
 def _subject(segment: bytes, context: Context, base: str | None) -> str | None:
-    """The subject that a piece names, as Oxigraph writes it."""
+    """The subject that a segment names, as Oxigraph writes it."""
     found = _NAMED.fullmatch(segment)
     if found is not None:
         namespace = context.prefixes.get(found[1])
@@ -282,7 +286,7 @@ def _subject(segment: bytes, context: Context, base: str | None) -> str | None:
 
 
 def _resolved(segment: bytes, context: Context, base: str | None) -> str | None:
-    """The same, as Oxigraph understands it."""
+    """The subject that a segment names, as Oxigraph reads it."""
     text = b"%b%b a %b." % (context.head, segment, b"<urn:a>")
     try:
         (triple,) = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)

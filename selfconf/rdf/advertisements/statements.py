@@ -1,11 +1,12 @@
-"""Turtle as clauses: a predicate with its objects, as text, kept once however many components say it.
+"""Statements: a predicate with its objects, as text, kept once however many components make the statement.
 
-A line of what Oxigraph writes about a subject, one predicate with its objects, is a *clause* here. Equal text means
-equal statements, so all that follows from a clause alone is worked out once.
+A *statement* is here one line of what Oxigraph writes about a subject: one predicate with all of its objects, so one
+triple or several. Equal texts make equal statements, so all that follows from a statement alone is worked out once.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
@@ -18,18 +19,18 @@ from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import allowed
-from selfconf.rdf.advertisements.fields import COMPONENT, GROUNDING, LINKS, NAME, NEXT, PORTS, STRUCTURE, Field
+from selfconf.rdf.advertisements.fields import COMPONENT, GROUNDING, LINKS, NEXT, PORT_NAME, PORTS, STRUCTURE, Field
 from selfconf.rdf.vocabulary import RDF, SC, TYPE, XSD
 
 END = " .\n"
 """What Oxigraph writes after the last statement about a subject."""
 _NAME = attrgetter("name")
-_SPOKEN_FOR = IRI("urn:selfconf:component")
+_SUBJECT = IRI("urn:selfconf:component")
 _KIND = IRI("urn:selfconf:kind")
-_NOTHING = Profile(_SPOKEN_FOR)
+_NOTHING = Profile(_SUBJECT)
 _NO_TYPES: frozenset[IRI] = frozenset()
 _BEYOND = f"<{SC.Component}>"
-"""What a blank node may not say if it is to be folded: that it is a component itself."""
+"""What a blank node may not say if it is to be inlined: that it is a component itself."""
 _STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
 _SILENT = {f"<{predicate}>" for predicate in STRUCTURE - COMPONENT.predicates}
 """What says nothing of a component itself."""
@@ -50,25 +51,40 @@ _VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)
 class _PortPattern(NamedTuple):
     """What is recognised of the ports, or operational parameters, that one predicate links to."""
 
-    marks: tuple[tuple[str, Field, str], ...]
-    """How each field begins in Turtle, and the group that has its value or the first value in it."""
-    type: str
-    """The group of the type."""
+    once: tuple[str, ...]
+    """How the fields begin in Turtle that have exactly one value."""
+    bounded: tuple[tuple[str, int, float], ...]
+    """How the other fields begin, and how often they may be there."""
     pattern: re.Pattern[str]
+    groups: tuple[int, int, int]
+    """Which groups of the pattern are the name, the type, and the number of the rate."""
 
     @classmethod
     def of(cls, link: Field) -> _PortPattern:
         """The pattern from the table."""
         fields = link.into.fields
-        allowed = "|".join(field.turtle for field in fields if field.most != 0)
-        statement = f"(?:{_KINDS}|{allowed}|<[^<>]*> {_VALUE})"
+        allowed = [field.turtle for field in fields if field.most != 0]
+        if not any(field.into.fields for field in fields if field.most != 0):
+            allowed.append(f"(?P<{SC.value.short}>(?!))")  # there is no rate: a group that matches nothing
+        statement = f"(?:{_KINDS}|{'|'.join(allowed)}|<[^<>]*> {_VALUE})"
+        pattern = re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]")
+        (kind,) = (field.predicate for field in fields if field.least and field is not PORT_NAME)
+        name, type_, rate = (pattern.groupindex[predicate.short] for predicate in (SC.name, kind, SC.value))
         return cls(
-            tuple([(f"<{f.predicate}> ", f, (f.into.fields or (f,))[0].predicate.short) for f in fields]),
-            next(field.predicate.short for field in fields if field.least and field is not NAME),
-            re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]"),
+            tuple([f"<{f.predicate}> " for f in fields if (f.least, f.most) == (1, 1)]),
+            tuple(
+                [
+                    (f"<{f.predicate}> ", f.least, math.inf if f.most is None else f.most)
+                    for f in fields
+                    if (f.least, f.most) != (1, 1)
+                ]
+            ),
+            pattern,
+            (name, type_, rate),
         )
 
 
+_RATED = f"<{SC.rate}> "
 _PORTS = {f"<{link.predicate}>": _PortPattern.of(link) for link in PORTS}
 _PREFERENCE = re.compile(COMPONENT[SC.preference].turtle)
 _COMMAND = re.compile(rf"<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?{GROUNDING[SC.command].turtle} \]")
@@ -113,80 +129,72 @@ class Statement(ABC):
     def read(self) -> Profile:
         """What it adds to a profile."""
         if self.part is None:
-            port = port_of(self.text)
-            self.part = _ported(port) if port else self.carefully()[0]
+            port = port_of(self.predicate, self.text)
+            self.part = _ported(self.predicate, *port) if port else self.carefully()[0]
         return self.part
 
     def carefully(self) -> tuple[Profile, bool]:
-        """The same by the careful reader, and whether it finds fault with it."""
-        text = f"<{_SPOKEN_FOR}> a <{SC.Component}> , <{_KIND}>{NEXT}{self.text}{END}"
+        """What it adds to a profile by the careful reader, and whether that finds a problem in it."""
+        text = f"<{_SUBJECT}> a <{SC.Component}> , <{_KIND}>{NEXT}{self.text}{END}"
         ((_, profile, problems),) = advertisements.profiles(turtle.parse(text, ""))
-        return profile or Profile(_SPOKEN_FOR), bool(problems)
+        return profile or Profile(_SUBJECT), bool(problems)
 
 
 def bracketed(predicate: str, said: Iterable[str]) -> str:
-    """The text of a clause whose object is a blank node that says something."""
+    """The text of a statement whose object is a blank node that says something."""
     return f"{predicate} [ {NEXT.join(said)} ]"
 
 
 def links(predicate: str, text: str) -> Sequence[str]:
-    """The names of ports, or of a grounding, to which a clause links, if it does that alone."""
+    """The names of ports, or of a grounding, to which a statement links, if it does nothing else."""
     said = text[len(predicate) + 1 :]
     return list(dict.fromkeys(said.split(" , "))) if predicate in _LINK and _LINKS.fullmatch(said) else ()
 
 
-class WrittenPort(NamedTuple):
-    """One port, or one operational parameter, as it stands in a text."""
-
-    link: str
-    """The predicate that leads to it, in angle brackets."""
-    name: str
-    type: str
-    rate: str | None
-
-
-def port_of(text: str) -> WrittenPort | None:
-    """The port of a statement with one port that is in order and of a common form.
+def port_of(link: str, text: str) -> tuple[str, str, str | None] | None:
+    """Name, type and number of the rate of the port in a statement, if it has one port in order and of a common form.
 
     Each field has to be there as often as the table says, and its value has to be recognised. To count the predicates
     in the text is enough: one in a string or in brackets would count too, and the statement would be read carefully.
     """
-    link = text.partition(" ")[0]
     known = _PORTS.get(link)
     if known is None:
         return None
-    present = [
-        (field.counts(text.count(mark)), group) for mark, field, group in known.marks if mark in text or field.least
-    ]
-    found = known.pattern.fullmatch(text) if all(counts for counts, _ in present) else None
-    if found is None or any(found[group] is None for _, group in present):
+    once, bounded, pattern, groups = known
+    for mark in once:
+        if text.count(mark) != 1:
+            return None
+    for mark, least, most in bounded:
+        if not least <= text.count(mark) <= most:
+            return None
+    found = pattern.fullmatch(text)
+    if found is None:
         return None
-    said = found.groupdict()
-    return WrittenPort(link, said["name"], said[known.type], said.get("value"))
+    name, type_, rate = found.group(*groups)
+    return None if name is None or type_ is None or (rate is None and _RATED in text) else (name, type_, rate)
 
 
-def _ported(port: WrittenPort) -> Profile:
-    """The part of such a statement."""
-    name, type_ = port.name, IRI(port.type)
-    if port.link == f"<{SC.hasInput}>":
-        return Profile(_SPOKEN_FOR, ports=Ports(inputs=(Input(name, type_),)))
-    if port.link == f"<{SC.hasOutput}>":
-        rate = None if port.rate is None else float(port.rate)
-        return Profile(_SPOKEN_FOR, ports=Ports(outputs=(Output(name, type_, rate),)))
-    return Profile(_SPOKEN_FOR, parameters=(OperationalParameter(name, type_),))
+def _ported(link: str, name: str, kind: str, rate: str | None) -> Profile:
+    """The part of a statement with one port."""
+    type_ = IRI(kind)
+    if link == f"<{SC.hasInput}>":
+        return Profile(_SUBJECT, ports=Ports(inputs=(Input(name, type_),)))
+    if link == f"<{SC.hasOutput}>":
+        return Profile(_SUBJECT, ports=Ports(outputs=(Output(name, type_, None if rate is None else float(rate)),)))
+    return Profile(_SUBJECT, parameters=(OperationalParameter(name, type_),))
 
 
 def setting_of(text: str) -> Profile | None:
     """The part of a statement with a preference or a command, in order and of a common form."""
     command = _COMMAND.fullmatch(text)
     if command is not None:
-        return Profile(_SPOKEN_FOR, command=command["command"])
+        return Profile(_SUBJECT, command=command["command"])
     preference = _PREFERENCE.fullmatch(text)
-    return None if preference is None else Profile(_SPOKEN_FOR, preference=Decimal(preference["preference"]))
+    return None if preference is None else Profile(_SUBJECT, preference=Decimal(preference["preference"]))
 
 
 def _property(text: str) -> tuple[IRI, Term] | None:
-    """The property that a clause with one object of a common form states."""
+    """The property that a statement with one object of a common form states."""
     found = _SIMPLE.fullmatch(text)
     if found is None:
         return None
@@ -204,7 +212,7 @@ def _property(text: str) -> tuple[IRI, Term] | None:
 
 
 class WrittenStatement(Statement):
-    """A clause as it was written."""
+    """A statement as it was written."""
 
     __slots__ = ("text", "types")
     text: str
@@ -219,11 +227,11 @@ class NotInlinableError(Exception):
 
 
 class StatementTable(dict[str, Statement]):
-    """Every clause of one or more documents by its text, made when it is first met."""
+    """Every statement of one or more documents by its text, made when it is first met."""
 
     def __init__(self) -> None:
         self.suspects: set[Statement] = set()
-        """Clauses about which only the careful reader can tell."""
+        """Statements that only the careful reader can judge."""
         self._slots: dict[object, object] = {}
         self._predicates: dict[str, str] = {}
         self._allowed: dict[str, bool] = {}
@@ -239,13 +247,13 @@ class StatementTable(dict[str, Statement]):
             self._structure(statement, predicate)
         else:
             if predicate not in self._allowed:
-                self._allowed[predicate] = allowed(IRI(predicate[1:-1]), _SPOKEN_FOR)
+                self._allowed[predicate] = allowed(IRI(predicate[1:-1]), _SUBJECT)
             if not self._allowed[predicate]:
                 self.suspects.add(statement)
         return statement
 
     def typed(self, said: list[Statement]) -> None:
-        """Make one clause of all that give types to a subject, unless one of them has brackets."""
+        """Make one statement of all that give types to a subject, unless one of them has brackets."""
         kinds = [statement for statement in said if statement.slot is TYPE]
         if len(kinds) > 1 and not any("[" in statement.text for statement in kinds):
             said[said.index(kinds[0])] = self["a " + " , ".join(statement.text[len("a ") :] for statement in kinds)]
@@ -255,20 +263,20 @@ class StatementTable(dict[str, Statement]):
         if _TYPES.fullmatch(statement.text) and turtle.SKOLEM not in statement.text:
             types: set[Term] = {IRI(type_) for type_ in statement.text[len("a <") : -1].split("> , <")}
         else:
-            types = set(turtle.parse(f"<{_SPOKEN_FOR}> {statement.text}{END}", "").values(_SPOKEN_FOR, TYPE))
+            types = set(turtle.parse(f"<{_SUBJECT}> {statement.text}{END}", "").values(_SUBJECT, TYPE))
         statement.slot, statement.part = TYPE, _NOTHING
         statement.types = frozenset([type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_)])
         if len(statement.types) < len(types):
             self.suspects.add(statement)
 
     def _structure(self, statement: Statement, predicate: str) -> None:
-        port = port_of(statement.text)
+        port = port_of(predicate, statement.text)
         if port is None and statement.links:
             self.suspects.add(statement)
             return
         names: list[str] = []
         if port is not None:
-            names = [port.name]
+            names = [port[0]]
         elif predicate in _SILENT:
             statement.part = _NOTHING
         else:
@@ -282,5 +290,5 @@ class StatementTable(dict[str, Statement]):
         statement.slot = self.slot(predicate, *names)
 
     def slot(self, predicate: str, *names: str) -> object:
-        """What only one clause of a component can have; compared by identity, which is quicker."""
+        """What only one statement of a component can have; compared by identity, which is quicker."""
         return self._slots.setdefault((predicate, *names), object())

@@ -1,14 +1,14 @@
-"""Forms: what pieces of Turtle have in common that differ in nothing but their strings and digits.
+"""Token templates: what segments of Turtle have in common that differ in nothing but their strings and digits.
 
-A piece without its strings and digits is its *shape*. Once several pieces of a shape have been met, one of them is read
-with marks in these places. What it says, with holes where the marks are found again, is the *form* of all of them: to
-know what another piece says, no parser is needed.
+A segment without its strings and digits is its *pattern*. Once several segments of a pattern have been met, one of them
+is read with marks in these places. The statements that it makes, with holes where the marks are found again, are the
+*templates* of all of them: to know what another segment says, no parser is needed.
 
-That is sound because a string or a run of digits means itself wherever it stands, and may be replaced by any other.
-In an IRI that holds for what follows the last `#` or `/`, as no term that matters here has digits there.
-Shapes are left alone where it is not so: prefixes and language tags with digits, ports and the like in IRIs, escapes in
-names, strings in single quotes. A shape that has none of that shows that its pieces were taken apart between tokens.
-A datatype does not matter: no literal is looked at here, and none is refused by the parser.
+That is sound because a string or a run of digits means itself wherever it stands, and may be replaced by any other. In
+an IRI that holds for what follows the last `#` or `/`, as no term that matters here has digits there. Patterns are left
+alone where that does not hold: prefixes and language tags with digits, ports and the like in IRIs, escapes in names,
+strings in single quotes. A pattern that has none of that shows that its segments were cut between tokens. A datatype
+does not matter: no literal is looked at here, and none is refused by the parser.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from selfconf.rdf.advertisements.statements import Statement, StatementTable, po
 from selfconf.rdf.vocabulary import SC
 
 OCCURRENCES = 4
-"""Of how many pieces of a shape its form is made."""
+"""After how many segments of a pattern its templates are made."""
 MOST_PATTERNS = 10_000
-"""How many shapes are remembered that have no form yet."""
+"""How many patterns are remembered that have no templates yet."""
 _ESCAPE = rb"\\(?:[tbnrf\"'\\]|u(?!0000)[0-9A-Ca-c][0-9A-Fa-f]{3})"
 _TEXT = rb'"(?!"")[^"\\\n\r\0]*(?:%b[^"\\\n\r\0]*)*"|"""[^"\\\0]*(?:(?:%b|""?(?!"))[^"\\\0]*)*"""' % (_ESCAPE, _ESCAPE)
 _RUN = rb"[0-9]+(?![^<>\s\"#/]{0,250}[#/][^<>\s\"]{0,250}>)"  # no term that matters is longer
@@ -39,42 +39,42 @@ _RATE = re.compile(RATE[SC.value].kind.turtle.encode())
 _MARK = re.compile(r'"s731([0-9]{4})"|731([0-9]{4})')
 
 
-def shaped(segments: Sequence[bytes]) -> list[bytes]:
-    """The shape of each piece. Raises UnicodeDecodeError where one is not UTF-8."""
+def patterns_of(segments: Sequence[bytes]) -> list[bytes]:
+    """The pattern of each segment. Raises UnicodeDecodeError where one is not UTF-8."""
     text = b"\0".join(segments)
     text.decode()
     if b"\1" in text:
         return [b""] * len(segments)
-    shapes = _DIGITS.sub(b"\1", _STRING.sub(b'"', text)).split(b"\0")
-    return shapes if len(shapes) == len(segments) else [b""] * len(segments)
+    patterns = _DIGITS.sub(b"\1", _STRING.sub(b'"', text)).split(b"\0")
+    return patterns if len(patterns) == len(segments) else [b""] * len(segments)
 
 
 @dataclass(frozen=True, slots=True)
 class TokenTemplate:
-    """One clause that the pieces of a shape say, with holes."""
+    """One statement that the segments of a pattern make, with holes."""
 
     predicate: str
     text_template: bytes
     holes: tuple[int, ...]
-    """Which of the strings and digits of a piece belong into the holes."""
+    """Which of the strings and digits of a segment belong into the holes."""
     bracketed: bool
     links: bool
     name: int | None
-    """Of a port, between which quotation marks its name stands, counted from nought."""
+    """Of a port, between which quotation marks its name stands, counted from zero."""
     rate: tuple[int, ...]
     """Of a port, which of the digits are those of its rate."""
     free: bool
-    """Whether what is in the holes does not matter to what such a clause is."""
+    """Whether such a statement is treated alike whatever is in its holes."""
 
     def text(self, segment: bytes) -> str:
-        """The clause that a piece says."""
+        """The statement that a segment makes."""
         values = _HOLE.findall(segment)
         text: bytes = self.text_template % tuple([values[hole] for hole in self.holes])
         return text.decode()
 
 
 class TemplatedStatement(Statement):
-    """A clause that is written out when somebody asks."""
+    """A statement whose text is made when it is asked for."""
 
     __slots__ = ("_segment", "_template")
 
@@ -95,46 +95,46 @@ class TemplatedStatement(Statement):
 
 
 class TokenTemplates:
-    """The forms of the shapes that have been met often enough."""
+    """The templates of the patterns that have been met often enough."""
 
     def __init__(self) -> None:
         self._met: Counter[bytes] = Counter()
         self._templates: dict[bytes, tuple[TokenTemplate, ...]] = {}
 
-    def wanted(self, shapes: Sequence[bytes]) -> dict[bytes, bytes]:
-        """Of the shapes whose form is to be made, a piece with marks."""
+    def wanted(self, patterns: Sequence[bytes]) -> dict[bytes, bytes]:
+        """Of each pattern whose templates are to be made, a segment with marks."""
         found = {}
         if len(self._met) > MOST_PATTERNS:
             self._met.clear()
-        unknown = set(shapes).difference(self._templates)
+        unknown = set(patterns).difference(self._templates)
         if unknown:
-            self._met.update(shape for shape in shapes if shape in unknown)
-        for shape in unknown:
-            if self._met[shape] >= OCCURRENCES:
-                del self._met[shape]
-                self._templates[shape] = ()
-                if _HOLES.search(shape) and _REGULAR.fullmatch(shape) and not _RIGID.search(shape):
-                    found[shape] = _marked(shape)
+            self._met.update(pattern for pattern in patterns if pattern in unknown)
+        for pattern in unknown:
+            if self._met[pattern] >= OCCURRENCES:
+                del self._met[pattern]
+                self._templates[pattern] = ()
+                if _HOLES.search(pattern) and _REGULAR.fullmatch(pattern) and not _RIGID.search(pattern):
+                    found[pattern] = _marked(pattern)
         return found
 
-    def learn(self, shape: bytes, statements: Sequence[Statement], known: StatementTable) -> None:
-        """Make the form of a shape from what its piece with marks says."""
+    def learn(self, pattern: bytes, statements: Sequence[Statement], known: StatementTable) -> None:
+        """Make the templates of a pattern from what its segment with marks says."""
         marks = [mark for statement in statements for mark in _marks(statement.text)]
-        if sorted(marks) == list(range(len(_HOLES.findall(shape)))):
-            self._templates[shape] = tuple([_template(shape, statement, known) for statement in statements])
+        if sorted(marks) == list(range(len(_HOLES.findall(pattern)))):
+            self._templates[pattern] = tuple([_template(pattern, statement, known) for statement in statements])
 
     def fill(
         self,
         segments: Sequence[bytes],
-        shapes: Sequence[bytes],
+        patterns: Sequence[bytes],
         said: dict[bytes, tuple[Statement, ...]],
         known: StatementTable,
     ) -> list[bytes]:
-        """Note down what pieces say whose shapes have forms; the other pieces are returned."""
+        """Note what the segments say whose patterns have templates, and return the other segments."""
         odd: list[bytes] = []
         templates_of = self._templates.get
-        for segment, shape in zip(segments, shapes, strict=True):
-            templates = templates_of(shape)
+        for segment, pattern in zip(segments, patterns, strict=True):
+            templates = templates_of(pattern)
             if not templates:
                 odd.append(segment)
             else:
@@ -145,7 +145,7 @@ class TokenTemplates:
 
 
 def _filled(template: TokenTemplate, segment: bytes, known: StatementTable) -> Statement:
-    """The clause of a piece, where it matters what is in the holes."""
+    """The statement of a segment, where it matters what is in the holes."""
     statement = TemplatedStatement(template, segment)
     if template.links:
         known.suspects.add(statement)
@@ -172,12 +172,12 @@ def _marks(text: str) -> tuple[int, ...]:
     return tuple([int(mark[1] or mark[2]) for mark in _MARK.finditer(text)])
 
 
-def _template(shape: bytes, statement: Statement, known: StatementTable) -> TokenTemplate:
-    """The form of a clause with marks."""
+def _template(pattern: bytes, statement: Statement, known: StatementTable) -> TokenTemplate:
+    """The template of a statement with marks."""
     text = statement.text
-    port, name = port_of(text), None
-    if port is not None and (mark := _NAME.fullmatch(port.name)):
-        strings = [number for number, hole in enumerate(_HOLES.findall(shape)) if hole == b'"']
+    port, name = port_of(statement.predicate, text), None
+    if port is not None and (mark := _NAME.fullmatch(port[0])):
+        strings = [number for number, hole in enumerate(_HOLES.findall(pattern)) if hole == b'"']
         name = 2 * strings.index(int(mark[1])) + 1
     return TokenTemplate(
         statement.predicate,
@@ -186,12 +186,12 @@ def _template(shape: bytes, statement: Statement, known: StatementTable) -> Toke
         statement.bracketed,
         port is None and len(statement.links) > 0,
         name,
-        () if port is None else _marks(port.rate or ""),
+        () if port is None else _marks(port[2] or ""),
         statement.slot is statement and statement not in known.suspects and not _MARK.search(statement.predicate),
     )
 
 
-def _marked(shape: bytes) -> bytes:
-    """A piece of a shape, with marks for strings and digits."""
-    marks = iter(range(len(shape)))
-    return _HOLES.sub(lambda at: b'"s731%04d"' % next(marks) if at[0] == b'"' else b"731%04d" % next(marks), shape)
+def _marked(pattern: bytes) -> bytes:
+    """A segment of a pattern, with marks for strings and digits."""
+    marks = iter(range(len(pattern)))
+    return _HOLES.sub(lambda at: b'"s731%04d"' % next(marks) if at[0] == b'"' else b"731%04d" % next(marks), pattern)

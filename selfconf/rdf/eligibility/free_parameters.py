@@ -59,7 +59,7 @@ def _about_themselves(document: Document) -> bool:
 class Suitable:
     """Which values conform to what parameters say of theirs, as a value that is bound has to.
 
-    Remembered, as an ecology that has changed states much the same again.
+    Answers are remembered, as an ecology that has changed states mostly what it stated before.
     """
 
     def __init__(self, parameters: Mapping[IRI, Parameter], document: Document) -> None:

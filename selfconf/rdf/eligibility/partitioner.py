@@ -2,7 +2,7 @@
 
 Every role is compiled once. The classes that it asks for are tested once for each set of types in the ecology, its
 other tests once for each *signature*: what a component says of the properties that the role looks at. Where the shape
-says more than the tests, pySHACL judges those who pass them, all in one call.
+says more than the tests, pySHACL judges the components that pass them, all in one call.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from selfconf.errors import TemplateError
@@ -22,7 +23,7 @@ from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_parameters as free_values
 from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
-from selfconf.rdf.eligibility.index import AdvertisementIndex, ClassClosure, Signature, TypeSet
+from selfconf.rdf.eligibility.index import AdvertisementIndex, AdvertisementSignature, ClassClosure, TypeSet
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Triple
@@ -74,7 +75,7 @@ class Partitioner:
         self.suitable = free_values.Suitable(self._parameters, given.document)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
-        """The same task for roles that see another hierarchy."""
+        """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
         return other
@@ -89,7 +90,7 @@ class Partitioner:
 
         def admits(found: EligibleComponent) -> tuple[int, ...]:
             allowed = tuple([_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True)])
-            return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity who is alike
+            return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity which are alike
 
         return Partition(
             tuple(ordered([Candidate(found.profile, admits(found)) for found in role]) for role in eligible), variables
@@ -101,8 +102,8 @@ class Partitioner:
         return (kind for kind in ecology.type_sets if classes <= self._above[kind])
 
     def tested(self, role: CompiledRole, ecology: AdvertisementIndex, type_sets: Iterable[TypeSet]) -> Iterator[Tested]:
-        """What the tests of a role say of the components of some kinds; of those that are alike they say the same."""
-        signature = Signature(role.tests, self.hierarchy)
+        """What the tests of a role say of the components of some kinds; of those that are alike they say one thing."""
+        signature = AdvertisementSignature(role.tests, self.hierarchy)
         for kind in type_sets:
             for alike in ecology.alike(kind, signature):
                 profile = alike[0].profile
@@ -115,14 +116,11 @@ class Partitioner:
         found: list[list[EligibleComponent]] = []
         by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
         for number, role in enumerate(self.roles):
-            tested = self.tested(role, ecology, self.akin(role, ecology))
-            passed = [(alike, verdict.allows) for _, alike, verdict in tested if not verdict.obstacles]
+            passed = self._passed(role, ecology)
+            survivors = [a for a, _ in passed]
             if role.complete:
-                found.append(
-                    [EligibleComponent(a.profile, allows, _NOTHING) for alike, allows in passed for a in alike]
-                )
+                found.append([EligibleComponent(a.profile, outcome.allows, _NOTHING) for a, outcome in passed])
                 continue
-            survivors = [a for alike, _ in passed for a in alike]
             if parameter := self.mentioned(role):
                 by_value[number] = parameter, survivors
                 found.append([])
@@ -133,8 +131,22 @@ class Partitioner:
                 )
         if not self.free:
             return found
+        return self._suited(found, by_value, everything)
+
+    def _passed(self, role: CompiledRole, ecology: AdvertisementIndex) -> list[tuple[Advertisement, TestOutcome]]:
+        """The advertisements that pass all tests of a role, with what the tests say."""
+        tested = self.tested(role, ecology, self.akin(role, ecology))
+        return [(a, outcome) for _, alike, outcome in tested if not outcome.obstacles for a in alike]
+
+    def _suited(
+        self,
+        found: list[list[EligibleComponent]],
+        by_value: Mapping[int, tuple[IRI, list[Advertisement]]],
+        everything: list[Advertisement],
+    ) -> list[list[EligibleComponent]]:
+        """The eligible components that leave values to the free parameters, with the values that suit these."""
         stated: dict[IRI, set[Term]] = {parameter: set() for parameter in self.free}
-        for one in (one for some in found for one in some):
+        for one in chain.from_iterable(found):
             for parameter, values in one.allows.items():
                 stated[parameter] |= values
         for number, (parameter, survivors) in by_value.items():

@@ -1,7 +1,8 @@
-"""Who would play a role if only its type were the one that is asked for: misspelt, or above or below it.
+"""Components that would play a role if only their type were the one that is asked for: misspelt, or above or below it.
 
-A role that asks for :Clok finds nobody, and nothing is wrong with the components. So those whose type alone keeps them
-out are near misses too, if the type is written nearly like the one wanted, or related to it by the ontologies.
+A role that asks for :Clok finds no component, and nothing is wrong with the components. So components that their type
+alone keeps out are near misses too, if the type is written nearly like the one wanted, or related to it by the
+ontologies.
 """
 
 from __future__ import annotations
@@ -30,11 +31,11 @@ MOST_NAMED = 5
 def near_misses_by_type(
     role: CompiledRole, partitioner: Partitioner, ecology: AdvertisementIndex, known: Hierarchy
 ) -> Iterator[NearMiss]:
-    """Those whom one class test alone keeps out, the misspelt ones first, then by what was meant and by component.
+    """The components that one class test alone keeps out: misspelt ones first, then by meaning, then by component.
 
     `known` is the hierarchy that the ontologies have, whatever the role sees.
     """
-    found = {kind: _kinship(role.classes, kind, partitioner.hierarchy, known) for kind in ecology.type_sets}
+    found = {kind: _relation(role.classes, kind, partitioner.hierarchy, known) for kind in ecology.type_sets}
     likely = [(relation, types) for types, relation in found.items() if relation is not None]
     type_sets = sorted(likely, key=lambda one: (one[0][0], str(one[0][1]), sorted(one[1])))
     left = MOST_NAMED
@@ -46,7 +47,7 @@ def near_misses_by_type(
             return
 
 
-def _kinship(
+def _relation(
     classes: Iterable[ClassTest], types: frozenset[IRI], seen: Hierarchy, known: Hierarchy
 ) -> tuple[int, WrongType] | None:
     """How likely (0 most) and in what words the one test that these types fail was meant to pass them."""

@@ -1,7 +1,8 @@
 """What may stand as the value of SHACL's own properties (SHACL, appendix C), as far as readers of templates must know.
 
-`wellformed` asks the shape of shapes, and a rehearsal, and knows the place of what is wrong. This is the same in one
-pass over the statements of a role, without a graph; a test over files that are wrong holds the two together.
+Validation (`selfconf.rdf.validation.well_formedness`) asks the shape of shapes, and pySHACL in a trial run, and knows
+the place of what is wrong. Here one pass over the statements of a role finds most of it, without a graph; a test over
+files that are wrong holds the two together.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import pyoxigraph as ox
 
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.sparql import fault
-from selfconf.rdf.turtle import Document
+from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import FIRST, NIL, SH, XSD
 
 
@@ -46,7 +47,7 @@ WANTED: dict[IRI, str] = {
     SH.property: "a property shape, which has one sh:path",
     SH.pattern: "a regular expression",
     SH.path: "a property or a path of properties",
-    SH.sparql: "a constraint with a SPARQL query that asks nobody else",
+    SH.sparql: "a constraint with a SPARQL query that asks no other machine",
 }
 """What the value of each property has to be, in words."""
 
@@ -57,11 +58,15 @@ def unfit(predicate: IRI) -> str:
     return f"The value of sh:{predicate.short} has to be {wanted}." if wanted else ILL_FORMED
 
 
-def misfit(document: Document, statements: Iterable[tuple[IRI, Term]], variables: frozenset[Term]) -> str | None:
-    """A sentence about the first value that cannot stand where it does; `variables` may stand anywhere."""
-    for predicate, value in statements:
-        if predicate in WANTED and value not in variables and not _fits(document, predicate, value):
-            return unfit(predicate).rstrip(".")
+def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[Term]) -> tuple[Triple, str] | None:
+    """The first statement whose value cannot stand where it does, and a sentence; `variables` may stand anywhere."""
+    for triple in triples:
+        _, predicate, value = triple
+        if predicate not in WANTED or value in variables:
+            continue
+        query = _refused(document, value) if predicate == SH.sparql else None
+        if query is not None or not _fits(document, predicate, value):
+            return query or triple, unfit(predicate).rstrip(".")
     return None
 
 
@@ -84,7 +89,7 @@ def _fits(document: Document, predicate: IRI, value: Term) -> bool:
         return len(document.values(value, SH.path)) == 1
     if predicate == SH.pattern:
         return literal is not None and _compiles(literal.lexical)
-    return literal is None and (predicate != SH.sparql or _asks(document, value))
+    return literal is None
 
 
 def _compiles(pattern: str) -> bool:
@@ -95,19 +100,24 @@ def _compiles(pattern: str) -> bool:
     return True
 
 
-def _asks(document: Document, constraint: Term) -> bool:
-    """Whether the queries of a constraint are SPARQL that asks nobody else (SHACL, 5.3.1)."""
+def _refused(document: Document, constraint: Term) -> Triple | None:
+    """The first query of a constraint that is no SPARQL, or that asks another machine (SHACL, 5.3.1)."""
+    if isinstance(constraint, Literal):
+        return None
     declared = {
         str(document.value(each, SH.prefix)): str(document.value(each, SH.namespace))
         for owner in document.values(constraint, SH.prefixes)
         for each in document.values(owner, SH.declare)
     }
-    queries = [*document.values(constraint, SH.select), *document.values(constraint, SH.ask)]
+    for predicate, query in document.about(constraint):
+        if predicate in (SH.select, SH.ask) and (fault(str(query)) is not None or not _parses(str(query), declared)):
+            return constraint, predicate, query
+    return None
+
+
+def _parses(query: str, prefixes: dict[str, str]) -> bool:
     try:
-        for query in queries:
-            if fault(str(query)) is not None:
-                return False
-            ox.Store().query(str(query), prefixes=declared)
+        ox.Store().query(query, prefixes=prefixes)
     except SyntaxError:
         return False
     return True

@@ -15,11 +15,11 @@ from types import ModuleType
 
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
-from selfconf.rdf.deadline import TimeUp, deadline
+from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
 
 PATTERN_SECONDS = 5.0
-"""How long a pattern may be matched against one value."""
+"""Processor time that matching a pattern against one value may take."""
 _KINDS: Mapping[IRI, tuple[type, ...]] = {
     SH.IRI: (IRI,),
     SH.BlankNode: (BlankNode,),
@@ -119,15 +119,15 @@ def _passes(test: ValueTest, value: Term) -> bool:
 
 
 def _matches(expression: re.Pattern[str], value: str) -> bool:
-    """Whether a pattern is found in a value. Raises TemplateError where that would take for ever."""
+    """Whether a pattern is found in a value. Raises TemplateError where that would take too long."""
     if len(value) < 16:  # too short for the worst of patterns to take long
         return expression.search(value) is not None
     try:
-        with deadline(PATTERN_SECONDS):
+        with processor_limit(PATTERN_SECONDS):
             return expression.search(value) is not None
     except TimeUp:
         raise TemplateError(
-            f"matching the sh:pattern {expression.pattern!r} takes more than {PATTERN_SECONDS:g} s; "
+            f"matching the sh:pattern {expression.pattern!r} takes more than {PATTERN_SECONDS:g} s of processor time; "
             "it probably repeats what is repeated already, as ^(a+)+$ does"
         ) from None
 

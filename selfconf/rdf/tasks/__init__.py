@@ -1,14 +1,17 @@
 """Templates and tasks: read from RDF, with values bound to their parameters.
 
-`TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one. `bind`, `complete` and
+`TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one, and `placed` finds the line
+and column of an error that it raises. `bind`, `complete` and
 `read_term` give parameters their values, `suitable` and `misfits` tell which values a parameter can and cannot have,
 and `free_parameters` which ones are left. `mentions`, `shape_statements` and `ROLE_STRUCTURE` are for readers
 of the roles' shapes.
 """
 
 from selfconf.rdf.tasks.bindings import bind, complete, free_parameters, read_term
+from selfconf.rdf.tasks.mistakes import placed
 from selfconf.rdf.tasks.parameter_values import misfits, suitable
-from selfconf.rdf.tasks.templates import ROLE_STRUCTURE, TaskDocument, mentions, read_task, shape_statements
+from selfconf.rdf.tasks.role_shapes import ROLE_STRUCTURE, mentions, shape_statements
+from selfconf.rdf.tasks.templates import TaskDocument, read_task
 
 __all__ = [
     "ROLE_STRUCTURE",
@@ -18,6 +21,7 @@ __all__ = [
     "free_parameters",
     "mentions",
     "misfits",
+    "placed",
     "read_task",
     "read_term",
     "shape_statements",

@@ -15,7 +15,8 @@ from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import LITERAL
 from selfconf.rdf.tasks.parameter_values import misfits
-from selfconf.rdf.tasks.templates import TaskDocument, shape_statements
+from selfconf.rdf.tasks.role_shapes import shape_statements
+from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SH, XSD
 

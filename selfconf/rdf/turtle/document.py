@@ -1,7 +1,7 @@
 """Turtle in, plain triples out: the fast way to read what needs no line numbers.
 
 The parser is Oxigraph's, some thirty times as fast as rdflib's; its syntax errors carry line and column.
-Nothing here opens a file or a socket: text comes in from whoever owns files, with the name to blame it by.
+Nothing here opens a file or a socket: the caller hands in a text, with the name by which errors call it.
 """
 
 from __future__ import annotations
@@ -93,28 +93,40 @@ def parse(text: str | bytes, source: str, base: str | None = None, predicates: I
 
     Raises TurtleError with line and column where it is not Turtle, or not UTF-8.
     """
+    reader = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base, rename_blank_nodes=True)
+    try:
+        return document_of(reader, source, base, predicates)
+    except (SyntaxError, MemoryError) as error:
+        raise not_turtle(error, source, text) from None
+
+
+def document_of(reader: ox.QuadParser, source: str, base: str | None, predicates: Iterable[IRI] | None) -> Document:
+    """What a parser of Oxigraph reads, or of it the triples with some predicates. Raises what the parser does."""
     only = None if predicates is None else frozenset(map(ox.NamedNode, predicates))
     statements: dict[Node, list[tuple[IRI, Term]]] = defaultdict(list)
     known: dict[object, Any] = {}  # a subject is never a literal, a predicate always an IRI
-    reader = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base, rename_blank_nodes=True)
-    try:
-        for subject, predicate, value, _ in reader:
-            if only is not None and predicate not in only:
-                continue
-            for node in (subject, predicate, value):
-                if node not in known:
-                    known[node] = term(node)
-            statements[known[subject]].append((known[predicate], known[value]))
-    except (SyntaxError, MemoryError) as error:
-        raise not_turtle(error, source) from None
+    for subject, predicate, value, _ in reader:
+        if only is not None and predicate not in only:
+            continue
+        for node in (subject, predicate, value):
+            if node not in known:
+                known[node] = term(node)
+        statements[known[subject]].append((known[predicate], known[value]))
     return Document(source, dict(statements), dict(reader.prefixes), base)
 
 
-def not_turtle(error: SyntaxError | MemoryError, source: str) -> TurtleError:
+def not_turtle(error: SyntaxError | MemoryError, source: str, text: str | bytes) -> TurtleError:
     """Oxigraph's complaint as selfconf's: its message without the position, which the error carries on its own.
 
-    The parser keeps a token in a buffer of 16 MiB, and lacks memory for one that is larger.
+    Of a text in another format of RDF it says what to do. The parser keeps a token in a buffer of 16 MiB, and lacks
+    memory for one that is larger.
     """
+    from selfconf.rdf.turtle.formats import conversion, other_format  # which reads by way of this module
+
+    other = other_format(source, text.encode() if isinstance(text, str) else text)
+    if other is not None:
+        message = f"this is {other.name}, where Turtle is read; convert it: {conversion(source, other)}"
+        return TurtleError(message, file=source)
     if isinstance(error, MemoryError):
         return TurtleError("a literal in it is over 16 MiB, which is more than can be read", file=source)
     head, found, tail = str(error.msg).partition(": ")

@@ -1,7 +1,7 @@
 """Validation of many files at once: texts in, a report out.
 
 Two passes. The first reads every file by Oxigraph and learns which terms there are; a file in which
-nothing is suspicious has passed then. The second looks closely at the others: places by rdflib's parser,
+nothing is suspicious has passed then. The second checks the others: places by rdflib's parser,
 violations by pySHACL, malformed roles, lints. Each file is judged on its own triples. What the files of a
 run share is only the knowledge which terms exist, which can make a warning of a term or take it away, and
 which components are described twice. An ontology is known alike whether it is among the files, given as an
@@ -18,11 +18,15 @@ from functools import cached_property
 
 from selfconf.errors import TurtleError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
+from selfconf.rdf import turtle
 from selfconf.rdf.validation.prefilter import Prefiltered, prefilter
 from selfconf.rdf.validation.syntax import hint, telling
 from selfconf.rdf.validation.term_index import TermIndex, index_of
 
 _NOTHING = "There is no component, template, task, configuration or ontology in this file: nothing to validate."
+MOST_STATEMENTS = 250_000
+"""Statements of a file that is checked for the place of each problem, which takes a thousand times as long as reading:
+a bound on the work that is known before, and is the same on every machine."""
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
@@ -46,7 +50,7 @@ class SourceText:
 
 @dataclass(frozen=True, slots=True)
 class UnclearedFile:
-    """A file that did not pass at first sight."""
+    """A file that the prefilter has not cleared."""
 
     source: SourceText
     elsewhere: dict[str, str] = field(default_factory=dict)
@@ -55,28 +59,28 @@ class UnclearedFile:
 
 @dataclass(frozen=True)
 class FileChecker:
-    """The close look at one file, and all that its outcome depends on besides the file."""
+    """The check of one file, and all that its outcome depends on besides the file."""
 
     shapes: tuple[SourceText, ...]
-    familiar: TermIndex
+    index: TermIndex
 
     def __call__(self, suspect: UnclearedFile) -> list[Diagnostic]:
         """The problems of a file."""
         # rdflib and pySHACL take longer to load than thousands of good files take to pass.
-        from selfconf.rdf.validation import file_check as scrutiny
+        from selfconf.rdf.validation.file_check import FileCheck, shapes_of
 
-        close = scrutiny.FileCheck(scrutiny.shapes_of(*(source.text() for source in self.shapes)), self.familiar)
-        return close.of(suspect.source.text(), suspect.source.name, suspect.source.base, suspect.elsewhere)
+        check = FileCheck(shapes_of(*(source.text() for source in self.shapes)), self.index)
+        return check.of(suspect.source.text(), suspect.source.name, suspect.source.base, suspect.elsewhere)
 
     @cached_property
     def knowledge(self) -> bytes:
         """A digest of the shapes and of the terms that are known."""
-        known = (self.familiar.terms, self.familiar.object_properties, self.familiar.covered)
-        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.familiar.above)))
+        known = (self.index.terms, self.index.object_properties, self.index.covered)
+        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.index.above)))
         return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
 
     def key(self, suspect: UnclearedFile) -> str:
-        """A digest of all that the outcome depends on; whoever remembers outcomes adds the versions of the programs."""
+        """A digest of all that the outcome depends on; a memory of outcomes adds the versions of the programs."""
         source = suspect.source
         elsewhere = repr(sorted(suspect.elsewhere.items()))
         said = (source.name, source.base, elsewhere)
@@ -84,7 +88,7 @@ class FileChecker:
 
 
 CheckEach = Callable[[FileChecker, Sequence[UnclearedFile]], Iterable[list[Diagnostic]]]
-"""Calls a judge for each suspect, in whatever order, process or memory; `map` is one."""
+"""Calls a file checker for each uncleared file, in any order and process, or remembers; `map` is one."""
 
 
 def validate(
@@ -94,30 +98,27 @@ def validate(
     files = list(sources)
     diagnostics: list[Diagnostic] = []
     seen: dict[str, Prefiltered] = {}
-    familiar = index_of(_loaded(source) for source in ontologies)
+    index = index_of(_loaded(source) for source in ontologies)
     for source in files:
-        problems = list(_encoding(source))
-        if not problems:
-            screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
-            problems = list(_syntax(source, screened))
-            if not problems:
-                seen[source.name] = screened
-                familiar.learn(screened)
+        problems, screened = _read(source)
         diagnostics += problems
-    elsewhere = described_twice(seen)
-    suspects = [
-        UnclearedFile(source, elsewhere.get(source.name, {}))
-        for source in files
-        if source.name in seen
-        and (source.name in elsewhere or not (seen[source.name].clear and familiar.clear(seen[source.name])))
-    ]
-    for problems in each(FileChecker(tuple(shapes), familiar), suspects):
+        if screened is not None:
+            seen[source.name] = screened
+            index.learn(screened)
+    uncleared = list(_uncleared(files, seen, index))
+    sizes = [seen[one.source.name].size for one in uncleared]
+    diagnostics += [_too_large(u.source, n) for u, n in zip(uncleared, sizes, strict=True) if n > MOST_STATEMENTS]
+    checked = [one for one, size in zip(uncleared, sizes, strict=True) if size <= MOST_STATEMENTS]
+    for problems in each(FileChecker(tuple(shapes), index), checked):
         diagnostics += problems
-    concerned = {found.file for found in diagnostics}
-    for name, screened in seen.items():
-        if not screened.relevant and name not in concerned:
-            diagnostics.append(Diagnostic(name, 1, 1, "SC-S04", _NOTHING, Severity.WARNING))
+    diagnostics += _irrelevant(seen, {found.file for found in diagnostics})
     return report((source.name for source in files), diagnostics)
+
+
+def _irrelevant(seen: dict[str, Prefiltered], concerned: set[str]) -> list[Diagnostic]:
+    """A warning for each file that says nothing that is validated, and of which nothing else is said."""
+    names = [name for name, screened in seen.items() if not screened.relevant and name not in concerned]
+    return [Diagnostic(name, 1, 1, "SC-S04", _NOTHING, Severity.WARNING) for name in names]
 
 
 def described_twice(seen: dict[str, Prefiltered]) -> dict[str, dict[str, str]]:
@@ -140,13 +141,39 @@ def _digest(*parts: bytes) -> hashlib.blake2s:
 
 
 def _loaded(source: SourceText) -> Prefiltered:
+    """What an ontology declares, in whatever format it is. Raises TurtleError."""
     for fault in _encoding(source):
         raise TurtleError(fault.message, file=source.name, line=fault.line, column=fault.column)
+    octets = source.octets.removeprefix(_BYTE_ORDER_MARK)
+    found = prefilter(octets, source.base, turtle.format_of(source.name, octets).parser)
+    if found.problems:
+        turtle.read_ontology(octets, source.name, source.base)  # which raises, and words it
+    return found
+
+
+def _uncleared(files: Iterable[SourceText], seen: dict[str, Prefiltered], index: TermIndex) -> Iterator[UnclearedFile]:
+    """The files that the prefilter does not clear, or that describe what another file describes."""
+    elsewhere = described_twice(seen)
+    for source in files:
+        found = seen.get(source.name)
+        if found is not None and (source.name in elsewhere or not (found.clear and index.clear(found))):
+            yield UnclearedFile(source, elsewhere.get(source.name, {}))
+
+
+def _read(source: SourceText) -> tuple[list[Diagnostic], Prefiltered | None]:
+    """What the prefilter tells of a file, or why it is no Turtle."""
+    problems = list(_encoding(source))
+    if problems:
+        return problems, None
     screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
-    if screened.problems:
-        problem = screened.problems[0]
-        raise TurtleError(problem.message, file=source.name, line=problem.line, column=problem.column)
-    return screened
+    problems = list(_syntax(source, screened))
+    return problems, None if problems else screened
+
+
+def _too_large(source: SourceText, size: int) -> Diagnostic:
+    message = f"With {size:,} statements this file is too large to be checked in full."
+    advice = f"Split it into files of at most {MOST_STATEMENTS:,} statements."
+    return Diagnostic(source.name, 1, 1, "SC-S05", message, hint=advice, source=source.line(1))
 
 
 def _encoding(source: SourceText) -> Iterator[Diagnostic]:
@@ -167,6 +194,12 @@ def _encoding(source: SourceText) -> Iterator[Diagnostic]:
 
 
 def _syntax(source: SourceText, screened: Prefiltered) -> Iterator[Diagnostic]:
+    other = turtle.other_format(source.name, source.octets) if screened.problems else None
+    if other is not None:
+        message = f"This is {other.name}, and what is validated is Turtle."
+        advice = f"Convert it: {turtle.conversion(source.name, other)}"
+        yield Diagnostic(source.name, 1, 1, "SC-S01", message, hint=advice, source=source.line(1))
+        return
     for problem in telling(screened.problems):
         message = f"This is not Turtle: {problem.message.rstrip('.')}."
         yield Diagnostic(

@@ -1,4 +1,4 @@
-"""The close look at one file: everything that can be found in it, each with its place."""
+"""The check of one file: everything that can be found in it, each with its place."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import lru_cache
 from rdflib import Graph
 
 from selfconf.model.diagnostic import Diagnostic
-from selfconf.rdf.deadline import TimeUp, deadline
+from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.positions import NotTurtleError, Positions, parse_with_positions
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
@@ -18,8 +18,8 @@ from selfconf.rdf.validation.shape_violations import Shapes, shape_violations
 from selfconf.rdf.validation.term_index import TermIndex
 from selfconf.rdf.validation.well_formedness import endless_lists, malformed_roles
 
-FILE_SECONDS = 20.0
-"""How long the close look at one file may take."""
+FILE_SECONDS = 120.0
+"""Processor time that the check of one file may take: the last resort, for what its size does not show."""
 
 
 @lru_cache(maxsize=2)
@@ -33,24 +33,26 @@ def shapes_of(*texts: str) -> Shapes:
 
 @dataclass(frozen=True, slots=True)
 class FileCheck:
-    """What a close look needs, for any number of files."""
+    """What the check of a file needs, for any number of files."""
 
     shapes: Shapes
-    familiar: TermIndex
+    index: TermIndex
 
     def of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
         """The problems of one file, in no particular order."""
         try:
-            with deadline(FILE_SECONDS):
+            with processor_limit(FILE_SECONDS):
                 return self._of(text, name, base, elsewhere)
         except NotTurtleError as error:
             message = f"This is not Turtle 1.1: {error.message.rstrip('.')}."
             return [at(Positions(name, text), error.offset, "SC-S01", message)]
         except RecursionError:
-            message = "This file nests too deeply, or holds too long a list, to be judged."
+            message = "This file nests too deeply, or holds too long a list, to be checked."
             return [at(Positions(name, text), 0, "SC-S05", message)]
         except TimeUp:
-            message = f"This file takes more than {FILE_SECONDS:g} seconds to judge: it is too large, or asks too much."
+            message = (
+                f"This file takes more than {FILE_SECONDS:g} seconds of processor time to check: it asks too much."
+            )
             return [at(Positions(name, text), 0, "SC-S05", message)]
 
     def _of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
@@ -58,5 +60,5 @@ class FileCheck:
         violations = list(endless_lists(graph, positions))
         if not violations:  # pySHACL does not come back from a list without an end
             violations = [*shape_violations(graph, positions, self.shapes), *malformed_roles(graph, positions)]
-        file = LintedFile(graph, positions, self.familiar, elsewhere, self.shapes.all)
+        file = LintedFile(graph, positions, self.index, elsewhere, self.shapes.all)
         return violations + lint(file, conforms=not violations)

@@ -21,7 +21,7 @@ class LintedFile:
 
     graph: Graph
     positions: Positions
-    familiar: TermIndex
+    index: TermIndex
     elsewhere: Mapping[str, str]
     """Components of this file that another file, which is named, describes as well."""
     shapes: Graph = field(default_factory=Graph)

@@ -1,15 +1,15 @@
-"""A first look at a file, as fast as Oxigraph reads it: is it Turtle, and could anything be wrong with it?
+"""The prefilter: a file read as fast as Oxigraph can, to see whether it is Turtle, and whether all is certainly right.
 
 Most files of an ecology are right, and saying so must not cost what finding the place of an error costs.
-The first look clears an advertisement only if every statement in it is one that the shapes are known to
-allow, and leaves all else to `judging`. So it may suspect a good file, which costs time, but it clears no
+The prefilter clears an advertisement only if every statement in it is one that the shapes are known to
+allow, and leaves all else to `file_check`. So it may leave a good file uncleared, which costs time, but it clears no
 bad one; that is a property test.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -65,11 +65,13 @@ class SyntaxProblem:
 
 @dataclass(slots=True)
 class Prefiltered:
-    """What the first look tells about a file."""
+    """What the prefilter tells about a file."""
 
     problems: list[SyntaxProblem] = field(default_factory=list)
     clear: bool = True
     """Whether every shape is certain to hold."""
+    size: int = 0
+    """How many statements the file makes."""
     relevant: bool = False
     """Whether the file speaks of anything that is validated."""
     components: list[str] = field(default_factory=list)
@@ -91,10 +93,10 @@ class Prefiltered:
     prefixes: set[tuple[str, str]] = field(default_factory=set)
 
 
-def prefilter(octets: bytes, base: str | None = None) -> Prefiltered:
-    """Look at a Turtle text in UTF-8 without a byte order mark."""
+def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.RdfFormat.TURTLE) -> Prefiltered:
+    """Look at a text in UTF-8 without a byte order mark: Turtle, or of an ontology another format."""
     found = Prefiltered(prefixes={(match[1].decode(), match[2].decode()) for match in _PREFIX.finditer(octets)})
-    statements = _read(octets, base, found)
+    statements = _read(octets, base, syntax, found)
     for subject, properties in statements.items():
         _note(found, subject, properties)
     advertisements = _Advertisements(statements)
@@ -106,16 +108,16 @@ def prefilter(octets: bytes, base: str | None = None) -> Prefiltered:
     return found
 
 
-def _read(octets: bytes, base: str | None, found: Prefiltered) -> Statements:
+def _read(octets: bytes, base: str | None, syntax: ox.RdfFormat, found: Prefiltered) -> Statements:
     """The statements of a text; what is no Turtle is noted, and reading goes on after it."""
     statements: Statements = {}
-    reader = ox.parse(octets, format=ox.RdfFormat.TURTLE, base_iri=base)
+    reader = ox.parse(octets, format=syntax, base_iri=base)
     while len(found.problems) < MOST_PROBLEMS:
         try:
             for quad in reader:
                 subject, value = quad.subject, quad.object
                 if isinstance(subject, ox.Triple) or isinstance(value, ox.Triple):
-                    found.clear = False  # RDF 1.2; who reads Turtle 1.1 will say where
+                    found.clear = False  # RDF 1.2; the parser of Turtle 1.1 will say where
                     continue
                 key = subject.value if isinstance(subject, ox.NamedNode) else f"_:{subject.value}"
                 term: FileTerm
@@ -140,10 +142,12 @@ def _problem(error: SyntaxError) -> SyntaxProblem:
     return SyntaxProblem(line, column, max(width, 1), tail if head.startswith("Parser error") else error.msg)
 
 
+# complexity: a few branches for each of the things to note, in one pass over the statements
 def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     """Note which terms a subject uses, and whether it declares one."""
     for predicate, values in properties.items():
         found.used.add(predicate)
+        found.size += len(values)
         for value in values:
             if isinstance(value, Lexical):
                 found.literal_of.add(predicate)
@@ -155,13 +159,7 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     types = properties.get(TYPE, {})
     if not _PLACING.isdisjoint(properties):
         found.placed.add(subject)
-        found.above.update(
-            pair
-            for predicate in (RDFS.subClassOf, OWL.equivalentClass)
-            for value in properties.get(predicate, ())
-            if isinstance(value, str)
-            for pair in ((subject, value), *([(value, subject)] if predicate == OWL.equivalentClass else ()))
-        )
+        found.above.update(_above(subject, properties))
     if not _SCHEMA.isdisjoint(types):
         found.terms.add(subject)
         if OWL.ObjectProperty in types:
@@ -170,6 +168,16 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
         found.components.append(subject)
     found.signals.update(value for value in properties.get(SC.signalType, ()) if isinstance(value, str))
     found.relevant = found.relevant or any(_validated(term) for term in (*properties, *types))
+
+
+def _above(subject: str, properties: Properties) -> Iterator[tuple[str, str]]:
+    """A class with each class right above it; equal ones are above each other."""
+    for predicate in (RDFS.subClassOf, OWL.equivalentClass):
+        for value in properties.get(predicate, ()):
+            if isinstance(value, str):
+                yield subject, value
+                if predicate == OWL.equivalentClass:
+                    yield value, subject
 
 
 def _validated(term: FileTerm) -> bool:

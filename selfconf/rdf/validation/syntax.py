@@ -9,7 +9,7 @@ from selfconf.rdf.validation.prefilter import SyntaxProblem
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, UNIT, XSD
 
 USUAL = {"sc": SC, "rob": ROB, "rdf": RDF, "rdfs": RDFS, "owl": OWL, "sh": SH, "xsd": XSD, "unit": UNIT}
-"""The prefixes that everybody uses, with what they stand for."""
+"""The usual prefixes, with what they stand for."""
 _UNDECLARED = re.compile(r"The prefix (?P<prefix>[^:\s]*): has not been declared")
 _HINTS = (
     ("A dot is expected", "Perhaps a semicolon is missing before this."),

@@ -2,7 +2,7 @@
 look.
 
 An ontology covers the namespaces in which it declares classes or properties. A term of a covered
-namespace that nobody declares is most probably misspelt, and RDF would pass over it in silence.
+namespace that no ontology declares is most probably misspelt, and RDF would pass over it in silence.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def namespace(iri: str) -> str:
 
 
 def skeleton(iri: str) -> str:
-    """A namespace without scheme and last character: the same for two that are easily confused."""
+    """A namespace without scheme and last character: equal for two that are easily confused."""
     return iri.partition("://")[2].rstrip("#/").removeprefix("www.").lower()
 
 
@@ -104,7 +104,7 @@ class TermIndex:
 
 def index_of(ontologies: Iterable[Prefiltered]) -> TermIndex:
     """What a run knows from its ontologies."""
-    familiar = TermIndex()
+    index = TermIndex()
     for seen in ontologies:
-        familiar.learn(seen)
-    return familiar
+        index.learn(seen)
+    return index

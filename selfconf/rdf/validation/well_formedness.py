@@ -2,7 +2,7 @@
 
 The shape that W3C gives for shapes (SHACL, appendix C; pySHACL brings it along) finds most of what can be
 wrong, and knows where. Patterns have to be regular expressions and queries SPARQL, which it does not look
-at. What is left shows in a rehearsal: each role is asked about nobody in particular.
+at. What is left shows in a trial run: each role is asked about a component of no properties.
 
 A parameter stands where its value will stand, so both look at the template with a sample in its place:
 one of the parameter's datatype. What a parameter of no particular datatype does in a shape cannot be told
@@ -12,7 +12,7 @@ beforehand.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
 
@@ -40,7 +40,7 @@ _SAMPLES: dict[Node, Literal] = {
     XSD.date: Literal("2000-01-01", datatype=XSD.date),
     XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
 }
-_NOBODY = URIRef("urn:x-selfconf:nobody")
+_STAND_IN = URIRef("urn:x-selfconf:stand-in")
 
 
 def endless_lists(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
@@ -69,8 +69,14 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     faults += [fault for look in (_patterns, _queries) for fault in look(graph, positions)]
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
-    for role in () if faults or _rehearse(shapes, *roles) is None else roles:
-        reason = _rehearse(shapes, role)
+    if not faults and _trial(shapes, *roles) is not None:
+        yield from _trials(shapes, roles, positions)
+
+
+def _trials(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterator[Diagnostic]:
+    """The roles that cannot be evaluated, each tried by itself."""
+    for role in roles:
+        reason = _trial(shapes, role)
         if reason:
             message = f"The shape of this role cannot be evaluated: {reason}"
             yield at(positions, positions.offset(URIRef(role)) or 0, "SC-T13", message)
@@ -178,12 +184,12 @@ def _declared(graph: Graph, constraint: Node) -> Iterator[tuple[str, str]]:
                 yield str(prefix), str(namespace)
 
 
-def _rehearse(shapes: Graph, *roles: str) -> str | None:
+def _trial(shapes: Graph, *roles: str) -> str | None:
     """Why some roles cannot be evaluated, or None if they can."""
     stage = Graph()
-    stage.add((_NOBODY, RDF.type, URIRef(SC.Component)))
+    stage.add((_STAND_IN, RDF.type, URIRef(SC.Component)))
     try:
-        report, text = judged(stage, aimed(shapes, map(IRI, roles), [IRI(_NOBODY)]))
+        report, text = judged(stage, aimed(shapes, map(IRI, roles), [IRI(_STAND_IN)]))
     except (ReportableRuntimeError, AssertionError, ValueError, TypeError, KeyError) as error:
         return _sentence(reason_of(error))
     return _sentence(first_line(text)) if isinstance(report, ValidationFailure) else None

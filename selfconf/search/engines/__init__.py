@@ -1,8 +1,12 @@
 """The engines: depth-first search, matching, clause learning, weighted optimisation.
 
-`CandidateSearch` is depth first over the candidates themselves, `ReducedSearch` over a reduced problem.
-`FollowedMatching`, `shortage` and `impossible` are bipartite matching (`Shortage` is Hall's set). `ClauseSolver` is a
-clause-learning solver, if there is one (`solver_available`), and `minimise` weighted optimisation by it.
+* `CandidateSearch` is depth-first search over the candidates of a problem; `SLOT_HEADROOM` is the number of slots for
+  which it may take steps at once.
+* `ReducedSearch` is depth-first search over a reduced problem, and `first_solution` the least solution found by it.
+* `hall_set` finds roles that lack components (a `HallSet`) by bipartite matching, `unmatchable` the options that are in
+  no matching; a `MaintainedMatching` follows a depth-first search.
+* `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
+  `least_by_clauses` find any or the least solution by it, and `minimise` a solution of least weight.
 """
 
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
@@ -12,7 +16,7 @@ from selfconf.search.engines.clause_learning import (
     least_by_clauses,
     solver_available,
 )
-from selfconf.search.engines.matching import FollowedMatching, Shortage, impossible, shortage
+from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
 from selfconf.search.engines.reduced_search import ReducedSearch, first_solution
 
@@ -20,14 +24,14 @@ __all__ = [
     "SLOT_HEADROOM",
     "CandidateSearch",
     "ClauseSolver",
-    "FollowedMatching",
+    "HallSet",
+    "MaintainedMatching",
     "ReducedSearch",
-    "Shortage",
     "any_by_clauses",
     "first_solution",
-    "impossible",
+    "hall_set",
     "least_by_clauses",
     "minimise",
-    "shortage",
     "solver_available",
+    "unmatchable",
 ]

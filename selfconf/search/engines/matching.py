@@ -3,11 +3,11 @@
 A solution needs a matching of slots and components. Depth-first search and clause learning alike take exponential
 time to see that there is none (the pigeonhole principle); augmenting paths see it in time slots times options. If
 some slots stay unmatched, the slots reached from one of them by alternating paths have together fewer options than
-there are of them (Hall's theorem, 1935): that is the reason to give.
+there are of them (Hall's theorem, 1935): their roles are the reason to give.
 
-If there is a matching, an option that is in none of them is in no solution. Which these are is told by the strongly
+If there is a matching, an option that is in none of them is in no solution. Which these are follows from the strongly
 connected components of the graph that leads from each slot to its matched component and from each component to the
-other slots that could take it, with what is reachable from components that nobody holds (Regin, AAAI 1994).
+other slots that could take it, with what is reachable from components that are unmatched (Regin, AAAI 1994).
 """
 
 from __future__ import annotations
@@ -19,40 +19,45 @@ from selfconf.model.term import IRI
 
 
 @dataclass(frozen=True, slots=True)
-class Shortage:
+class HallSet:
     """Roles that together have fewer components than slots."""
 
     roles: tuple[int, ...]
     wanted: int
+    """The number of their slots."""
     found: int
+    """The number of different components among their options."""
 
 
-def shortage(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> Shortage | None:
-    """The roles that lack components, or None if each slot can have one of its own; `options` are per role."""
-    found = _matched(slots, _pools(options))
-    return found if isinstance(found, Shortage) else None
+def hall_set(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> HallSet | None:
+    """Return roles that lack components, or None if each slot can have one of its own; `options` are per role."""
+    found = _matched(slots, _shared_pools(options))
+    return found if isinstance(found, HallSet) else None
 
 
-def impossible(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> Shortage | set[tuple[int, IRI]]:
-    """The roles that lack components; or else the pairs of a role and an option that are in no matching."""
-    holder = _matched(slots, _pools(options))
-    if isinstance(holder, Shortage):
-        return holder
-    home = {component: slots[slot] for component, slot in holder.items()}
-    leads = {role: {home[c] for c in options[role] if c in home} for role in dict.fromkeys(slots)}
-    free = _leading_to({role for role in leads if any(c not in home for c in options[role])}, leads)
-    group = _groups(leads)
+def unmatchable(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> HallSet | set[tuple[int, IRI]]:
+    """Return the pairs of a role and an option that are in no matching; or else roles that lack components."""
+    slot_of = _matched(slots, _shared_pools(options))
+    if isinstance(slot_of, HallSet):
+        return slot_of
+    matched = {component: slots[slot] for component, slot in slot_of.items()}
+    # Slots of one role have the same options, so that the graph is one of roles: an edge where one could take over a
+    # component of the other.
+    edges = {role: {matched[c] for c in options[role] if c in matched} for role in dict.fromkeys(slots)}
+    free = _reaching({role for role in edges if any(c not in matched for c in options[role])}, edges)
+    group = _strong_components(edges)
     return {
         (role, component)
-        for role in leads
+        for role in edges
         for component in options[role]
-        if component in home and home[component] not in free and group[home[component]] != group[role]
+        if component in matched and matched[component] not in free and group[matched[component]] != group[role]
     }
 
 
-def _leading_to(goals: set[int], leads: Mapping[int, set[int]]) -> set[int]:
+def _reaching(goals: set[int], edges: Mapping[int, set[int]]) -> set[int]:
+    """Return the nodes from which a path leads to one of the goals."""
     backward: dict[int, list[int]] = {}
-    for role, others in leads.items():
+    for role, others in edges.items():
         for other in others:
             backward.setdefault(other, []).append(role)
     found, waiting = set(goals), list(goals)
@@ -64,14 +69,14 @@ def _leading_to(goals: set[int], leads: Mapping[int, set[int]]) -> set[int]:
     return found
 
 
-def _groups(leads: Mapping[int, set[int]]) -> dict[int, int]:
-    """The strongly connected component of each role (Tarjan 1972), without recursion."""
+def _strong_components(edges: Mapping[int, set[int]]) -> dict[int, int]:
+    """Return the strongly connected component of each node, named by one of its nodes (Tarjan 1972), no recursion."""
     order: dict[int, int] = {}
     low: dict[int, int] = {}
     group: dict[int, int] = {}
     stack: list[int] = []
-    for root in leads:
-        work = [(root, iter(leads[root]))] if root not in order else []
+    for root in edges:
+        work = [(root, iter(edges[root]))] if root not in order else []
         if work:
             order[root] = low[root] = len(order)
             stack.append(root)
@@ -81,7 +86,7 @@ def _groups(leads: Mapping[int, set[int]]) -> dict[int, int]:
                 if other not in order:
                     order[other] = low[other] = len(order)
                     stack.append(other)
-                    work.append((other, iter(leads[other])))
+                    work.append((other, iter(edges[other])))
                     break
                 if other not in group:
                     low[role] = min(low[role], order[other])
@@ -98,76 +103,82 @@ def _groups(leads: Mapping[int, set[int]]) -> dict[int, int]:
     return group
 
 
-class FollowedMatching:
-    """A matching that follows a depth-first search: whoever is still to come keeps a component to play it.
+class MaintainedMatching:
+    """A matching maintained along a depth-first search: every slot still to come keeps a component of its own.
 
-    Slots are given components in order. A slot that is taken back need not be undone: what it has is as good as any.
+    Slots are given components in order. When a slot is taken back nothing is undone: its component stays as good as
+    any other until the slot is given one again.
     """
 
     def __init__(self, slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> None:
-        self.slots, self.options = slots, _pools(options)
+        self.slots, self.options = slots, _shared_pools(options)
         found = _matched(slots, self.options)
-        self.shortage = found if isinstance(found, Shortage) else None
-        """The roles that lack components, if there are any: then nobody has a partner."""
-        self.holder: dict[IRI, int] = {} if isinstance(found, Shortage) else found
-        self.held: list[IRI | None] = [None] * len(slots)
-        for component, slot in self.holder.items():
-            self.held[slot] = component
+        self.hall_set = found if isinstance(found, HallSet) else None
+        """Roles that lack components, if there are any: then there is no matching to maintain."""
+        self.slot_of: dict[IRI, int] = {} if isinstance(found, HallSet) else found
+        self.component_of: list[IRI | None] = [None] * len(slots)
+        for component, slot in self.slot_of.items():
+            self.component_of[slot] = component
 
     def give(self, place: int, component: IRI) -> bool:
-        """Give a slot a component, if every later slot can then still have one of its own."""
-        owner, before = self.holder.get(component), self.held[place]
+        """Give a slot a component, if every later slot can then still have one of its own; or else change nothing."""
+        owner, before = self.slot_of.get(component), self.component_of[place]
         if owner == place:
             return True
         if before is not None:
-            del self.holder[before]
-        self.holder[component], self.held[place] = place, component
+            del self.slot_of[before]
+        self.slot_of[component], self.component_of[place] = place, component
         if owner is None:
             return True
-        self.held[owner] = None
-        if _augment(owner, self.slots, self.options, self.holder, self.held, place) is None:
+        self.component_of[owner] = None
+        if _augment(owner, self.slots, self.options, self.slot_of, self.component_of, place) is None:
             return True
-        self.holder[component], self.held[owner], self.held[place] = owner, component, before
+        self.slot_of[component], self.component_of[owner], self.component_of[place] = owner, component, before
         if before is not None:
-            self.holder[before] = place
+            self.slot_of[before] = place
         return False
 
 
-def _pools(options: Sequence[Sequence[IRI]]) -> list[Sequence[IRI]]:
-    """The same options; roles that have the same share one sequence, so that it needs to be looked through but once."""
+def _shared_pools(options: Sequence[Sequence[IRI]]) -> list[Sequence[IRI]]:
+    """Return the options with one sequence for all roles that have equal ones, so that it is looked through once."""
     known: dict[tuple[IRI, ...], Sequence[IRI]] = {}
     return [known.setdefault(tuple(some), some) for some in options]
 
 
-def _matched(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> Shortage | dict[IRI, int]:
-    """For each component that is taken the slot that has it."""
-    holder: dict[IRI, int] = {}
-    held: list[IRI | None] = [None] * len(slots)
+def _matched(slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> HallSet | dict[IRI, int]:
+    """Return for each component that is matched its slot, or else roles that lack components."""
+    slot_of: dict[IRI, int] = {}
+    component_of: list[IRI | None] = [None] * len(slots)
+    # A greedy matching first: augmenting paths are then needed for the few slots that it leaves out.
     for slot, role in enumerate(slots):
         for component in options[role]:
-            if component not in holder:
-                holder[component], held[slot] = slot, component
+            if component not in slot_of:
+                slot_of[component], component_of[slot] = slot, component
                 break
-    for slot, component_held in enumerate(held):
-        if component_held is None:
-            reached = _augment(slot, slots, options, holder, held)
+    for slot, matched in enumerate(component_of):
+        if matched is None:
+            reached = _augment(slot, slots, options, slot_of, component_of)
             if reached is not None:
-                roles = tuple(sorted({slots[other] for other in reached}))
-                found = {one for role in roles for one in options[role]}
-                wanted = sum(1 for role in slots if role in set(roles))
-                return Shortage(roles, wanted, len(found))
-    return holder
+                return _hall_set_of(reached, slots, options)
+    return slot_of
+
+
+def _hall_set_of(reached: set[int], slots: Sequence[int], options: Sequence[Sequence[IRI]]) -> HallSet:
+    """Return the roles of slots that alternating paths reach from an unmatched one: they lack a component."""
+    roles = tuple(sorted({slots[slot] for slot in reached}))
+    found = {component for role in roles for component in options[role]}
+    return HallSet(roles, sum(map(set(roles).__contains__, slots)), len(found))
 
 
 def _augment(
     start: int,
     slots: Sequence[int],
     options: Sequence[Sequence[IRI]],
-    holder: dict[IRI, int],
-    held: list[IRI | None],
+    slot_of: dict[IRI, int],
+    component_of: list[IRI | None],
     settled: int = -1,
 ) -> set[int] | None:
-    """Give the slot a component, moving others but those up to a settled one; or else the slots that are reached.
+    """Match a slot along an augmenting path that leaves slots up to a settled one alone; or return the slots reached.
 
     Options are looked through once, however many slots and roles have them.
     """
@@ -183,12 +194,12 @@ def _augment(
         for component in pool:
             if component in came:
                 continue
-            owner = holder.get(component)
+            owner = slot_of.get(component)
             if owner is not None and owner <= settled:
                 continue
             came[component] = slot
             if owner is None:
-                _shift(component, came, holder, held)
+                _flip(component, came, slot_of, component_of)
                 return None
             if owner not in reached:
                 reached.add(owner)
@@ -196,8 +207,8 @@ def _augment(
     return reached
 
 
-def _shift(component: IRI | None, came: dict[IRI, int], holder: dict[IRI, int], held: list[IRI | None]) -> None:
-    """Hand components on along the path that was found, back to the slot that had none."""
+def _flip(component: IRI | None, came: dict[IRI, int], slot_of: dict[IRI, int], component_of: list[IRI | None]) -> None:
+    """Flip the augmenting path that was found, back to the slot that had no component."""
     while component is not None:
         slot = came[component]
-        holder[component], held[slot], component = slot, component, held[slot]
+        slot_of[component], component_of[slot], component = slot, component, component_of[slot]

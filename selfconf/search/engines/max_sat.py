@@ -1,10 +1,11 @@
-"""Least weight under clauses, guided by cores: the algorithm OLL (Andres et al., ICLP 2012; RC2, JSAT 2019).
+"""Weighted MaxSAT guided by unsatisfiable cores: the algorithm OLL (Andres et al., ICLP 2012; RC2, JSAT 2019).
 
 Assume that no literal with a weight holds. As long as that cannot be, the solver names a *core*: some of the literals,
 of which one at least must hold. The least weight in it is then unavoidable: it is added to the bound and taken off
 each; that a second one of the core holds becomes a literal with that weight of its own (an output of a totalizer),
 and so on. When all can be assumed, the bound is the least weight, and the assumptions describe exactly the solutions
-that have it. Heavy literals are assumed before light ones, so that models come early and cores with much weight first.
+that have it. Heavy literals are assumed before light ones (stratification), so that models come early and cores with
+much weight first.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from selfconf.search.engines.clause_learning import ClauseSolver
 from selfconf.search.reduction import Option
 
 TRIMS = 3
-"""How often a core is asked again for a smaller one."""
+"""How often a smaller core is asked for."""
 
 
 class Minimum(NamedTuple):
@@ -48,11 +49,11 @@ class _Cores:
         """What is left of the weights, with those of the totalizers."""
         self.lightest: tuple[int, list[Option]] | None = None
         self.counters: dict[int, tuple[Any, int]] = {}
-        """For an output of a totalizer: which one, and how many must hold for it."""
+        """For each output of a totalizer: of which one it is, and how many literals must hold for it."""
         self.bound = 0
 
     def run(self) -> Minimum:
-        """Relax cores until there are none, stratum by stratum."""
+        """Process cores until there are none, stratum by stratum."""
         for heavy in self._strata():
             while True:
                 active = [literal for literal, weight in self.weights.items() if weight >= heavy]
@@ -62,7 +63,7 @@ class _Cores:
                 if answer:
                     self._meet()
                     break
-                self._relax(self._trimmed())
+                self._process(self._trimmed())
         for literal in self.weights:
             self.clauses.add([-literal])
         return Minimum(self.bound, True, self.clauses.chosen())
@@ -74,7 +75,7 @@ class _Cores:
             self.lightest = weight, self.clauses.chosen()
 
     def _strata(self) -> Iterator[int]:
-        """Falling limits of weight, each about half of the one before, down to all that is left."""
+        """Yield falling limits of weight, each about half of the one before, down to all that is left."""
         heavy = max(self.weights.values(), default=1)
         while True:
             yield heavy
@@ -83,6 +84,7 @@ class _Cores:
             heavy = max(1, min(heavy // 2, max(w for w in self.weights.values() if w < heavy)))
 
     def _trimmed(self) -> list[int]:
+        """Return the last core, made smaller by asking for a core of it again: a small one raises the bound more."""
         core = self.clauses.core()
         for _ in range(TRIMS):
             if len(core) < 3 or self.clauses.solve(sorted(core), self.budget) is not False:
@@ -93,7 +95,8 @@ class _Cores:
             core = smaller
         return sorted(-literal for literal in core)
 
-    def _relax(self, core: list[int]) -> None:
+    def _process(self, core: list[int]) -> None:
+        """Move the least weight of a core from its literals to the bound, and count how many of them hold."""
         least = min(self.weights[literal] for literal in core)
         self.bound += least
         for literal in core:
@@ -114,7 +117,7 @@ class _Cores:
             self._soft(counter, number + 1, weight)
 
     def _soft(self, counter: Any, number: int, weight: int) -> None:
-        """It costs this weight that so many literals of a totalizer hold."""
+        """Give this weight to the output of a totalizer that a number of its literals hold."""
         output = self.clauses.at_least(counter, number)
         self.counters[output] = counter, number
         self.weights[output] = self.weights.get(output, 0) + weight

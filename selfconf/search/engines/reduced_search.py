@@ -1,9 +1,9 @@
-"""Depth first over the slots of a compact problem, in lexicographic order, within a number of steps.
+"""Depth-first search over the slots of a reduced problem, in lexicographic order, within a number of steps.
 
 The slots are filled in order, and each takes its options in order, so that the first solution met is the least. A
-partial solution is given up as soon as a need of somebody in it can no longer be served: it is not served yet, and no
-slot left has an option that gives it; and, where roles share candidates, as soon as the slots left cannot all have a
-component of their own. No recursion: ten thousand roles are as deep as ten thousand slots.
+partial solution is left (forward checking) as soon as a need of an option in it can no longer be supported: no option
+chosen supports it, and no slot left has an option that does; and, where roles share candidates, as soon as the slots
+left cannot all have a component of their own. There is no recursion: ten thousand roles are ten thousand slots deep.
 """
 
 from __future__ import annotations
@@ -12,54 +12,57 @@ from collections.abc import Iterator
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.matching import FollowedMatching
+from selfconf.search.engines.matching import MaintainedMatching
 from selfconf.search.reduction import Option, ReducedProblem
 
 OPTION_HEADROOM = 32
-"""How many options more than those of the slots that it has reached it may have taken steps for."""
+"""For how many options more than those of the slots reached steps may be taken."""
 
 
 def first_solution(
-    compact: ReducedProblem,
+    reduced: ReducedProblem,
     budget: Budget,
     distinct: bool = True,
-    partners: FollowedMatching | None = None,
+    matching: MaintainedMatching | None = None,
     pace: float | None = None,
 ) -> list[Option] | Undecided | None:
-    """The least solution, one option per slot; None if there is none; Undecided when the steps are used up.
+    """Return the least solution, one option per slot; None if there is none; Undecided when the steps are used up.
 
-    With a pace it is undecided as soon as it has taken more steps than that for each option of the slots reached.
+    With a pace, it is undecided as soon as more steps were taken than that for each option of the slots reached.
     """
-    return next(ReducedSearch(compact, distinct, partners).solutions(budget, pace), None)
+    return next(ReducedSearch(reduced, distinct, matching).solutions(budget, pace), None)
 
 
 class ReducedSearch:
-    """A depth-first search that may be resumed after each solution; a subclass may refuse options."""
+    """A depth-first search that may be resumed after each solution; a subclass may reject options."""
 
     def __init__(
-        self, compact: ReducedProblem, distinct: bool = True, partners: FollowedMatching | None = None
+        self, reduced: ReducedProblem, distinct: bool = True, matching: MaintainedMatching | None = None
     ) -> None:
-        self.compact, self.distinct, self.partners = compact, distinct, partners
-        slots = compact.slots
+        self.reduced, self.distinct, self.matching = reduced, distinct, matching
+        slots = reduced.slots
         self.chosen: list[Option] = []
         self.taken: set[str] = set()
-        self.values: list[tuple[int, ...]] = [compact.values]
-        self.fed = [0] * len(compact.needs)
-        self.needed = [0] * len(compact.needs)
+        self.values: list[tuple[int, ...]] = [reduced.values]
+        self.supports = [0] * len(reduced.needs)
+        """How many options chosen support each need."""
+        self.needed = [0] * len(reduced.needs)
+        """How many options chosen have each need."""
         last_slot = {role: place for place, role in enumerate(slots)}
-        self.last = [-1] * len(compact.needs)
-        """The last slot with an option that gives this need."""
+        self.last = [-1] * len(reduced.needs)
+        """The last slot with an option that supports each need."""
         for role, place in last_slot.items():  # in the order of places
-            for need in {need for option in compact.options[role] for need in option.kind.gives}:
+            for need in {need for option in reduced.options[role] for need in option.kind.supports}:
                 self.last[need] = place
         self.expiring: list[list[int]] = [[] for _ in slots]
+        """For each slot the needs that no later slot can support."""
         for need, place in enumerate(self.last):
             if place >= 0:
                 self.expiring[place].append(need)
 
     def solutions(self, budget: Budget, pace: float | None = None) -> Iterator[list[Option] | Undecided]:
-        """Solutions in lexicographic order; Undecided, and then no more, when the steps are used up."""
-        slots, options = self.compact.slots, self.compact.options
+        """Yield solutions in lexicographic order; Undecided, and then no more, when the steps are used up."""
+        slots, options = self.reduced.slots, self.reduced.options
         reach = OPTION_HEADROOM
         furthest = 0
         cursor = [0] * (len(slots) + 1)
@@ -84,9 +87,11 @@ class ReducedSearch:
                     if place > furthest:
                         furthest = place
                         reach += len(waiting)
+                    # Slots of one role take options in ascending order: their permutations are the same solution.
                     cursor[place] = index if place < len(slots) and slots[place] == role else 0
                     continue
             else:
+                # The budget is settled before each solution: it may be spent elsewhere before the search is resumed.
                 budget.spend(steps)
                 limit, steps = budget.steps, 0
                 yield list(self.chosen)
@@ -100,34 +105,41 @@ class ReducedSearch:
         budget.spend(steps)
 
     def push(self, place: int, option: Option) -> bool:
-        """Put an option into a slot, unless it cannot be there."""
+        """Put an option into a slot, unless no solution has it there beside the options chosen so far."""
         kind = option.kind
         if option.component in self.taken:
             return False
         values = self.values[-1]
-        if self.partners is not None and not self.partners.give(place, option.component):
+        if self.matching is not None and not self.matching.give(place, option.component):
             return False
         if values:
-            values = tuple(value & allowed for value, allowed in zip(values, kind.admits, strict=True))
-            if not all(values):
+            values = tuple([value & allowed for value, allowed in zip(values, kind.admits, strict=True)])
+            if 0 in values:
                 return False
+        needed, supports = self.needed, self.supports
         for need in kind.needs:
-            self.needed[need] += 1
-        for need in kind.gives:
-            self.fed[need] += 1
+            needed[need] += 1
+        for need in kind.supports:
+            supports[need] += 1
         self.values.append(values)
         if self.distinct and option.component:
             self.taken.add(option.component)
         self.chosen.append(option)
-        for need in kind.needs:
-            if not self.fed[need] and self.last[need] <= place:
-                self.pop()
-                return False
-        for need in self.expiring[place]:
-            if self.needed[need] and not self.fed[need]:
-                self.pop()
-                return False
+        if self._unsupportable(place, kind.needs):
+            self.pop()
+            return False
         return True
+
+    def _unsupportable(self, place: int, needs: tuple[int, ...]) -> bool:
+        """Return whether a need has no support among the options chosen, nor in any slot left."""
+        supports = self.supports
+        for need in needs:
+            if not supports[need] and self.last[need] <= place:
+                return True
+        for need in self.expiring[place]:  # noqa: SIM110 - a generator costs more than the loop, once for each step
+            if self.needed[need] and not supports[need]:
+                return True
+        return False
 
     def pop(self) -> None:
         """Take the last option out again."""
@@ -136,5 +148,5 @@ class ReducedSearch:
         self.values.pop()
         for need in option.kind.needs:
             self.needed[need] -= 1
-        for need in option.kind.gives:
-            self.fed[need] -= 1
+        for need in option.kind.supports:
+            self.supports[need] -= 1

@@ -1,7 +1,7 @@
-"""What a configuration has to meet, one by one, and a problem in which only some of it is asked for.
+"""The constraints of a problem, one by one, and the subproblem in which only some of them are in force.
 
-A set of requirements is *in force*; what is not in force is not asked for: a role may then be left unplayed, a need
-unserved, a variable without a common value, a component in several roles. Less in force never makes less possible.
+What is not in force is not asked for: a role may then be left unplayed, a need unsupported, a variable without a common
+value, a component in several roles. Fewer constraints in force never make less possible.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
 from selfconf.search.reduction.arc_consistency import consistent
-from selfconf.search.reduction.dominance import thinned
+from selfconf.search.reduction.dominance import without_dominated
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem
 
 
@@ -26,31 +26,31 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class Fed:
-    """A need, by number, of whoever has it is served."""
+    """A need, by number, has a support, if a component with that need plays."""
 
     need: int
 
 
 @dataclass(frozen=True, slots=True)
 class Shared:
-    """A variable, by number, has a value that everybody who plays allows."""
+    """A variable, by number, has a value that every component that plays admits."""
 
     variable: int
 
 
 @dataclass(frozen=True, slots=True)
 class Distinct:
-    """A component plays one role."""
+    """A component plays one role (the constraint AllDifferent over all slots)."""
 
 
 Constraint = Played | Fed | Shared | Distinct
 
 NO_COMPONENT = IRI("")
-"""Who plays a role that is not in force, for once."""
+"""The component of an option that leaves a slot empty, where the role of the slot need not be played."""
 
 
 def all_of(given: ReducedProblem) -> tuple[Constraint, ...]:
-    """Every requirement of a problem, in the order of roles and needs."""
+    """Return every constraint of a problem, in the order of roles and needs."""
     used = sorted({need for options in given.options for option in options for need in option.kind.needs})
     constrained = [
         variable
@@ -65,68 +65,80 @@ def all_of(given: ReducedProblem) -> tuple[Constraint, ...]:
     )
 
 
-def relaxed(given: ReducedProblem, force: Set[Constraint]) -> ReducedProblem:
-    """The problem with only some requirements in force, after arc consistency; only roles that matter keep slots."""
-    needs = {r.need for r in force if isinstance(r, Fed)}
-    variables = {r.variable for r in force if isinstance(r, Shared)}
-    required = {r.role for r in force if isinstance(r, Played)}
-    matter = required | {source for need in needs for source, _ in given.needs[need].sources}
-    slots = tuple(role for role in given.slots if role in matter)
-    known: dict[tuple[object, ...], InterchangeabilityClass] = {}
-    became: dict[int, InterchangeabilityClass] = {}
-    for kind in given.kinds():
-        if kind.role in matter:
-            became[id(kind)] = _relaxed_kind(kind, needs, variables, known)
-    gone, departures = consistent(tuple(known.values()), len(given.needs), given.values, required)
+def subproblem(given: ReducedProblem, constraints: Set[Constraint]) -> ReducedProblem:
+    """Return the problem with only some constraints in force, after arc consistency.
+
+    Only roles that one of the constraints is about keep their slots. A role that has to play no part may leave its
+    slots empty (`NO_COMPONENT`), as the last option of each.
+    """
+    needs = {one.need for one in constraints if isinstance(one, Fed)}
+    required = {one.role for one in constraints if isinstance(one, Played)}
+    scope = required | {source for need in needs for source, _ in given.needs[need].sources}
+    slots = tuple(role for role in given.slots if role in scope)
+    weaker, kinds = _weakened(given, constraints, scope)
+    removed, removals = consistent(kinds, len(given.needs), given.values, required)
     left = {
         role: [
             Option(option.number, option.component, kind)
             for option in given.options[role]
-            if id(kind := became[id(option.kind)]) not in gone
+            if id(kind := weaker[id(option.kind)]) not in removed
         ]
         for role in dict.fromkeys(slots)
     }
     minima = Counter(slots)
-    kept = thinned(left, minima)
-    free = tuple(ANY_VALUE for _ in given.values)
-    for role in left:
-        if role not in required:
-            nobody = InterchangeabilityClass(role, (), (), free)
-            kept[role] += [Option(-1, NO_COMPONENT, nobody) for _ in range(minima[role])]
+    # With fewer constraints more candidates are interchangeable, so that dominance leaves fewer of them.
+    kept = without_dominated(left, minima)
+    for role in kept.keys() - required:
+        kept[role] += _empty(role, minima[role], len(given.values))
     return ReducedProblem(
         slots,
         tuple(tuple(kept.get(role, ())) for role in range(len(given.options))),
         given.needs,
         given.values,
-        tuple(departures),
+        tuple(removals),
     )
+
+
+def _empty(role: int, slots: int, variables: int) -> list[Option]:
+    """Return the options that leave the slots of a role empty: nothing needed, nothing supported, any value."""
+    kind = InterchangeabilityClass(role, (), (), (ANY_VALUE,) * variables)
+    return [Option(-1, NO_COMPONENT, kind) for _ in range(slots)]
 
 
 def pruned(given: ReducedProblem) -> ReducedProblem:
-    """The problem with everything in force, after arc consistency."""
+    """Return the problem with every constraint in force, after arc consistency."""
     played = dict.fromkeys(given.slots)
-    gone, departures = consistent(given.kinds(), len(given.needs), given.values, played)
-    if not gone:
+    removed, removals = consistent(given.kinds(), len(given.needs), given.values, played)
+    if not removed:
         return given
-    options = tuple(tuple(o for o in some if id(o.kind) not in gone) for some in given.options)
-    return ReducedProblem(given.slots, options, given.needs, given.values, tuple(departures))
+    options = tuple(tuple(o for o in some if id(o.kind) not in removed) for some in given.options)
+    return ReducedProblem(given.slots, options, given.needs, given.values, tuple(removals))
 
 
-def _relaxed_kind(
-    kind: InterchangeabilityClass,
-    needs: Set[int],
-    variables: Set[int],
-    known: dict[tuple[object, ...], InterchangeabilityClass],
-) -> InterchangeabilityClass:
-    key = (
-        kind.role,
-        tuple(need for need in kind.needs if need in needs),
-        tuple(need for need in kind.gives if need in needs),
-        tuple(mask if v in variables else ANY_VALUE for v, mask in enumerate(kind.admits)),
-    )
-    found = known.get(key)
-    if found is None:
-        found = known[key] = InterchangeabilityClass(*key, number=kind.number)
-    found.number = min(found.number, kind.number)
-    found.likes += kind.likes
-    return found
+def _weakened(
+    given: ReducedProblem, constraints: Set[Constraint], scope: Set[int]
+) -> tuple[dict[int, InterchangeabilityClass], tuple[InterchangeabilityClass, ...]]:
+    """Return for each class, by identity, what is left of it under some constraints alone; and all that are left.
+
+    Classes that differ in nothing that these constraints are about become one.
+    """
+    needs = {one.need for one in constraints if isinstance(one, Fed)}
+    variables = {one.variable for one in constraints if isinstance(one, Shared)}
+    weaker: dict[int, InterchangeabilityClass] = {}
+    known: dict[tuple[object, ...], InterchangeabilityClass] = {}
+    for kind in given.kinds():
+        if kind.role not in scope:
+            continue
+        key = (
+            kind.role,
+            tuple(need for need in kind.needs if need in needs),
+            tuple(need for need in kind.supports if need in needs),
+            tuple(mask if v in variables else ANY_VALUE for v, mask in enumerate(kind.admits)),
+        )
+        found = known.get(key)
+        if found is None:
+            found = known[key] = InterchangeabilityClass(*key, number=kind.number)
+        found.number = min(found.number, kind.number)
+        found.signatures += kind.signatures
+        weaker[id(kind)] = found
+    return weaker, tuple(known.values())

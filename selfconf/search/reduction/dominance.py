@@ -1,24 +1,25 @@
-"""The kernel of a problem: the candidates that can matter to its least solution, by kind.
+"""Reduction by dominance: the candidates that can matter to the least solution, by interchangeability class.
 
-Three cuts, each of which keeps the least solution.
-(1) Of each kind of a role with k slots take the first k candidates. If nobody is among all these twice, they suffice:
-of a least solution give each slot in turn the next of them that is of the kind in that slot. All are different, and of
-those in a role, in order, none comes later than the one in its place did. So it is the same solution.
-(2) Otherwise let S be the number of all slots. Of each kind of a role the first S suffice: were a later one in a slot
+A candidate is dominated if in every solution that has it an earlier one could take its place. Three cuts remove
+dominated candidates; each of them keeps the least solution.
+(1) Of each class of a role with k slots take the first k candidates. If no component is among all these twice, they
+suffice: of a least solution give each slot in turn the next of them that is of the class in that slot. All are
+different, and of those in a role, in order, none comes later than the one in its place did. So it is the same solution.
+(2) Otherwise let S be the number of all slots. Of each class of a role the first S suffice: were a later one in a slot
 of the least solution, then at most S - 1 of the first S would play, one of them would be free, and putting it there
-would give a lesser solution. This needs no knowledge of who is eligible for what else.
-(3) Let a group be the candidates that are eligible for exactly the same roles R, with the same kind in each, and k
+would give a lesser solution. This needs no knowledge of which candidates are eligible for other roles as well.
+(3) Let a group be the candidates that are eligible for exactly the same roles R, with the same class in each, and k
 the number of slots of R. For each role of R the first k of the group suffice, by the same argument: members can only
-play in the k slots of R. Keeping one per kind would be wrong as soon as roles share candidates.
-Roles with no slots take no part: nobody plays them before the extension.
+play in the k slots of R. Keeping one per class would be wrong as soon as roles share candidates.
+Roles with no slots take no part: no component plays them before the extension.
 
-The cuts need no more of a kind than that whoever is of it can take the place of another. So they hold for any order of
-the candidates, for what is left when requirements are dropped (`requirement`), and when components are added, as long
-as nobody who is a candidate becomes one of a further role. Whoever may is set *apart*: of a kind of its own, so that
-it is neither cut nor counted as one of the first; with somebody apart, cut (1) is left out.
+The cuts use only that a candidate can be exchanged for another one of its class. So they hold for any order of the
+candidates, for what is left when constraints are dropped (`constraints`), and when components are added, as long as no
+component that is a candidate becomes one for a further role. Components that may are *distinguished*: each is of a
+class of its own, so that it is neither cut nor counted as one of the first; with such components, cut (1) is left out.
 
 Cost: a pass over the candidates of roles that have slots, and where these share candidates another one; after it only
-kinds and kept candidates are touched.
+classes and kept candidates are touched.
 """
 
 from __future__ import annotations
@@ -34,24 +35,36 @@ from selfconf.model.profile import Ports
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.needs import Wiring
-from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem, likeness
+from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem, signature
 
 _PORTS: Callable[[Candidate], Ports] = attrgetter("profile.ports")
 _ADMITS: Callable[[Candidate], tuple[int, ...]] = attrgetter("admits")
 
 
+class LazyReduction:
+    """A problem that is reduced when its reduction is first asked for: many are solved before."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+
+    @cached_property
+    def reduced(self) -> ReducedProblem:
+        """The reduced problem."""
+        return reduced(self.problem)
+
+
 def reduced(
     problem: Problem,
-    apart: Collection[IRI] = (),
+    distinguished: Collection[IRI] = (),
     order: Mapping[int, Sequence[int]] | None = None,
     roles: int | None = None,
 ) -> ReducedProblem:
-    """The kernel of a problem; components that are set apart are of no kind but their own.
+    """Return a problem without its dominated candidates; distinguished components are of a class of their own.
 
     `order` is another order of the candidates of each role, by number: then the first and the least are by that.
-    With `roles` it is the kernel of what is asked of the first so many of them alone: where that has no solution, the
-    problem has none. A role that asks for more than there are has one slot more than there are, which is as impossible.
+    With `roles` only that many of the first roles are in the result: where that has no solution, the problem has none.
     """
+    # A role that asks for more than there are gets one slot more than there are: as impossible, and never a million.
     slots = tuple(
         role
         for role, (asked, candidates) in enumerate(zip(problem.roles[:roles], problem.candidates, strict=False))
@@ -59,21 +72,22 @@ def reduced(
     )
     minima = Counter(slots)
     wiring = Wiring(problem, roles)
-    numbers, shared = _enough(problem, apart, order, minima)
+    numbers, shared = _undominated(problem, distinguished, order, minima)
     most = dict.fromkeys(minima, len(slots)) if shared else minima
     left: dict[int, list[Option]] = {}
     kinds: dict[int, list[InterchangeabilityClass]] = {}
+    # The inputs of all roles are numbered before the first output is looked at: only then are all needs known.
     for role, some in numbers.items():
-        left[role], kinds[role] = _alike(role, problem.candidates[role], some, most[role], apart)
-        needs = wiring.needed(role, [kind.likes[0][0].inputs for kind in kinds[role]])
+        left[role], kinds[role] = _classified(role, problem.candidates[role], some, most[role], distinguished)
+        needs = wiring.needed(role, [kind.signatures[0][0].inputs for kind in kinds[role]])
         for kind, one in zip(kinds[role], needs, strict=True):
             kind.needs = one
-    for role, alike in kinds.items():
-        gives = wiring.served(role, [kind.likes[0][0].outputs for kind in alike])
-        for kind, one in zip(alike, gives, strict=True):
-            kind.gives = one
+    for role, of_role in kinds.items():
+        supports = wiring.supported(role, [kind.signatures[0][0].outputs for kind in of_role])
+        for kind, one in zip(of_role, supports, strict=True):
+            kind.supports = one
     if shared:
-        left = thinned(left, minima)
+        left = without_dominated(left, minima)
     return ReducedProblem(
         slots,
         tuple(tuple(left.get(role, ())) for role in range(len(problem.roles))),
@@ -82,46 +96,53 @@ def reduced(
     )
 
 
-def _enough(
+def _undominated(
     problem: Problem,
-    apart: Collection[IRI],
+    distinguished: Collection[IRI],
     order: Mapping[int, Sequence[int]] | None,
     minima: Mapping[int, int],
 ) -> tuple[Mapping[int, Sequence[int]], bool]:
-    """The candidates of each role that can matter, by number, by cut (1) or else (2), and whether it was (2)."""
-    everybody: dict[int, Sequence[int]] = {
+    """Return the candidates of each role that cut (1) or else (2) leaves, by number, and whether it was (2)."""
+    every: dict[int, Sequence[int]] = {
         role: range(len(problem.candidates[role])) if order is None else order[role] for role in minima
     }
     slots = sum(minima.values())
-    if apart:
-        return {role: _with(problem.candidates[role], some, slots, apart) for role, some in everybody.items()}, True
-    if not _twice(problem, {role: some[:1] for role, some in everybody.items()}):
-        firsts = {role: _first(problem.candidates[role], some, minima[role]) for role, some in everybody.items()}
-        if not _twice(problem, firsts):
+    if distinguished:
+        return {
+            role: _first_and_distinguished(problem.candidates[role], some, slots, distinguished)
+            for role, some in every.items()
+        }, True
+    # The very first candidates are looked at before the pass: where these are shared, cut (1) fails at once.
+    if not _share_components(problem, {role: some[:1] for role, some in every.items()}):
+        firsts = {role: _first(problem.candidates[role], some, minima[role]) for role, some in every.items()}
+        if not _share_components(problem, firsts):
             return firsts, False
-    return {role: _first(problem.candidates[role], some, slots) for role, some in everybody.items()}, True
+    return {role: _first(problem.candidates[role], some, slots) for role, some in every.items()}, True
 
 
-def _with(candidates: Sequence[Candidate], numbers: Sequence[int], most: int, apart: Collection[IRI]) -> Sequence[int]:
-    """Those of the first so many that share ports who are not apart, and all who are."""
-    first = set(_first(candidates, numbers, most + len(apart)))
-    return [number for number in numbers if number in first or candidates[number].profile.component in apart]
+def _first_and_distinguished(
+    candidates: Sequence[Candidate], numbers: Sequence[int], most: int, distinguished: Collection[IRI]
+) -> Sequence[int]:
+    """Return the first candidates of each signature, as many as asked for, and all that are distinguished."""
+    # Distinguished candidates among the first are not counted as such, so that more of the others have to be kept.
+    first = set(_first(candidates, numbers, most + len(distinguished)))
+    return [number for number in numbers if number in first or candidates[number].profile.component in distinguished]
 
 
-def _twice(problem: Problem, numbers: Mapping[int, Sequence[int]]) -> bool:
-    """Whether some component is among these candidates twice."""
+def _share_components(problem: Problem, numbers: Mapping[int, Sequence[int]]) -> bool:
+    """Return whether some component is among these candidates of several roles."""
     names = [problem.candidates[role][number].profile.component for role, some in numbers.items() for number in some]
     return len(set(names)) < len(names)
 
 
-def _alike(
+def _classified(
     role: int,
     candidates: Sequence[Candidate],
     numbers: Sequence[int],
     most: int,
-    apart: Collection[IRI],
+    distinguished: Collection[IRI],
 ) -> tuple[list[Option], list[InterchangeabilityClass]]:
-    """Those of some candidates that are among the first so many of their kind, and the kinds."""
+    """Return the first candidates of each class, as many as asked for, as options; and the classes."""
     many = len(numbers) > most
     kinds: dict[Hashable, InterchangeabilityClass] = {}
     met: dict[InterchangeabilityClass, int] = {}
@@ -129,11 +150,11 @@ def _alike(
     for number in numbers:
         candidate = candidates[number]
         component = candidate.profile.component
-        like = likeness(candidate)
-        same = (like, component) if component in apart else like
-        kind = kinds.get(same)
+        signed = signature(candidate)
+        key = (signed, component) if component in distinguished else signed
+        kind = kinds.get(key)
         if kind is None:
-            kind = kinds[same] = InterchangeabilityClass(role, (), (), like[1], number, (like,))
+            kind = kinds[key] = InterchangeabilityClass(role, (), (), signed[1], number, (signed,))
         if many:
             seen = met[kind] = met.get(kind, 0) + 1
             if seen > most:
@@ -143,10 +164,11 @@ def _alike(
 
 
 def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -> Sequence[int]:
-    """Those among the first so many that share one and the same ports and values.
+    """Return the first candidates, as many as asked for, of each set of candidates that share ports and values.
 
-    The pass over all candidates: no step of Python for who is passed over, nor a look at what ports say. Ports that
-    say the same but are not shared count as different here, which costs time alone.
+    This is the pass over all candidates: it takes no step of Python for a candidate that is dominated, and does not
+    read the ports. They are compared by identity: equal ports that are not shared count as different here, which costs
+    time alone.
     """
     if len(numbers) <= most:
         return numbers
@@ -154,15 +176,23 @@ def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -
     shared: list[Hashable] = list(map(id, map(_PORTS, ordered)))
     if ordered[0].admits:
         shared = list(zip(shared, map(id, map(_ADMITS, ordered)), strict=True))
-    if most == 1:
-        places = sorted(dict(zip(reversed(shared), reversed(range(len(shared))), strict=True)).values())
-        return places if isinstance(numbers, range) else [numbers[place] for place in places]
+    places = _first_of_each(shared) if most == 1 else _first_few_of_each(shared, most)
+    return places if isinstance(numbers, range) else [numbers[place] for place in places]
+
+
+def _first_of_each(shared: Sequence[Hashable]) -> list[int]:
+    # Filled backwards, a dictionary is left with the first place of each key.
+    return sorted(dict(zip(reversed(shared), reversed(range(len(shared))), strict=True)).values())
+
+
+def _first_few_of_each(shared: Sequence[Hashable], most: int) -> list[int]:
     wanted = {one: min(count, most) for one, count in Counter(shared).items()}
     left = sum(wanted.values())
     found: list[int] = []
     enough: set[Hashable] = set()
+    # The iterator reads `enough` as it goes on, and skips in C what the loop has put there.
     for place in compress(range(len(shared)), map(not_, map(enough.__contains__, shared))):
-        found.append(numbers[place])
+        found.append(place)
         if len(found) == left:
             break
         one = shared[place]
@@ -172,8 +202,8 @@ def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -
     return found
 
 
-def thinned(left: Mapping[int, list[Option]], minima: Mapping[int, int]) -> dict[int, list[Option]]:
-    """Of each group as many options as there are slots for it, the first ones: cut (3)."""
+def without_dominated(left: Mapping[int, list[Option]], minima: Mapping[int, int]) -> dict[int, list[Option]]:
+    """Return of each group as many options as there are slots for it, the first ones: cut (3)."""
     kinds: defaultdict[IRI, list[InterchangeabilityClass]] = defaultdict(list)
     for options in left.values():
         for option in options:
@@ -195,15 +225,3 @@ def thinned(left: Mapping[int, list[Option]], minima: Mapping[int, int]) -> dict
                     continue
             kept[role].append(option)
     return kept
-
-
-class LazyReduction:
-    """A problem, made compact when that is first asked for."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-
-    @cached_property
-    def reduced(self) -> ReducedProblem:
-        """The kernel of the problem."""
-        return reduced(self.problem)

@@ -1,8 +1,8 @@
-"""Needs, numbered: which inputs are one and the same to the search, and which of them an output serves.
+"""Needs, numbered: which inputs are the same to the search, and which of them an output supports.
 
-Two inputs of whoever plays a role are the same need if they want the same signal and the same links may feed them;
-their names matter only where an interaction names one. Output types are expanded upward, for each output of a role,
-to the needs they serve, so that no pair of an output and an input is ever compared.
+Two inputs of components that play a role are the same need if they want the same signal and the same links may feed
+them; their names matter only where an interaction names one. The type of an output is expanded upward, once for each
+output of a role, to the needs that it supports, so that no pair of an output and an input is ever compared.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from selfconf.search.problem import Problem, Sources
 
 
 class Need(NamedTuple):
-    """A signal that an input of whoever plays `role` must get.
+    """A signal that an input of each component that plays `role` must get, if the component has such an input.
 
     `input` is the name of the first such input, where some interaction into the role names an input.
     """
@@ -29,37 +29,38 @@ class Need(NamedTuple):
 
 
 class Wiring:
-    """Numbers the needs of a problem and says which of them outputs serve: a role at a time, first of all the inputs.
+    """Numbers the needs of a problem, then says which of them outputs support: a role at a time.
 
-    Where no interaction names an input of a role, its needs are told by their signals alone; so are outputs. Where
-    only the first so many roles matter, an input that a later one may feed is no need.
+    All inputs have to be numbered before the first output is asked about. Where no interaction names an input of a
+    role, its needs are distinguished by their signals alone; so are outputs. With a limit, only that many of the first
+    roles count: an input that a later role may feed is no need.
     """
 
     def __init__(self, problem: Problem, roles: int | None = None) -> None:
         self.problem = problem
         self._roles = len(problem.roles) if roles is None else roles
         self.needs: list[Need] = []
-        self._named = [any(link.input for link in links) for links in problem.links]
-        self._told = {link.source for links in problem.links for link in links if link.output}
-        """The roles of which the names of outputs may matter."""
-        self._wanted: list[dict[IRI, list[int]]] = [{} for _ in problem.roles]
+        self._names_inputs = [any(link.input for link in links) for links in problem.links]
+        self._names_outputs = {link.source for links in problem.links for link in links if link.output}
+        """The roles of which an interaction names an output."""
+        self._by_signal: list[dict[IRI, list[int]]] = [{} for _ in problem.roles]
         """For each role and signal the needs."""
 
     def needed(self, role: int, inputs: Sequence[tuple[Input, ...]]) -> list[tuple[int, ...]]:
-        """The numbers of the needs that inputs are, for those of each who may play a role."""
-        if self._named[role]:
+        """Return for the inputs of each class of a role the numbers of the needs that they are."""
+        if self._names_inputs[role]:
             number = self._numbered(role, dict.fromkeys(chain.from_iterable(inputs)))
             return [tuple(dict.fromkeys([number[one] for one in some if one in number])) for some in inputs]
-        sources, wanted, needs = self.problem.feeding(role, None), self._wanted[role], self.needs
+        sources, by_signal, needs = self.problem.feeding(role, None), self._by_signal[role], self.needs
         if self._fed_later(sources):
             return [()] * len(inputs)
         found: list[tuple[int, ...]] = []
         for some in inputs:
             numbers: list[int] = []
             for _, signal in some:
-                known = wanted.get(signal)
+                known = by_signal.get(signal)
                 if known is None:
-                    known = wanted[signal] = [len(needs)]
+                    known = by_signal[signal] = [len(needs)]
                     needs.append(Need(role, signal, sources))
                 numbers += known
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
@@ -69,7 +70,7 @@ class Wiring:
         return any(source >= self._roles for source, _ in sources)
 
     def _numbered(self, role: int, inputs: Iterable[Input]) -> dict[Input, int]:
-        """The need that each input of a role is: one for all of a signal that the same may feed."""
+        """Return the need that each input of a role is: one for all inputs with the same signal and sources."""
         same: dict[tuple[IRI, Sources], int] = {}
         found: dict[Input, int] = {}
         for wanted in inputs:
@@ -79,25 +80,28 @@ class Wiring:
             number = found[wanted] = same.setdefault((wanted.signal, sources), len(self.needs))
             if number == len(self.needs):
                 self.needs.append(Need(role, wanted.signal, sources, wanted.name))
-                self._wanted[role].setdefault(wanted.signal, []).append(number)
+                self._by_signal[role].setdefault(wanted.signal, []).append(number)
         return found
 
-    def served(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
-        """The needs that outputs serve, for those of each who may play a role; all inputs must have been told."""
+    def supported(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
+        """Return for the outputs of each class of a role the needs that they support."""
         flat, above = self.problem.hierarchy.flat, self.problem.hierarchy.superclasses
-        sinks = [(self._wanted[sink], role in self._told or self._named[sink]) for sink in self.problem.sinks[role]]
+        sinks = [
+            (self._by_signal[sink], role in self._names_outputs or self._names_inputs[sink])
+            for sink in self.problem.sinks[role]
+        ]
         found: list[tuple[int, ...]] = []
         for some in outputs:
             numbers: list[int] = []
             for name, offered, _ in some:
                 for signal in (offered,) if flat else above(offered):
-                    for wanted, names_matter in sinks:
-                        if signal in wanted:
-                            needs = wanted[signal]
-                            numbers += self._fed(needs, role, name) if names_matter else needs
+                    for by_signal, named in sinks:
+                        if signal in by_signal:
+                            needs = by_signal[signal]
+                            numbers += self._fed_by(needs, role, name) if named else needs
             found.append(tuple(sorted(set(numbers))) if len(numbers) > 1 else tuple(numbers))
         return found
 
-    def _fed(self, numbers: Sequence[int], role: int, name: str) -> list[int]:
-        """Those of some needs that an output of that name may feed."""
+    def _fed_by(self, numbers: Sequence[int], role: int, name: str) -> list[int]:
+        """Return the needs, among some, that an output of a name may feed."""
         return [n for n in numbers if (role, None) in self.needs[n].sources or (role, name) in self.needs[n].sources]

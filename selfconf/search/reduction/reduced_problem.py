@@ -1,12 +1,14 @@
-"""The problem in small integers: needs, and the kinds of candidates that may serve them.
+"""The reduced problem: needs, and the interchangeability classes of candidates that may support them, in numbers.
 
 An input that role r must have fed is a *need*: the role, the links that may feed it, and the signal. Needs are
-numbered. What a candidate needs in a role, what it gives to the roles fed by that role, and what it lets the variables
-be make its *kind*; two candidates of a role with the same ports and values have the same kind, which is worked out
-once. Output types are expanded upward, once per output and role, to the needs they serve (`wiring`).
+numbered. What a candidate needs in a role, what it supports in the roles fed by that role, and which values of the
+variables it admits make its *interchangeability class* (Freuder, AAAI 1991), in identifiers `kind` for short: in every
+solution, a candidate can be exchanged for a free one of its class. Candidates of a role with equal ports and values
+have the same class, which is worked out once.
 
-A compact problem has only the candidates that can matter, as options of slots (`kernel`), and loses more of them to
-arc consistency (`consistency`).
+A reduced problem has only the candidates that can matter, as options of slots (`dominance`), and loses more of them to
+arc consistency (`arc_consistency`). In terms of constraint satisfaction a slot is a variable, its options are the
+domain of the variable, and a need is a constraint between the slots of a role and those of the roles that feed it.
 """
 
 from __future__ import annotations
@@ -22,33 +24,33 @@ from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.needs import Need
 
-Likeness = tuple[Ports, tuple[int, ...]]
-"""All of a candidate that its kind depends on: its ports, and what it lets the variables be."""
+Signature = tuple[Ports, tuple[int, ...]]
+"""All of a candidate that decides its interchangeability class: its ports, and the values that it admits."""
 
-likeness: Callable[[Candidate], Likeness] = attrgetter("profile.ports", "admits")
+signature: Callable[[Candidate], Signature] = attrgetter("profile.ports", "admits")
 
 
 class InterchangeabilityClass:
-    """What a candidate is to the search, in one role: numbers of needs, and masks of values."""
+    """Candidates of one role that the search need not tell apart: numbers of needs, and masks of values."""
 
-    __slots__ = ("admits", "gives", "likes", "needs", "number", "role")
+    __slots__ = ("admits", "needs", "number", "role", "signatures", "supports")
 
     def __init__(
         self,
         role: int,
         needs: tuple[int, ...],
-        gives: tuple[int, ...],
+        supports: tuple[int, ...],
         admits: tuple[int, ...],
         number: int = -1,
-        likes: tuple[Likeness, ...] = (),
+        signatures: tuple[Signature, ...] = (),
     ) -> None:
-        self.role, self.needs, self.gives, self.admits = role, needs, gives, admits
-        self.number, self.likes = number, likes
-        """The number of the first candidate of this kind, and what candidates of this kind have."""
+        self.role, self.needs, self.supports, self.admits = role, needs, supports, admits
+        self.number, self.signatures = number, signatures
+        """The number of the first candidate of this class, and the signatures of its candidates."""
 
 
 class Option:
-    """A candidate that a slot may take: its number in the role's order, its component and its kind."""
+    """A candidate that a slot may take: its number in the role's order, its component and its class."""
 
     __slots__ = ("component", "kind", "number")
 
@@ -58,7 +60,7 @@ class Option:
 
 @dataclass(frozen=True, slots=True)
 class Removal:
-    """Why a kind left: a need that nobody left can serve, or a variable with no value that every role can have."""
+    """Why a class is in no solution: a need without support, or a variable without a value that every role admits."""
 
     kind: InterchangeabilityClass
     need: int | None = None
@@ -67,24 +69,28 @@ class Removal:
 
 @dataclass(frozen=True, slots=True)
 class ReducedProblem:
-    """The kernel of a problem: options per role, the needs by number, and how others left."""
+    """Options for each role, the needs by number, and the removals by which arc consistency made the options fewer."""
 
     slots: tuple[int, ...]
     """The role of each slot, in order; a role that asks for k components has k slots."""
     options: tuple[tuple[Option, ...], ...]
     needs: tuple[Need, ...]
     values: tuple[int, ...]
-    """What each variable may be before anybody plays."""
-    departures: tuple[Removal, ...] = ()
+    """The values that each variable may have before any slot is filled, as a mask."""
+    removals: tuple[Removal, ...] = ()
 
-    def short(self) -> int | None:
-        """The first role with fewer options than slots, if there is one: then there is no solution."""
+    def wiped_out(self) -> int | None:
+        """Return the first role with fewer options than slots, if there is one: then there is no solution."""
         asked = Counter(self.slots)
         return next((role for role, slots in asked.items() if len(self.options[role]) < slots), None)
 
     def kinds(self) -> list[InterchangeabilityClass]:
-        """The kinds that options are of, in order."""
+        """Return the interchangeability classes of the options, in order."""
         return list(dict.fromkeys([option.kind for options in self.options for option in options]))
+
+    def components(self) -> list[list[IRI]]:
+        """Return for each role the components of its options, in order: what matching works on."""
+        return [[option.component for option in options] for options in self.options]
 
 
 def assigned(problem: Problem, chosen: Iterable[Option]) -> list[list[Candidate]]:

@@ -1,7 +1,9 @@
 """The strategies: which configuration is the answer.
 
-The strategy `first` answers with the lexicographically first one: `answers`, and `solution` and `possible` for parts of
-the question. `best_configuration` is one of least cost, within `BEST_STEPS`. `algorithm_1` is the paper's.
+* `first` answers with the lexicographically first configuration: `answers` yields it, or why there is none; `solution`
+  is the least solution before it is extended, and `possible` says whether any solution is found.
+* `best` answers with a configuration of least cost: `best_configuration`, within `BEST_STEPS` steps if not told else.
+* `paper` answers as `first` does, by the algorithm of the paper as printed: `algorithm_1`.
 """
 
 from selfconf.search.strategies.best import BEST_STEPS, best_configuration

@@ -2,20 +2,20 @@
 
 *What is best.* The cost of a solution is the sum of what its components cost in their roles (`model.cost`), level by
 level. The answer is the lexicographically first of the solutions of least cost, extended as usual; components that
-are added by the extension are a gift and do not count. `first` ignores cost: it takes the least solution in the order
-of preference. With no cost stated, or one that is the same for all, both give the same answer.
+are added by the extension do not count. `first` ignores cost: it takes the least solution in the order of preference.
+With no cost stated, or one that is the same for all, both give the same answer.
 
-*After a failure.* With a configuration that runs, newcomers are the first level of the cost: who did not play the role
-costs one. So the answer starts as few components as can be, and is the cheapest of the solutions that do. What is
-beyond the minima does not count, nor do connections, unlike in a repair (`repair`).
+*After a failure.* With a configuration that runs, newcomers are the first level of the cost: a component that did not
+play the role costs one. So the answer starts as few components as possible, and is the cheapest of the solutions that
+do. Components beyond the minima do not count, nor do connections, unlike in a reconfiguration by `reconfigure`.
 
-*How.* Levels are folded into one integer that is ordered as they are. Options of a role are sorted by cost, then by
-their order, for which the argument of the kernel holds as it does for the order alone: a member of a group that is
-beyond the first k can be replaced by one that costs no more. Branch and bound walks depth first, cheapest first, and
-leaves what costs, together with the cheapest options of the slots to come, no less than the best solution so far.
-What it has at any time is a solution and a bound; when it is through, the bound is the cost. A second walk, in the
-order of the candidates and bounded by the least cost, finds the first of the best.
-After some steps clause learning takes over, guided by cores (`maxsat`): what a role costs at least is a bound from
+*How it is found.* Levels are combined into one integer that is ordered as they are. Options of a role are sorted by
+cost, then by their order, for which the argument of dominance holds as it does for the order alone: a member of a group
+that is beyond the first k can be replaced by one that costs no more. Branch and bound goes depth first, cheapest first,
+and leaves a partial solution that costs, together with the cheapest options of the slots to come, no less than the
+incumbent. It has a solution and a bound at any time; when it is exhausted, the bound is the cost. A second search, in
+the order of the candidates and bounded by the least cost, finds the first of the best.
+After some steps clause learning takes over, guided by cores (`max_sat`): what a role costs at least is a bound from
 the start, each core raises it, and the first of the best is found as it is for `first`.
 """
 
@@ -42,16 +42,16 @@ from selfconf.search.strategies.first import solution
 
 BRANCHING_STEPS = 20_000
 """Steps of branch and bound before clauses are written."""
-BEFORE = 2
+LEADING_LEVELS = 2
 """Levels before those that the template states: how many newcomers there are, and how many terms are unknown."""
 BEST_STEPS = 2_000_000
-"""Steps until the search for the best is content with a good one."""
+"""Steps until the search for the best answers with the cheapest solution met."""
 
 
 def best_configuration(
     problem: Problem, steps: int = BEST_STEPS, running: Configuration | None = None
 ) -> Optimum | Refusal | Undecided:
-    """The best configuration that was found within so many steps, or why there is none.
+    """Return the best configuration that is found within a number of steps, or why there is none.
 
     With a configuration that runs it is the best of those with the fewest newcomers.
     """
@@ -61,109 +61,133 @@ def best_configuration(
         return Undecided(steps, unaided=not solver_available())
     if playing is None:
         return explain.refusal(given)
-    prices = CostTable(problem, running)
+    costs = CostTable(problem, running)
     order = {
-        role: sorted(range(len(problem.candidates[role])), key=prices.of[role].__getitem__)
+        role: sorted(range(len(problem.candidates[role])), key=costs.of[role].__getitem__)
         for role, asked in enumerate(problem.roles)
         if asked.minimum
     }
     part = pruned(reduced(problem, order=order))
-    total = prices.total(playing)
-    chosen, bound, done = _by_walking(
-        part, prices, total, Budget(min(steps, BRANCHING_STEPS) if solver_available() else steps)
-    )
-    if chosen is not None:
-        playing = assigned(problem, chosen)
-    if not done and solver_available():
-        better, bound, done = _by_clauses(part, prices, Budget(steps))
-        other = playing if better is None else assigned(problem, better)
-        # What clause learning has met when its budget ends may cost more than what branch and bound has met.
-        if done or prices.total(other) < prices.total(playing):
-            playing = other
-    spent = prices.levels(playing)
-    least = spent if done else prices.unfolded(bound, len(part.slots))
+    playing, bound, proved = _cheapest(problem, part, costs, playing, steps)
+    spent = costs.levels(playing)
+    least = spent if proved else costs.levels_of(bound, len(part.slots))
     missing = [
         (candidate.profile.component, wanted)
         for role, some in zip(problem.roles, playing, strict=True)
         for candidate in some
         for wanted in unknown(problem.task.template.cost, role.iri, candidate.profile, problem.hierarchy)
     ]
-    # What comes before the levels and could be less leaves no more to be said of them than what candidates cost.
-    bounds = least if least[:BEFORE] == spent[:BEFORE] else prices.unfolded(0, len(part.slots))
+    # Where a leading level could be less, the bounds of the stated levels hold no more: all that is left to say of
+    # these is what the cheapest candidates cost.
+    tight = least[:LEADING_LEVELS] == spent[:LEADING_LEVELS]
+    bounds = least if tight else costs.levels_of(0, len(part.slots))
     configuration = problem.solved(playing, running)
-    return Optimum(configuration, spent[BEFORE:], bounds[BEFORE:], tuple(missing), proved=spent == least)
+    return Optimum(
+        configuration, spent[LEADING_LEVELS:], bounds[LEADING_LEVELS:], tuple(missing), proved=spent == least
+    )
+
+
+def _cheapest(
+    problem: Problem, part: ReducedProblem, costs: CostTable, playing: list[list[Candidate]], steps: int
+) -> tuple[list[list[Candidate]], int, bool]:
+    """Return the cheapest solution that is met, a bound of the cost, and whether it is the first of the best for sure.
+
+    `playing` is a solution to begin with.
+    """
+    branching = Budget(min(steps, BRANCHING_STEPS) if solver_available() else steps)
+    chosen, bound, proved = _by_branch_and_bound(part, costs, costs.total(playing), branching)
+    if chosen is not None:
+        playing = assigned(problem, chosen)
+    if proved or not solver_available():
+        return playing, bound, proved
+    better, bound, proved = _by_cores(part, costs, Budget(steps))
+    if better is not None:
+        other = assigned(problem, better)
+        # What clause learning has met when its budget ends may cost more than what branch and bound has met.
+        if proved or costs.total(other) < costs.total(playing):
+            playing = other
+    return playing, bound, proved
 
 
 class CostTable:
-    """What each candidate costs in each role, folded into an integer."""
+    """What each candidate costs in each role, level by level and combined into one integer.
+
+    Each level becomes a digit of a number with mixed radix: shifted to begin at zero, scaled to be whole, and with a
+    base beyond what all slots can cost on it. So integers are ordered as the levels are.
+    """
 
     def __init__(self, problem: Problem, running: Configuration | None = None) -> None:
-        levels = problem.task.template.cost
-        played = {a.role: frozenset(a.components) for a in running.assignments} if running is not None else {}
-        nobody: frozenset[IRI] = frozenset()
-
-        def price(role: IRI, candidate: Candidate) -> tuple[Fraction, ...]:
-            newcomer = bool(played) and candidate.profile.component not in played.get(role, nobody)
-            return Fraction(newcomer), *cost(levels, role, candidate.profile, problem.hierarchy)
-
-        self.exact: list[list[tuple[Fraction, ...]]] = [
-            [price(role.iri, candidate) for candidate in candidates] if role.minimum else []
-            for role, candidates in zip(problem.roles, problem.candidates, strict=True)
-        ]
+        self.exact = _exact_costs(problem, running)
+        """For each role the cost of its candidates by number, level by level; nothing for a role without slots."""
         rows = [row for role in self.exact for row in role]
         slots = sum(role.minimum for role in problem.roles)
-        width = BEFORE + len(levels)
+        width = LEADING_LEVELS + len(problem.task.template.cost)
         self.scale = [lcm(*(row[k].denominator for row in rows)) for k in range(width)]
         self.lowest = [min((row[k] for row in rows), default=Fraction(0)) for k in range(width)]
         self.base = [1] * width
         for k in range(width - 1, 0, -1):
             span = max((row[k] for row in rows), default=Fraction(0)) - self.lowest[k]
             self.base[k - 1] = self.base[k] * (1 + slots * int(span * self.scale[k]))
-        self.of: list[list[int]] = [[self._folded(row) for row in role] for role in self.exact]
-        """For each role the folded cost of its candidates by number."""
+        self.of: list[list[int]] = [[self._combined(row) for row in role] for role in self.exact]
+        """For each role the combined cost of its candidates by number."""
         self._number = [
             {c.profile.component: number for number, c in enumerate(candidates)} for candidates in problem.candidates
         ]
 
-    def _folded(self, row: Sequence[Fraction]) -> int:
+    def _combined(self, row: Sequence[Fraction]) -> int:
         return sum(
             int((value - low) * scale) * base
             for value, low, scale, base in zip(row, self.lowest, self.scale, self.base, strict=True)
         )
 
     def total(self, playing: Sequence[Sequence[Candidate]]) -> int:
-        """The folded cost of a solution."""
+        """Return the combined cost of a solution."""
         return sum(
             self.of[role][self._number[role][c.profile.component]] for role, some in enumerate(playing) for c in some
         )
 
     def levels(self, playing: Sequence[Sequence[Candidate]]) -> tuple[Fraction, ...]:
-        """The cost of a solution, level by level, with the newcomers and the unknown before all others."""
+        """Return the cost of a solution, level by level, with the newcomers and the unknown before all others."""
         rows = [
             self.exact[role][self._number[role][c.profile.component]] for role, some in enumerate(playing) for c in some
         ]
         return tuple(sum((row[k] for row in rows), Fraction(0)) for k in range(len(self.base)))
 
-    def unfolded(self, folded: int, slots: int) -> tuple[Fraction, ...]:
-        """The levels that a folded cost of so many slots stands for."""
+    def levels_of(self, combined: int, slots: int) -> tuple[Fraction, ...]:
+        """Return the levels that a combined cost of a number of slots stands for."""
         found = []
         for low, scale, base in zip(self.lowest, self.scale, self.base, strict=True):
-            digit, folded = divmod(folded, base)
+            digit, combined = divmod(combined, base)
             found.append(Fraction(digit, scale) + low * slots)
         return tuple(found)
 
 
-class _Bounded(ReducedSearch):
-    """Leaves out options that would make a solution cost more than a limit."""
+def _exact_costs(problem: Problem, running: Configuration | None) -> list[list[tuple[Fraction, ...]]]:
+    levels = problem.task.template.cost
+    played = {a.role: frozenset(a.components) for a in running.assignments} if running is not None else {}
+    none: frozenset[IRI] = frozenset()
 
-    def __init__(self, part: ReducedProblem, prices: CostTable, limit: int) -> None:
+    def row(role: IRI, candidate: Candidate) -> tuple[Fraction, ...]:
+        newcomer = bool(played) and candidate.profile.component not in played.get(role, none)
+        return Fraction(newcomer), *cost(levels, role, candidate.profile, problem.hierarchy)
+
+    return [
+        [row(role.iri, candidate) for candidate in candidates] if role.minimum else []
+        for role, candidates in zip(problem.roles, problem.candidates, strict=True)
+    ]
+
+
+class _BoundedSearch(ReducedSearch):
+    """Leaves out options with which a solution would cost more than a limit."""
+
+    def __init__(self, part: ReducedProblem, costs: CostTable, limit: int) -> None:
         super().__init__(part, True)
-        self.of, self.limit = prices.of, limit
+        self.of, self.limit = costs.of, limit
         self.spent = [0]
         """What the options chosen so far cost, by slot."""
-        cheapest = [min((prices.of[r][o.number] for o in part.options[r]), default=0) for r in part.slots]
+        cheapest = [min((costs.of[r][o.number] for o in part.options[r]), default=0) for r in part.slots]
         self.to_come = list(accumulate(reversed(cheapest), initial=0))[-2::-1]
-        """What the slots after each cost at least."""
+        """What the slots after each cost at least: the bound takes each slot by itself, whatever it needs."""
         self.least = sum(cheapest)
 
     def push(self, place: int, option: Option) -> bool:
@@ -177,44 +201,51 @@ class _Bounded(ReducedSearch):
     def pop(self) -> None:
         """Take the last option out again."""
         super().pop()
+        # Not one less in any case: the search also takes out an option that it has put in and then rejected.
         del self.spent[1 + len(self.chosen) :]
 
 
-def _by_walking(
-    part: ReducedProblem, prices: CostTable, known: int, budget: Budget
+def _by_branch_and_bound(
+    part: ReducedProblem, costs: CostTable, known: int, budget: Budget
 ) -> tuple[list[Option] | None, int, bool]:
-    """The first of the cheapest solutions, their cost and True; or else what is cheaper than known, and a bound."""
+    """Return the first of the cheapest solutions, their cost and True.
+
+    When the budget ends: the cheapest solution met that costs less than what is known, if any, a bound, and False.
+    """
     best: list[Option] | None = None
-    walk = _Bounded(part, prices, known - 1)
-    for found in walk.solutions(budget):
+    search = _BoundedSearch(part, costs, known - 1)
+    for found in search.solutions(budget):
         if isinstance(found, Undecided):
-            return best, walk.least, False
-        best, walk.limit = found, walk.spent[-1] - 1
-    least = walk.limit + 1
-    first = next(_Bounded(_in_order(part), prices, least).solutions(budget), None)
+            return best, search.least, False
+        best, search.limit = found, search.spent[-1] - 1
+    least = search.limit + 1
+    first = next(_BoundedSearch(_in_order(part), costs, least).solutions(budget), None)
     return (first, least, True) if isinstance(first, list) else (best, least, False)
 
 
-def _by_clauses(part: ReducedProblem, prices: CostTable, budget: Budget) -> tuple[list[Option] | None, int, bool]:
-    """The same by cores; no solution if the budget ends before."""
+def _by_cores(part: ReducedProblem, costs: CostTable, budget: Budget) -> tuple[list[Option] | None, int, bool]:
+    """Return the first of the cheapest solutions, their cost and True, by clause learning.
+
+    When the budget ends: the cheapest solution met, if any, a bound, and False.
+    """
     ordered = _in_order(part)
     with ClauseSolver(ordered) as clauses:
         weights: dict[int, int] = {}
         unavoidable = 0
         for role in dict.fromkeys(ordered.slots):
-            costs = [prices.of[role][option.number] for option in ordered.options[role]]
-            unavoidable += min(costs) * ordered.slots.count(role)
-            for literal, amount in zip(clauses.plays[role], costs, strict=True):
-                weights[literal] = amount - min(costs)
-        more, done, lightest = minimise(clauses, weights, budget)
-        found = clauses.least(budget) if done else None
+            of_role = [costs.of[role][option.number] for option in ordered.options[role]]
+            unavoidable += min(of_role) * ordered.slots.count(role)
+            for literal, amount in zip(clauses.plays[role], of_role, strict=True):
+                weights[literal] = amount - min(of_role)
+        more, proved, lightest = minimise(clauses, weights, budget)
+        found = clauses.least(budget) if proved else None
         if isinstance(found, list):
             return found, unavoidable + more, True
         return lightest, unavoidable + more, False
 
 
 def _in_order(part: ReducedProblem) -> ReducedProblem:
-    """The same options in the order of the candidates."""
+    """Return the problem with the options in the order of the candidates."""
     return replace(part, options=tuple(tuple(sorted(o, key=_number)) for o in part.options))
 
 

@@ -10,19 +10,18 @@ A configuration is a satisfying assignment. Without inputs it is bipartite match
 partial configurations in the order of their roles and candidates, so that the first complete one is the least
 (`paper`). The least is unique: which engine finds it, and how long each was allowed to try, changes the time alone.
 
-*Invariants.* Every step keeps the least solution: the kernel and arc consistency by their proofs (`kernel`,
-`consistency`), depth first by its order (`filling`, `walk`), the clause-learning engine by asking for a lesser
-solution until there is none (`sat`). "None" comes from a role that runs out of candidates, from Hall's theorem
-(`matching`), from an exhausted search or from a refuted set of clauses, never from a budget that ended.
+*Invariants.* Every stage keeps the least solution: dominance and arc consistency by their proofs (`dominance`,
+`arc_consistency`), depth-first search by its order (`candidate_search`, `reduced_search`), clause learning by asking
+for a lesser solution until there is none (`clause_learning`). "None" follows from a role without candidates, from
+Hall's theorem (`matching`), from an exhausted search or from a refuted set of clauses, never from a budget that ended.
 
 *Costs.* An easy instance takes a few steps for each slot, however many candidates there are; then a pass over the
-candidates and matching, slots times options; then depth first, for no more steps than writing down the clauses would
-take, so that it never costs more than it could have saved; then clause learning, exponential in the worst case.
-Whoever is stuck early often is for a reason that lies near: the first roles by themselves are tried before the rest
-of many is so much as looked at.
+candidates and matching, slots times options; then depth-first search, for no more steps than writing down the clauses
+would take, so that it never costs more than it could have saved; then clause learning, exponential in the worst case.
 Depth-first search is left as soon as it has taken more steps than it should have for the slots it has reached: where
-it succeeds, it goes ahead steadily; where it thrashes, it is stuck early. Without a solver library it goes on by
-itself. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`).
+it succeeds, it goes ahead steadily; where it thrashes, it is stuck early, and the cause is near: then the first roles
+are decided by themselves before the rest of many is looked at. Without a solver library depth-first search goes on
+alone. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`).
 """
 
 from __future__ import annotations
@@ -39,33 +38,34 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines import (
     SLOT_HEADROOM,
     CandidateSearch,
-    FollowedMatching,
-    Shortage,
+    HallSet,
+    MaintainedMatching,
     any_by_clauses,
     first_solution,
-    impossible,
     least_by_clauses,
     solver_available,
+    unmatchable,
 )
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, pruned, reduced
 
 Engine = Callable[[ReducedProblem, Budget], list[Option] | Undecided | None]
 
-FILL_STEPS = 4
-"""Steps per slot reached before anything is prepared; a few slots more, for the smallest problems."""
-WALK_PACE = 0.6
-"""Steps of depth-first search for each option of the slots reached before clauses are written."""
-NEARBY = 3
-"""How many times as far as depth first has come the cause is sought why it comes no further."""
-SHARE = 3
-"""One in how many slots at most may lie that near, or everything is prepared at once."""
+CANDIDATE_STEPS = 4
+"""Steps of search over candidates for each slot reached, before the problem is reduced."""
+REDUCED_PACE = 0.6
+"""Steps of search over the reduced problem for each option of the slots reached, before clauses are written."""
+PREFIX_REACH = 3
+"""For each slot reached, how many of the first slots are decided by themselves to find why none was reached beyond."""
+PREFIX_SHARE = 3
+"""These are at most one in this number of all slots; where they would be more, the whole problem is decided at once."""
 
 
 def answers(problem: Problem, steps: int | None = None) -> Iterator[Configuration | Refusal | Undecided]:
-    """The lexicographically first configuration; or that it is not decided within a number of steps.
+    """Yield the lexicographically first configuration, or that it is not decided within a number of steps.
 
-    Or that there is none: at first without a word of why, as finding reasons may take longer than the search.
+    Where there is none, a refusal without reasons is the first answer, as finding reasons may take longer than the
+    search; the second one has them.
     """
     given = LazyReduction(problem)
     playing = solution(given, Budget(steps))
@@ -79,20 +79,20 @@ def answers(problem: Problem, steps: int | None = None) -> Iterator[Configuratio
 
 
 def search(problem: Problem) -> Configuration | Refusal:
-    """The lexicographically first configuration, or why there is none."""
+    """Return the lexicographically first configuration, or why there is none."""
     *_, answer = answers(problem)
     assert not isinstance(answer, Undecided)
     return answer
 
 
 def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
-    """The same within a number of steps, which mean the same on every machine."""
+    """Return the first configuration, or why there is none, or that neither is found within a number of steps."""
     *_, answer = answers(problem, steps)
     return answer
 
 
 def possible(problem: Problem, budget: Budget) -> bool:
-    """Whether a configuration is found within the budget, be it the first one or another."""
+    """Return whether a configuration is found within the budget, be it the first one or another."""
     return isinstance(solution(LazyReduction(problem), budget, any_by_clauses), list)
 
 
@@ -104,28 +104,36 @@ def solution(
     With `any_by_clauses` it is any solution, where clause learning takes over: it need not be proved to be the least.
     """
     problem = given.problem
-    if problem.valueless or any(
-        len(candidates) < role.minimum or (role.maximum is not None and role.maximum < role.minimum)
-        for role, candidates in zip(problem.roles, problem.candidates, strict=True)
-    ):
+    if _short_of_candidates(problem):
         return None
     slots = sum(role.minimum for role in problem.roles)
-    part = budget.part(FILL_STEPS * (slots + SLOT_HEADROOM))
+    part = budget.part(CANDIDATE_STEPS * (slots + SLOT_HEADROOM))
     steps = part.steps or 0
-    filling = CandidateSearch(problem, part, FILL_STEPS)
-    found = filling.first()
-    if found is not None or (part.steps or 0) > 0:
+    search = CandidateSearch(problem, part, CANDIDATE_STEPS)
+    found = search.first()
+    if found is not None or part.steps:
+        # Found, or exhausted with steps to spare, which proves that there is none. Neither is charged to the budget: it
+        # bounds what takes long.
         return found
     budget.spend(steps)
-    near = NEARBY * (filling.furthest + SLOT_HEADROOM)
-    if SHARE * near < slots and _impossible(problem, filling.slots[near] + 1, budget):
+    prefix = PREFIX_REACH * (search.furthest + SLOT_HEADROOM)
+    if PREFIX_SHARE * prefix < slots and _prefix_impossible(problem, search.slots[prefix] + 1, budget):
         return None
     chosen = least_of(given.reduced, budget, by_clauses)
     return assigned(problem, chosen) if isinstance(chosen, list) else chosen
 
 
-def _impossible(problem: Problem, roles: int, budget: Budget) -> bool:
-    """Whether the first so many roles are found to have no solution, even without what later ones ask of them."""
+def _short_of_candidates(problem: Problem) -> bool:
+    """Return whether a role by itself makes the problem impossible."""
+    return problem.valueless or any(
+        len(candidates) < role.minimum or (role.maximum is not None and role.maximum < role.minimum)
+        for role, candidates in zip(problem.roles, problem.candidates, strict=True)
+    )
+
+
+def _prefix_impossible(problem: Problem, roles: int, budget: Budget) -> bool:
+    """Return whether the first roles have no solution, even without what later ones ask of them."""
+    # Half the budget at most: the prefix may be possible, and then the whole problem is still to be decided.
     part = Budget(None if budget.steps is None else budget.steps // 2)
     steps = part.steps
     found = least_of(reduced(problem, roles=roles), part, any_by_clauses)
@@ -136,32 +144,34 @@ def _impossible(problem: Problem, roles: int, budget: Budget) -> bool:
 def least_of(
     given: ReducedProblem, budget: Budget, by_clauses: Engine = least_by_clauses
 ) -> list[Option] | Undecided | None:
-    """The least solution of a compact problem, by whichever engine finds it."""
-    part = pruned(given)
-    if part.short() is not None:
+    """Return the least solution of a reduced problem, by the first engine that finds it; None if there is none."""
+    remaining = pruned(given)
+    if remaining.wiped_out() is not None:
         return None
-    components = [[option.component for option in options] for options in part.options]
-    partners: FollowedMatching | None = None
+    components = remaining.components()
+    matching: MaintainedMatching | None = None
+    # Where no component is an option of two roles, every choice is a matching.
     if len(set().union(*components)) < sum(map(len, components)):
-        partners = FollowedMatching(part.slots, components)
-        if partners.shortage is not None:
+        matching = MaintainedMatching(remaining.slots, components)
+        if matching.hall_set is not None:
             return None
-    chosen = first_solution(part, budget, partners=partners, pace=WALK_PACE)
+    chosen = first_solution(remaining, budget, matching=matching, pace=REDUCED_PACE)
     if not isinstance(chosen, Undecided) or budget.steps == 0:
         return chosen
-    if partners is not None:
-        never = impossible(part.slots, components)
-        assert not isinstance(never, Shortage)
-        part = _without(part, never)
-        partners = FollowedMatching(part.slots, [[option.component for option in options] for options in part.options])
-    return by_clauses(part, budget) if solver_available() else first_solution(part, budget, partners=partners)
+    if matching is not None:
+        # Only now, as it costs about as much as a matching, and an easy search needs none of it.
+        excluded = unmatchable(remaining.slots, components)
+        assert not isinstance(excluded, HallSet)
+        remaining = _without(remaining, excluded)
+        matching = MaintainedMatching(remaining.slots, remaining.components())
+    return by_clauses(remaining, budget) if solver_available() else first_solution(remaining, budget, matching=matching)
 
 
-def _without(part: ReducedProblem, never: set[tuple[int, IRI]]) -> ReducedProblem:
+def _without(given: ReducedProblem, excluded: set[tuple[int, IRI]]) -> ReducedProblem:
     return replace(
-        part,
+        given,
         options=tuple(
-            tuple(option for option in options if (role, option.component) not in never)
-            for role, options in enumerate(part.options)
+            tuple(option for option in options if (role, option.component) not in excluded)
+            for role, options in enumerate(given.options)
         ),
     )

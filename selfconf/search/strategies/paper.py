@@ -1,4 +1,4 @@
-"""Algorithm 1 and Function 2 of the paper, as printed, with three errata mended: the oracle of the other strategies.
+"""Algorithm 1 and Function 2 of the paper, as printed, with three errata corrected: the oracle of the other strategies.
 
     Algorithm 1 ConSearch(t, F1 ... Fn)            Function 2 Expand(c, t, F1 ... Fn)
       c0 <- {}, C <- {c0}                            X <- {}
@@ -18,7 +18,7 @@ full, so that an assignment is reached once per permutation; as C and X are sets
 added again. (3) The local compatibility rule speaks of the profile associated to b_F, which may not be associated
 yet; the rule is applied once it is.
 
-A role that asks for k components is k roles here. Exponential: for tests and for the curious.
+A role that asks for k components is k roles here. The cost is exponential: it is for tests and for comparison.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ from selfconf.model.refusal import Undecided
 from selfconf.search.problem import Problem
 
 Partial = tuple[int | None, ...]
-"""For each slot the index of its candidate, or None while nobody plays it."""
+"""For each slot the index of its candidate, or None while it is empty."""
 
 
 def algorithm_1(problem: Problem, steps: int | None = None) -> Configuration | Undecided | None:
-    """The configuration that Algorithm 1 returns, or None where it returns FAIL; a step is a partial configuration."""
+    """Return what Algorithm 1 returns, or None where that is FAIL; a step is a partial configuration."""
     slots = [position for position, role in enumerate(problem.roles) for _ in range(role.minimum)]
     queue: dict[Partial, None] = {tuple(None for _ in slots): None}
     taken = 0
@@ -53,7 +53,7 @@ def algorithm_1(problem: Problem, steps: int | None = None) -> Configuration | U
 
 
 def expand(problem: Problem, slots: list[int], partial: Partial) -> Iterator[Partial]:
-    """Function 2: every one-level expansion of a partial configuration."""
+    """Yield every one-level expansion of a partial configuration: Function 2."""
     for place, role in enumerate(slots):
         if partial[place] is not None:
             continue
@@ -64,7 +64,7 @@ def expand(problem: Problem, slots: list[int], partial: Partial) -> Iterator[Par
 
 
 def locally_compatible(problem: Problem, slots: list[int], partial: Partial, added: int) -> bool:
-    """The local compatibility rule for the candidate added last, with distinctness and shared parameters.
+    """Return whether the candidate added last meets the local compatibility rule, is distinct, and shares values.
 
     Clause (i): the sink rule for the added candidate, if all its feeders are there. Clause (ii): the sink rule for
     each candidate that it feeds and whose feeders are then all there.

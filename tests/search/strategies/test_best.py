@@ -14,11 +14,10 @@ from selfconf.model.cost import CostTerm, cost
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
-from selfconf.model.term import IRI, XSD, Literal
-from selfconf.search.engines import clause_learning as sat
+from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
+from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
-from selfconf.search.strategies import best
-from selfconf.search.strategies import first as solve
+from selfconf.search.strategies import best, first
 from tests.search.oracle import Players, World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -27,7 +26,7 @@ LATENCY, ERROR = iri("latency"), iri("error")
 
 def priced(profile: Profile, **values: float) -> Profile:
     """A component with numbers for properties."""
-    said = tuple((iri(name), Literal(str(value), IRI(XSD + "decimal"))) for name, value in values.items())
+    said = tuple((iri(name), Literal(str(value), IRI(XSD_NAMESPACE + "decimal"))) for name, value in values.items())
     return replace(profile, properties=said)
 
 
@@ -45,7 +44,7 @@ def priced_problems(draw: st.DrawFn) -> Problem:
     amounts = st.integers(-2, 3)
     known = {
         name: tuple(
-            (predicate, Literal(str(draw(amounts) / 2), IRI(XSD + "decimal")))
+            (predicate, Literal(str(draw(amounts) / 2), IRI(XSD_NAMESPACE + "decimal")))
             for predicate in (LATENCY, ERROR)
             if draw(st.integers(0, 3))
         )
@@ -95,7 +94,7 @@ def test_the_best_is_the_first_of_least_cost(problem: Problem) -> None:
 @given(priced_problems(), st.data())
 @agreement(0.4)
 def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Problem, data: st.DataObject) -> None:
-    running = solve.search(problem)
+    running = first.search(problem)
     if not isinstance(running, Configuration) or not running.components:
         return
     lost = frozenset((data.draw(st.sampled_from(running.components)),))
@@ -119,7 +118,7 @@ def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Proble
 
 @given(priced_problems())
 @agreement(0.5)
-def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
+def test_clause_learning_finds_the_best_that_branch_and_bound_finds(problem: Problem) -> None:
     pytest.importorskip("pysat")
     expected = best.best_configuration(problem)
     with pytest.MonkeyPatch.context() as patch:
@@ -130,12 +129,12 @@ def test_clause_learning_finds_the_same_best(problem: Problem) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
-def test_what_is_found_in_few_steps_has_an_honest_bound(aided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_found_in_few_steps_has_a_true_bound(aided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if aided:
         pytest.importorskip("pysat")
         monkeypatch.setattr(best, "BRANCHING_STEPS", 1)
     else:
-        monkeypatch.setattr(sat, "find_spec", lambda name: None)
+        monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
     unproved: list[bool] = []
     """For each answer without a proof whether there is a better one."""
 
@@ -172,12 +171,12 @@ def test_first_takes_the_preferred_and_best_the_cheapest() -> None:
     assert isinstance(answer, Optimum)
     assert answer.cost == (Fraction(1, 10),)
     assert answer.configuration.components[0].short == "quick"
-    first = solve.search(given_)
-    assert isinstance(first, Configuration)
-    assert first.components[0].short == "liked"
+    preferred = first.search(given_)
+    assert isinstance(preferred, Configuration)
+    assert preferred.components[0].short == "liked"
 
 
-def test_a_cost_over_a_property_that_nobody_has_changes_nothing_and_is_told() -> None:
+def test_a_cost_over_a_property_that_no_component_has_changes_nothing_and_is_counted() -> None:
     given_ = stating(problem({"eye": [component("a"), component("b")]}), (CostTerm(LATENCY),))
     answer = best.best_configuration(given_)
     assert isinstance(answer, Optimum)
@@ -185,7 +184,7 @@ def test_a_cost_over_a_property_that_nobody_has_changes_nothing_and_is_told() ->
     assert answer.unknown == 1
 
 
-def test_what_is_known_is_better_than_what_is_not() -> None:
+def test_a_known_cost_is_better_than_an_unknown_one() -> None:
     known = priced(component("known"), latency=100)
     answer = best.best_configuration(stating(problem({"eye": [component("unknown"), known]}), (CostTerm(LATENCY),)))
     assert isinstance(answer, Optimum)
@@ -214,9 +213,9 @@ def test_when_the_steps_end_the_cheapest_solution_that_clause_learning_met_is_th
         ),
         (CostTerm(LATENCY),),
     )
-    first = best.best_configuration(given_, 1_000)
-    assert isinstance(first, Optimum)
-    assert first.cost == (14,)
+    unhurried = best.best_configuration(given_, 1_000)
+    assert isinstance(unhurried, Optimum)
+    assert unhurried.cost == (14,)
     # Three conflicts prove that nothing costs less than 14, and none is left to prove which solution is the first.
     answer = best.best_configuration(given_, 3)
     assert isinstance(answer, Optimum)

@@ -1,7 +1,7 @@
-"""Demands that cannot hold at once: two statements of a shape, or of several, of which no value can satisfy both.
+"""Contradictions: two statements of a shape, or of several, of which no value can satisfy both.
 
 Only what is certain is found: whatever the advertisements say, and whatever a reasoning mode adds to them, no node
-conforms. That is a property test against pySHACL. The converse cannot be had for the asking, since to tell whether a
+conforms. That is a property test against pySHACL. The converse cannot be had, since to tell whether a
 shape of SHACL can be satisfied at all is undecidable (Pareti, Konstantinidis, Mogavero, Norman: *SHACL Satisfiability
 and Containment*, ISWC 2020).
 """
@@ -51,55 +51,56 @@ class ShapeContradiction(NamedTuple):
     other: ShapeStatement
 
 
-def contradictions(demands: NormalForm, choosing: bool = True) -> Iterator[ShapeContradiction]:
-    """What makes it impossible to satisfy the demands, at most once for the node itself and for each path."""
-    yield from islice(_own(demands), 1)
-    for path, values in list(demands.values.items()):
-        yield from islice(_values(demands, values), 1)
+def contradictions(normal: NormalForm, choosing: bool = True) -> Iterator[ShapeContradiction]:
+    """What makes it impossible to satisfy a normal form, at most once for the node itself and for each path."""
+    yield from islice(_own(normal), 1)
+    for path, values in list(normal.values.items()):
+        yield from islice(_values(normal, values), 1)
         needed = values.needed()
         if needed is not None and isinstance(path[0], URIRef) and len(path) == 1:
             yield from (
                 ShapeContradiction(closed, needed[1])
-                for closed in demands.closed
-                if path[0] not in _allowed(demands, closed)
+                for closed in normal.closed
+                if path[0] not in _allowed(normal, closed)
             )
-    for refused in demands.nots:
-        if _asked(demands, refused[2]):
+    for refused in normal.nots:
+        if _asked(normal, refused[2]):
             yield ShapeContradiction(refused, refused)
             continue
-        basis = _entailed(demands, refused[2])
+        basis = _entailed(normal, refused[2])
         if basis is not None:
             yield ShapeContradiction(refused, basis)
-    for choice in demands.choices if choosing else ():
-        ways = demands.source.items(choice[2])
-        if ways and all(_with(demands, way) for way in ways):
+    for choice in normal.choices if choosing else ():
+        ways = normal.source.items(choice[2])
+        if ways and all(_with(normal, way) for way in ways):
             yield ShapeContradiction(choice, choice)
 
 
-def _with(demands: NormalForm, shape: Node) -> ShapeContradiction | None:
-    """Why the demands cannot be satisfied together with a further shape."""
-    return next(contradictions(demands.plus(shape), choosing=False), None)
+def _with(normal: NormalForm, shape: Node) -> ShapeContradiction | None:
+    """Why a normal form cannot be satisfied together with a further shape."""
+    return next(contradictions(normal.plus(shape), choosing=False), None)
 
 
-def _own(demands: NormalForm) -> Iterator[ShapeContradiction]:
+def _own(normal: NormalForm) -> Iterator[ShapeContradiction]:
     """Of the node itself: every two statements about it, and the values that are left of its lists."""
-    own = demands.own
+    own = normal.own
     for number, one in enumerate(own):
         yield from (ShapeContradiction(one, other) for other in own[:number] if _exclude(one, other))
     for one in own:
         if one[1] == SH["in"]:
-            culprits = [_culprit(demands, value, one) for value in demands.source.items(one[2])]
+            culprits = [_culprit(normal, value, one) for value in normal.source.items(one[2])]
             if all(culprits):
                 yield ShapeContradiction(one, next((culprit for culprit in culprits if culprit), one))
         elif one[1] == SH.hasValue:
-            culprit = _culprit(demands, one[2], one)
+            culprit = _culprit(normal, one[2], one)
             if culprit is not None:
                 yield ShapeContradiction(one, culprit)
         elif _kinds(one).isdisjoint((URIRef, BNode)):
-            yield from (ShapeContradiction(one, needed) for needed in _of_properties(demands))
+            yield from (ShapeContradiction(one, needed) for needed in _of_properties(normal))
 
 
-def _values(demands: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContradiction]:
+# complexity: one rule for each way in which the values of a path can be impossible
+def _values(normal: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContradiction]:
     """Of the values of a path: their number, those that have to be there, and what holds of each."""
     needed = values.needed()
     for most, statement in values.most:
@@ -115,41 +116,41 @@ def _values(demands: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContr
         return
     for one in values.each.own:
         if one[1] == SH["in"]:
-            left = [value for value in demands.source.items(one[2]) if _culprit(values.each, value, one) is None]
+            left = [value for value in normal.source.items(one[2]) if _culprit(values.each, value, one) is None]
             literals = [value for value in left if isinstance(value, Literal)]  # may be equal only to rdflib
             if len(literals) + len({value for value in left if not isinstance(value, Literal)}) < needed[0]:
                 yield ShapeContradiction(one, needed[1])
     yield from contradictions(values.each)
 
 
-def _culprit(demands: NormalForm, value: Node, besides: ShapeStatement) -> ShapeStatement | None:
+def _culprit(normal: NormalForm, value: Node, besides: ShapeStatement) -> ShapeStatement | None:
     """A statement that a value certainly does not satisfy."""
-    if isinstance(value, Literal) and (needed := _of_properties(demands)):
+    if isinstance(value, Literal) and (needed := _of_properties(normal)):
         return needed[0]
-    return next((one for one in demands.own if one != besides and _fails(demands, one, value)), None)
+    return next((one for one in normal.own if one != besides and _fails(normal, one, value)), None)
 
 
-def _of_properties(demands: NormalForm) -> list[ShapeStatement]:
+def _of_properties(normal: NormalForm) -> list[ShapeStatement]:
     """What asks the node itself to have properties, which a literal has not."""
-    return [found[1] for values in demands.values.values() if (found := values.needed())]
+    return [found[1] for values in normal.values.values() if (found := values.needed())]
 
 
-def _fails(demands: NormalForm, statement: ShapeStatement, value: Node) -> bool:
+def _fails(normal: NormalForm, statement: ShapeStatement, value: Node) -> bool:
     shape, predicate, wanted = statement
     if predicate == SH["in"]:
-        return value not in demands.source.items(wanted)
+        return value not in normal.source.items(wanted)
     if predicate == SH.hasValue:
         return value != wanted
     if not any(isinstance(value, kind) for kind in _kinds(statement)):
         return True
     if predicate in _OF_THE_TEXT and isinstance(value, Literal) and value.datatype not in _TEXTS:
         return False  # rdflib may have written it in another way
-    flags = [from_rdflib(flag) for flag in demands.source.values(shape, SH.flags)]
+    flags = [from_rdflib(flag) for flag in normal.source.values(shape, SH.flags)]
     tests, _ = compiled({IRI(str(predicate)): [from_rdflib(wanted)], **({IRI(str(SH.flags)): flags} if flags else {})})
     try:
         return not all(test.passes(from_rdflib(value)) for test in tests)
     except TemplateError:
-        return False  # a pattern without an end; who asks in earnest will be told
+        return False  # the pattern takes too long; reading the task will say so
 
 
 def _kinds(statement: ShapeStatement) -> frozenset[type]:
@@ -162,6 +163,7 @@ def _kinds(statement: ShapeStatement) -> frozenset[type]:
     return _KINDS_OF.get(predicate, _ANY)
 
 
+# complexity: one rule for each pair of constraints, the cheap ones first
 def _exclude(one: ShapeStatement, other: ShapeStatement) -> bool:
     """Whether no value satisfies both of two statements, neither of which names values."""
     if _kinds(one).isdisjoint(_kinds(other)):
@@ -202,27 +204,28 @@ def _empty(lower: Node, low: Node, upper: Node, high: Node) -> bool:
     return False
 
 
-def _allowed(demands: NormalForm, closed: ShapeStatement) -> set[Node]:
+def _allowed(normal: NormalForm, closed: ShapeStatement) -> set[Node]:
     """The properties that a closed shape allows (SHACL, 4.8.1)."""
-    source, shape = demands.source, closed[0]
+    source, shape = normal.source, closed[0]
     ignored = {item for head in source.values(shape, SH.ignoredProperties) for item in source.items(head)}
     return ignored | {path for each in source.values(shape, SH.property) for path in source.values(each, SH.path)}
 
 
-def _asked(demands: NormalForm, shape: Node) -> bool:
-    """Whether the very shape is one of those that make the demands."""
-    paths = [demands.source.path(path) for path in demands.source.values(shape, SH.path)]
+def _asked(normal: NormalForm, shape: Node) -> bool:
+    """Whether the very shape is one of those that make the normal."""
+    paths = [normal.source.path(path) for path in normal.source.values(shape, SH.path)]
     if paths:
-        return paths[0] in demands.values and shape in demands.values[paths[0]].shapes
-    return shape in demands.shapes
+        return paths[0] in normal.values and shape in normal.values[paths[0]].shapes
+    return shape in normal.shapes
 
 
-def _entailed(demands: NormalForm, shape: Node) -> ShapeStatement | None:
-    """A statement by which all that satisfies the demands conforms to a shape, if that is certain."""
+def _entailed(normal: NormalForm, shape: Node) -> ShapeStatement | None:
+    """A statement by which all that satisfies a normal form conforms to a shape, if that is certain."""
     basis: list[ShapeStatement] = []
-    return basis[-1] if _covers(demands, NormalForm(demands.source, (shape,)), basis) and basis else None
+    return basis[-1] if _covers(normal, NormalForm(normal.source, (shape,)), basis) and basis else None
 
 
+# complexity: one rule for each part of a normal form; each needs what the one before it has found
 def _covers(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> bool:
     """Whether whatever satisfies `more` satisfies `less`; what shows it is added to `basis`."""
     if not less.whole or less.closed or less.nots or less.choices or not _all_in(more, less, basis):

@@ -1,16 +1,16 @@
-"""Signals of a template that come to nothing: loops that lead nowhere, inputs that nobody feeds.
+"""Signals of a template that come to nothing: loops that lead nowhere, inputs that no role feeds.
 
 A cycle of `sc:feeds` is no mistake by itself: closed loops are what control is about. But a loop acts on the world
 through an actuator in it, or hands something on; one that does neither only keeps itself busy.
 
-An input that a role asks its component to have has to be fed, or nobody who has it can play the role. Most templates
-leave ports to the components. Where one speaks of them, what is asked of the one end is held against what is asked of
-the other; whether signals match is seen in the widest sense, that of the loaded ontologies.
+An input that a role asks its component to have has to be fed, or no component that has it can play the role. Most
+templates leave ports to the components. Where one speaks of them, what is asked of the one end is held against what is
+asked of the other; whether signals match is seen in the widest sense, that of the loaded ontologies.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from rdflib import RDF, SH, Literal, URIRef
@@ -48,12 +48,7 @@ class Ask(NamedTuple):
 def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
     """Loops of roles that feed only each other, with no actuator among them."""
     for roles, links in _templates(file):
-        feeds: dict[Node, set[Node]] = {}
-        for link in links:
-            feeds.setdefault(link.source, set()).add(link.sink)
-        after = {role: _reached(role, feeds) for role in roles}
-        loops = {frozenset(two for two in after[one] if one in after[two]) for one in roles if one in after[one]}
-        for loop in loops:
+        for loop in _loops(roles, links):
             inside = [link for link in links if link.source in loop]
             if all(link.sink in loop for link in inside) and not any(_acts(file, role) for role in loop):
                 names = listed([file.short(str(role)) for role in roles if role in loop])
@@ -68,14 +63,23 @@ def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
                 yield at(file.positions, max(closing), "SC-L12", message, hint=hint)
 
 
+def _loops(roles: Sequence[Node], links: Iterable[RoleLink]) -> set[frozenset[Node]]:
+    """The roles that feed each other in a circle, as many of them together as do."""
+    feeds: dict[Node, set[Node]] = {}
+    for link in links:
+        feeds.setdefault(link.source, set()).add(link.sink)
+    after = {role: _reached(role, feeds) for role in roles}
+    return {frozenset(two for two in after[one] if one in after[two]) for one in roles if one in after[one]}
+
+
 def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:
     """Inputs that a role asks for and no role that feeds it could feed."""
     for roles, links in _templates(file):
-        demands = {role: NormalForm(file.source, (role,)) for role in roles}
+        normal = {role: NormalForm(file.source, (role,)) for role in roles}
         for sink in roles:
             feeding = [link for link in links if link.sink == sink]
-            for asked in _asked(demands[sink], _INPUT):
-                if any(_could(file, demands[link.source], link, asked) for link in feeding):
+            for asked in _asked(normal[sink], _INPUT):
+                if any(_could(file, normal[link.source], link, asked) for link in feeding):
                     continue
                 what = " ".join(["an input", *_described(file, asked)])
                 feeders = listed(sorted({file.short(str(link.source)) for link in feeding}))
@@ -124,22 +128,20 @@ def _reached(role: Node, feeds: Mapping[Node, set[Node]]) -> set[Node]:
 def _acts(file: LintedFile, role: Node) -> bool:
     """Whether a role may act on the world: it is an actuator, or of a kind that no loaded ontology tells about."""
     kinds = [str(kind) for kind in file.graph.objects(role, SH["class"])]
-    return not kinds or any(
-        file.familiar.serves(kind, ROB.Actuator) or file.familiar.undeclared(kind) for kind in kinds
-    )
+    return not kinds or any(file.index.serves(kind, ROB.Actuator) or file.index.undeclared(kind) for kind in kinds)
 
 
-def _asked(demands: NormalForm, link: URIRef) -> Iterator[Ask]:
+def _asked(normal: NormalForm, link: URIRef) -> Iterator[Ask]:
     """The inputs or outputs that a role asks for."""
     for along, signals in ((_SIGNAL, True), (_NAME, False)):
-        values = demands.values.get((RDF.first, link, along))
+        values = normal.values.get((RDF.first, link, along))
         for one in values.required if values else ():
             yield Ask(None, one[2], one) if signals else Ask(one[2], None, one)
-    ports = demands.values.get((link,))
+    ports = normal.values.get((link,))
     needed = ports.needed() if ports else None
     if ports is None or needed is None:
         return
-    source = demands.source
+    source = normal.source
     shapes = [
         (shape, inner)
         for shape in ports.shapes
@@ -172,7 +174,7 @@ def _could(file: LintedFile, source: NormalForm, link: RoleLink, wanted: Ask) ->
     offered = [ask.signal for ask in _asked(source, _OUTPUT) if ask.signal is not None]
     if wanted.signal is None or not offered:
         return True
-    return any(file.familiar.serves(str(signal), str(wanted.signal)) for signal in offered)
+    return any(file.index.serves(str(signal), str(wanted.signal)) for signal in offered)
 
 
 def _described(file: LintedFile, asked: Ask) -> Iterator[str]:

@@ -1,9 +1,10 @@
 """Everything that some shapes ask of one node, put together from wherever it stands.
 
 A shape may say what it wants in many places: in several property shapes over one path, behind `sh:node` and `sh:and`,
-in shapes with names. Whether all of it can hold at once shows only when it lies side by side. So here a node has
-*demands*: what holds of the node itself, and for each path how many values it leads to and what holds of each of them,
-which are demands again. Each demand is the statement that makes it, so that it can be shown to its author.
+in shapes with names. Whether all of it can hold at once shows only when it lies side by side. So here a node has a
+*normal form*: what holds of the node itself, and for each path how many values it leads to and what holds of each of
+them, which is a normal form again. Each constraint in it is the statement that makes it, so that it can be shown to its
+author.
 
 What is not understood is left out, and `whole` says so: what cannot hold without it cannot hold with it either.
 """
@@ -117,6 +118,7 @@ class NormalForm:
             return
         self.require(shape)
 
+    # complexity: one case for each constraint of SHACL that is understood
     def require(self, shape: Node) -> None:
         """Ask of the node what a node shape asks for, or a property shape of each of its values."""
         self.shapes.append(shape)
@@ -144,7 +146,7 @@ class NormalForm:
                 self.whole = False
 
     def plus(self, shape: Node) -> NormalForm:
-        """The same demands and those of a further shape."""
+        """The normal form of these shapes and a further one."""
         found = NormalForm(self.source, (), self._depth)
         for one in self.shapes:
             found.require(one)

@@ -1,4 +1,4 @@
-"""What is well-formed in a template and probably not what was meant: roles that nobody lists, or nobody can play."""
+"""What is well-formed in a template and probably not what was meant: roles in no list, or that nothing can play."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
     """Roles that are given the type that their component should have."""
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
         for kind in file.graph.objects(role, RDF.type):
-            if isinstance(kind, URIRef) and file.familiar.serves(str(kind), SC.Component):
+            if isinstance(kind, URIRef) and file.index.serves(str(kind), SC.Component):
                 message = f"This says that the role is a component of the type {file.short(kind)}; it asks for none."
                 hint = f"Write sh:class {file.short(kind)}."
                 yield at(

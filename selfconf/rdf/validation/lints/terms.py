@@ -47,7 +47,7 @@ def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
 
 
 def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
-    """Terms of a known namespace that nobody declares."""
+    """Terms of a known namespace that no ontology declares."""
     for (_, predicate, value), offsets in file.positions.triples.items():
         used: list[tuple[Node | None, int]] = [(predicate, offsets.predicate)]
         if isinstance(value, Literal):
@@ -55,12 +55,12 @@ def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
         elif str(predicate) in TERM_POSITIONS or str(value) in _SC or str(value) in _SH:
             used.append((value, offsets.object))
         for term, offset in used:
-            if isinstance(term, URIRef) and not _known(str(term), file.familiar):
+            if isinstance(term, URIRef) and not _known(str(term), file.index):
                 yield _unknown(file, str(term), offset)
 
 
-def _known(iri: str, familiar: TermIndex) -> bool:
-    if not familiar.strange(iri):
+def _known(iri: str, index: TermIndex) -> bool:
+    if not index.strange(iri):
         return True
     words = _STANDARD.get(namespace(iri))
     return words is not None and (URIRef(iri) in words or bool(_MEMBERSHIP.fullmatch(iri)))
@@ -69,7 +69,7 @@ def _known(iri: str, familiar: TermIndex) -> bool:
 def _unknown(file: LintedFile, iri: str, offset: int) -> Diagnostic:
     home = namespace(iri)
     words = _STANDARD.get(home)
-    known = [str(term) for term in dir(words)] if words else sorted(file.familiar.terms)
+    known = [str(term) for term in dir(words)] if words else sorted(file.index.terms)
     meant = _elsewhere(iri, file) or _closest(iri[len(home) :], [term for term in known if term.startswith(home)])
     hint = f"Did you mean {file.short(meant)}?" if meant else None
     short = file.short(iri)
@@ -82,7 +82,7 @@ def _elsewhere(iri: str, file: LintedFile) -> str | None:
     """The term with that very name in another known namespace, for which this one has the wrong prefix."""
     name = iri[len(namespace(iri)) :]
     fixed = [URIRef(base + name) for base, words in _STANDARD.items() if URIRef(base + name) in words]
-    declared = [term for term in file.familiar.terms if term[len(namespace(term)) :] == name]
+    declared = [term for term in file.index.terms if term[len(namespace(term)) :] == name]
     return min((*map(str, fixed), *declared), default=None)
 
 
@@ -103,8 +103,8 @@ def undeclared_signals(file: LintedFile) -> Iterator[Diagnostic]:
         signal = str(value)
         if str(predicate) != _SC.signalType or not isinstance(value, URIRef):
             continue
-        nearly = file.familiar.confused(namespace(signal)) is not None  # which is said of its prefix already
-        if file.familiar.undeclared(signal) and _known(signal, file.familiar) and not nearly:
+        nearly = file.index.confused(namespace(signal)) is not None  # which is said of its prefix already
+        if file.index.undeclared(signal) and _known(signal, file.index) and not nearly:
             message = f"No loaded ontology declares the signal type {file.short(signal)}."
             hint = "Give the ontology that declares it with --ontology FILE."
             yield at(file.positions, offsets.object, "SC-L03", message, hint=hint)
@@ -125,7 +125,7 @@ def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
         if first.setdefault(prefix, iri) != iri:
             message = f"The prefix {prefix}: has been bound to <{first[prefix]}> before, and is now <{iri}>."
             yield at(file.positions, offset, "SC-L05", message)
-        meant = file.familiar.confused(iri)
+        meant = file.index.confused(iri)
         if meant is not None:
             severity = Severity.ERROR if meant in (_SC.base, _SH.base) else Severity.WARNING
             message = f"The namespace <{iri}> is not <{meant}>."
@@ -136,7 +136,7 @@ def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
     """Literals where the property wants a thing."""
     for (_, predicate, value), offsets in file.positions.triples.items():
         ours = str(predicate) in _SC  # what selfconf's own properties want is a matter of the shapes
-        if isinstance(value, Literal) and not ours and str(predicate) in file.familiar.object_properties:
+        if isinstance(value, Literal) and not ours and str(predicate) in file.index.object_properties:
             message = f"The value of {file.short(str(predicate))} is a thing with an IRI, not a literal."
             hint = f"Write an IRI, such as :{re.sub(r'[^A-Za-z0-9]+', '-', value).strip('-') or 'kitchen'}."
             yield at(file.positions, offsets.object, "SC-L07", message, hint=hint)

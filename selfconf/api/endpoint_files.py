@@ -1,0 +1,45 @@
+"""The advertisements of a SPARQL endpoint as files, for a site that starts what they say."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ipaddress import ip_address
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from selfconf.api.answer import Method
+from selfconf.api.ecology import EndpointEcology
+from selfconf.api.task import TaskSpecification
+from selfconf.errors import AuthorError
+from selfconf.rdf.turtle import to_turtle
+
+
+@contextmanager
+def endpoint_files(ecology: EndpointEcology, task: TaskSpecification, method: Method) -> Iterator[Path]:
+    """A folder with the advertisements of an endpoint that a task may want, while the block runs.
+
+    The commands in them will be started on this machine, so what they say has to come from where it claims to. Raises
+    AuthorError for an endpoint on another machine that is not reached over HTTPS, and NetworkError.
+    """
+    if not _trustworthy(ecology.url):
+        raise AuthorError(
+            f"a run starts the commands that advertisements state, and what {ecology.url} answers can be changed on "
+            "its way; give an https:// URL, or an endpoint on this machine"
+        )
+    composer = method.composer(task.complete())
+    found = ecology.for_task(composer.partitioner, method.wider() or composer.hierarchy)
+    with tempfile.TemporaryDirectory(prefix="selfconf-") as folder:
+        for number, component in enumerate(sorted(found)):
+            Path(folder, f"{number}.ttl").write_text(to_turtle(found[component].triples), "utf-8")
+        yield Path(folder)
+
+
+def _trustworthy(url: str) -> bool:
+    """Whether nobody between this machine and the endpoint can change what it answers."""
+    where = urlsplit(url)
+    try:
+        return where.scheme == "https" or where.hostname == "localhost" or ip_address(where.hostname or "").is_loopback
+    except ValueError:
+        return False

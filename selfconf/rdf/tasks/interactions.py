@@ -1,0 +1,67 @@
+"""Which role of a template feeds which: `sc:feeds`, and `sc:Interaction` where ports are named."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from selfconf.model.template import Interaction, Role
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.tasks.mistakes import DocumentReader, worded
+from selfconf.rdf.turtle import Document, Node
+from selfconf.rdf.vocabulary import SC, TYPE
+
+
+def interactions_of(document: Document, roles: tuple[Role, ...]) -> tuple[Interaction, ...]:
+    """The interactions of a template with some roles, each once. Raises TemplateError."""
+    return _InteractionReader(document).interactions(roles)
+
+
+class _InteractionReader(DocumentReader):
+    """Reads the interactions of a template; every method raises TemplateError with a sentence for the author."""
+
+    def interactions(self, roles: tuple[Role, ...]) -> tuple[Interaction, ...]:
+        known = frozenset(role.iri for role in roles)
+        return tuple(dict.fromkeys((*self._short(roles, known), *self._long(known))))
+
+    def _short(self, roles: tuple[Role, ...], known: frozenset[IRI]) -> Iterator[Interaction]:
+        for role in roles:
+            for sink in self.document.values(role.iri, SC.feeds):
+                if sink not in known or not isinstance(sink, IRI):
+                    problem = f"the role {worded(role.iri)} feeds {worded(sink)}, which is no role of the template"
+                    raise self.mistake(problem, role.iri, SC.feeds, sink)
+                yield Interaction(role.iri, sink)
+
+    def _long(self, known: frozenset[IRI]) -> Iterator[Interaction]:
+        every_role = {
+            role
+            for template in self.document.instances(SC.Template)
+            for role in self.document.items(self.document.value(template, SC.roles) or template)
+        }
+        for node in self._nodes():
+            source = self.only(node, SC["from"], "an interaction has exactly one sc:from")
+            sink = self.only(node, SC.to, "an interaction has exactly one sc:to")
+            unknown = [(end, of) for end, of in ((source, SC["from"]), (sink, SC.to)) if end not in known]
+            if len(unknown) == 2 and source in every_role and sink in every_role:
+                continue  # it belongs to another template of the same file
+            if unknown or not isinstance(source, IRI) or not isinstance(sink, IRI):
+                problem = f"an interaction speaks of {worded(unknown[0][0])}, which is no role of the template"
+                raise self.mistake(problem, node, unknown[0][1], unknown[0][0])
+            yield Interaction(source, sink, self._port(node, SC.output), self._port(node, SC.input))
+
+    def _nodes(self) -> list[Node]:
+        """The interactions of the document."""
+        interactions = self.document.instances(SC.Interaction)
+        for node, statements in self.document.statements.items():
+            speaks = {SC["from"], SC.to} <= {predicate for predicate, _ in statements}
+            if speaks and node not in interactions and (TYPE, SC.Connection) not in statements:
+                raise self.mistake("what has sc:from and sc:to is a sc:Interaction; say so with its type", node)
+        return interactions
+
+    def _port(self, node: Node, predicate: IRI) -> str | None:
+        values = self.document.values(node, predicate)
+        if not values:
+            return None
+        if len(values) > 1 or not isinstance(values[0], Literal) or not values[0].lexical:
+            problem = f"sc:{predicate.short} of an interaction is the name of one port, a string"
+            raise self.mistake(problem, node, predicate, values[-1])
+        return values[0].lexical

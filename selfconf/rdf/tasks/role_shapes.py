@@ -1,0 +1,42 @@
+"""The statements that make up the shape of a role, as they stand in the document of its template."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.turtle import Document, Node, Triple
+from selfconf.rdf.vocabulary import SC, TYPE
+
+ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount))
+"""What is said of a role besides its shape."""
+
+
+def mentions(document: Document, role: IRI, parameters: frozenset[IRI]) -> set[IRI]:
+    """The parameters that stand somewhere in the shape of a role."""
+    found: set[IRI] = set()
+    for _, value in shape_statements(document, role):
+        if value in parameters and isinstance(value, IRI):
+            found.add(value)
+    return found
+
+
+def shape_statements(document: Document, role: IRI) -> Iterator[tuple[IRI, Term]]:
+    """Predicate and object of each statement of a role's shape, nested and named shapes included."""
+    for _, predicate, value in shape_triples(document, role):
+        yield predicate, value
+
+
+def shape_triples(document: Document, role: IRI) -> Iterator[Triple]:
+    """Each statement of a role's shape, nested and named shapes included."""
+    waiting: list[Node] = [role]
+    seen: set[Term] = {role}
+    while waiting:
+        subject = waiting.pop()
+        for predicate, value in document.statements.get(subject, ()):
+            if subject == role and predicate in ROLE_STRUCTURE:
+                continue
+            yield subject, predicate, value
+            if not isinstance(value, Literal) and value not in seen:
+                seen.add(value)
+                waiting.append(value)

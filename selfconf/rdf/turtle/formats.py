@@ -1,0 +1,134 @@
+"""Formats of RDF other than Turtle: telling which one a file is in, and what to do with it.
+
+Ontologies come in any of them, so `read_ontology` reads all that Oxigraph's parsers do. Advertisements, templates and
+tasks are Turtle: their lines are shown to their authors, and their text is what the fast loader works on. So a file of
+these in another format is refused, with the command that converts it.
+
+Nothing is fetched: the parser of JSON-LD has no loader for remote contexts, and that of RDF/XML takes no external
+entities. Entities of XML within entities are refused, because their text may grow beyond all memory.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import pyoxigraph as ox
+
+from selfconf.errors import TurtleError
+from selfconf.model.term import IRI
+from selfconf.rdf.turtle.document import Document, document_of
+
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_HEAD = 1 << 16
+"""Bytes at the head of a file by which its format is told, where the ending of its name does not tell it."""
+
+
+@dataclass(frozen=True, slots=True)
+class RdfFormat:
+    """A format of RDF: its name, Oxigraph's parser, the endings of file names, and what rdfpipe calls it."""
+
+    name: str
+    parser: ox.RdfFormat
+    endings: tuple[str, ...]
+    rdfpipe: str
+
+
+_TURTLE = RdfFormat("Turtle", ox.RdfFormat.TURTLE, ("ttl", "turtle"), "turtle")
+N_TRIPLES = RdfFormat("N-Triples", ox.RdfFormat.N_TRIPLES, ("nt",), "nt")
+RDF_XML = RdfFormat("RDF/XML", ox.RdfFormat.RDF_XML, ("rdf", "xml"), "xml")
+JSON_LD = RdfFormat("JSON-LD", ox.RdfFormat.JSON_LD, ("jsonld", "json"), "json-ld")
+TRIG = RdfFormat("TriG", ox.RdfFormat.TRIG, ("trig",), "trig")
+N_QUADS = RdfFormat("N-Quads", ox.RdfFormat.N_QUADS, ("nq",), "nquads")
+FORMATS = (_TURTLE, N_TRIPLES, RDF_XML, JSON_LD, TRIG, N_QUADS)
+_BY_ENDING = {ending: each for each in FORMATS for ending in each.endings}
+_NODE = rb"(?:<[^<>\s]*>|_:\S+)"
+_LOOKS = (
+    (re.compile(rb"<(?:\?xml|!DOCTYPE|!--|(?:[A-Za-z_][\w.-]*:)?RDF[\s>])"), RDF_XML),
+    (re.compile(rb'\{\s*["}]|\[\s*\{'), JSON_LD),
+    (
+        re.compile(rb'(?:#.*\s+)*%b\s+<[^<>\s]*>\s+(?:%b|"(?:[^"\\\n]|\\.)*"\S*)\s+%b\s*\.' % (_NODE, _NODE, _NODE)),
+        N_QUADS,
+    ),
+    (re.compile(rb"(?:.*\n)*?\s*(?:(?i:GRAPH)\s+)?(?:<[^<>\s]*>|[\w-]*:[\w-]*|_:\w+)?\s*\{"), TRIG),
+)
+"""How files in other formats than Turtle begin; TriG shows where its first graph begins."""
+_NESTED_ENTITY = re.compile(rb"""<!ENTITY\s+[^>"']*["'][^>"']*&(?!#|amp;|lt;|gt;|quot;|apos;)""")
+
+
+def format_of(name: str, octets: bytes) -> RdfFormat:
+    """The format of a file, by the ending of its name, or else by its content."""
+    return _BY_ENDING.get(_ending(name)) or _by_content(octets)
+
+
+def other_format(name: str, octets: bytes) -> RdfFormat | None:
+    """Which format a text is probably in that is not Turtle; its content counts for more than its name."""
+    found = _by_content(octets)
+    found = _BY_ENDING.get(_ending(name), _TURTLE) if found is _TURTLE else found
+    return None if found in (_TURTLE, N_TRIPLES) else found  # N-Triples is Turtle too
+
+
+def conversion(name: str, found: RdfFormat) -> str:
+    """The command that makes Turtle of a file; rdfpipe comes with rdflib, which selfconf needs."""
+    target = f"{name.removesuffix('.' + _ending(name)) if _ending(name) else name}.ttl"
+    return f"rdfpipe -i {found.rdfpipe} -o turtle {shlex.quote(name)} > {shlex.quote(target)}"
+
+
+def read_ontology(
+    octets: bytes, source: str, base: str | None = None, predicates: Iterable[IRI] | None = None
+) -> Document:
+    """Read an ontology in any of the formats, or of it the triples with some predicates; of all named graphs alike.
+
+    Raises TurtleError with the line, and the column where it is known, for what is not in the format that it seems.
+    """
+    octets = octets.removeprefix(_BYTE_ORDER_MARK)
+    found = format_of(source, octets)
+    if found is RDF_XML and _NESTED_ENTITY.search(octets):
+        raise TurtleError("an entity within an entity is not expanded; write it out", file=source)
+    lines = _Lines(octets)
+    reader = ox.parse(
+        lines if found is RDF_XML else octets,  # type: ignore[arg-type]  # whatever has a method `read`
+        format=found.parser,
+        base_iri=base,
+        rename_blank_nodes=True,
+    )
+    try:
+        return document_of(reader, source, base, predicates)
+    except SyntaxError as error:
+        head, colon, tail = str(error.msg).partition(": ")
+        message = tail if colon and head.startswith("Parser error") else str(error.msg)
+        if "LoadDocumentCallback" in message:
+            message = "its @context is on the web, and is not fetched; write it into the file"
+        line = error.lineno or (lines.number if found is RDF_XML else None)
+        raise TurtleError(f"not {found.name}: {message}", file=source, line=line, column=error.offset) from None
+    except MemoryError:
+        raise TurtleError("a literal in it is larger than can be read", file=source) from None
+
+
+class _Lines:
+    """A text that is handed out line by line, so that where reading stops is known: errors in RDF/XML have no line."""
+
+    def __init__(self, octets: bytes) -> None:
+        self._lines = iter(octets.splitlines(keepends=True))
+        self._rest = b""
+        self.number = 0
+
+    def read(self, size: int = -1) -> bytes:
+        if not self._rest:
+            self._rest = next(self._lines, b"")
+            self.number += bool(self._rest)
+        size = len(self._rest) if size < 0 else size
+        found, self._rest = self._rest[:size], self._rest[size:]
+        return found
+
+
+def _ending(name: str) -> str:
+    _, dot, ending = name.replace("\\", "/").rpartition("/")[2].rpartition(".")
+    return ending.lower() if dot else ""
+
+
+def _by_content(octets: bytes) -> RdfFormat:
+    head = octets[:_HEAD].removeprefix(_BYTE_ORDER_MARK).lstrip()
+    return next((found for pattern, found in _LOOKS if pattern.match(head)), _TURTLE)

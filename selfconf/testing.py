@@ -1,1 +1,0 @@
-"""Trying a component or a task without a network."""

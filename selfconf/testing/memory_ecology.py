@@ -1,0 +1,205 @@
+"""An ecology in memory: a site, living components and tasks on a simulated network, in simulated time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TypeVar
+
+from selfconf import files
+from selfconf.api.answer import Method
+from selfconf.api.reading import gathered, text_of
+from selfconf.api.task import TaskSpecification
+from selfconf.bus.memory import Faults, MemoryBus, Network
+from selfconf.configurator.state import Phase, Policy
+from selfconf.deployment import RunRequest, TaskRunner
+from selfconf.errors import AuthorError, ProgrammerError
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.run_event import RunEvent
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.sdk import Component
+from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.site import Shelf, Site
+
+ECOLOGY_NAME = "memory"
+"""The name of every ecology in memory; no two of them meet."""
+UNTIL_SECONDS = 60.0
+"""Simulated seconds for which `until` waits, unless told otherwise."""
+REPORT_LAG = 0.1
+"""Simulated seconds that events and releases may come after what they are about."""
+Kind = TypeVar("Kind", bound=Component)
+
+
+class _MemoryShelf(Shelf):
+    """A shelf that is filled by hand."""
+
+    def __init__(self) -> None:
+        super().__init__((), lambda complaint: None)
+        self._changed = False
+
+    def put(self, advertisement: Advertisement) -> None:
+        """Add an advertisement; the site looks again within a second."""
+        self.advertisements[advertisement.component] = advertisement
+        self._changed = True
+
+    def refresh(self) -> bool:
+        """Whether there is something new."""
+        changed, self._changed = self._changed, False
+        return changed
+
+
+class MemoryRun:
+    """A task that runs in an ecology in memory, and what has happened so far."""
+
+    def __init__(self, ecology: MemoryEcology, task: TaskSpecification, method: Method, policy: Policy, wait: bool):
+        self._ecology = ecology
+        self.events: list[RunEvent] = []
+        """What has happened, in order; the same values as those of `Run.events`."""
+        self.refusal: Refusal | Undecided | None = None
+        self.ended = False
+        composer = method.composer(task)
+        request = RunRequest(
+            task=task.document.task,
+            compose=composer.compose,
+            standby=composer.standby,
+            passed_over=composer.passed_over,
+            policy=policy,
+            patient=wait,
+            report=self.events.append,
+            ended=self._ended,
+        )
+        network = ecology.network
+        self._runner = TaskRunner(network.node(), ECOLOGY_NAME, request, f"c{len(network.nodes)}", lambda: network.time)
+        self._runner.start()
+
+    @property
+    def phase(self) -> str:
+        """Where the configurator is: `discovering`, `deploying`, `running`, ..."""
+        return self._runner.state.phase.value
+
+    @property
+    def running(self) -> bool:
+        """Whether a configuration is complete."""
+        return self._runner.state.phase is Phase.RUNNING
+
+    @property
+    def configuration(self) -> Configuration | None:
+        """What is deployed, or being deployed."""
+        return self._runner.configuration
+
+    def started(self) -> MemoryRun:
+        """The run once it is running. Raises ProgrammerError, with the refusal, if it does not come to that."""
+        self._ecology.until(lambda: self.running or self.ended)
+        self._ecology.advance(REPORT_LAG)
+        if not self.running:
+            raise ProgrammerError(f"the task does not run; it is {self.phase}, {self.refusal or 'without a refusal'}")
+        return self
+
+    def stop(self) -> None:
+        """Take the configuration down, and let the time pass that it takes."""
+        self._runner.stop()
+        self._ecology.until(lambda: self.ended)
+
+    def _ended(self, refusal: Refusal | Undecided | None) -> None:
+        self.refusal, self.ended = refusal, True
+
+
+class MemoryEcology:
+    """An ecology in memory: everything happens in the thread that lets time pass."""
+
+    def __init__(self, seed: int = 0, faults: Faults | None = None) -> None:
+        """`seed` decides the delays and losses of the network; without `faults` nothing is lost."""
+        self.network = Network(seed, faults)
+        self._shelf = _MemoryShelf()
+        self._site = Site(self.network.node(), ECOLOGY_NAME, "site", self._shelf)
+        self._runtimes: dict[IRI, tuple[ComponentRuntime, MemoryBus]] = {}
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds since the beginning."""
+        return self.network.time
+
+    @property
+    def advertisements(self) -> Mapping[IRI, Advertisement]:
+        """What is advertised, by component."""
+        return self._shelf.advertisements
+
+    def add(self, component: Kind, advertisement: str | Path | None = None) -> Kind:
+        """Let a component live, on a node of its own; returns it.
+
+        Its advertisement is the one of its class, or the one given: Turtle text or a file. Raises AuthorError for one
+        that does not conform, and for a document with several components of which the class names none.
+        """
+        found = _advertisement(component, advertisement)
+        self._shelf.put(found)
+        bus = self.network.node()
+        life = f"life{len(self.network.nodes)}"
+        self._runtimes[found.component] = ComponentRuntime(bus, Keys(ECOLOGY_NAME), found.profile, component, life), bus
+        return component
+
+    def advertise(self, advertisement: str | Path) -> IRI:
+        """Advertise a component that no process runs; returns its IRI."""
+        found = _advertisement(None, advertisement)
+        self._shelf.put(found)
+        return found.component
+
+    def run(
+        self, task: TaskSpecification, *, policy: str = "repair", wait: bool = False, strategy: str = "first"
+    ) -> MemoryRun:
+        """Begin to run a task; `started()` of the result lets time pass until it runs."""
+        self.advance(1.5)  # the site looks at its shelf once a second
+        return MemoryRun(self, task.complete(), Method.of(strategy), Policy(policy), wait)
+
+    def crash(self, component: Component) -> None:
+        """End the process of a component as kill -9 does: it says nothing any more."""
+        self._node(component).close()
+
+    def isolate(self, component: Component) -> None:
+        """Cut a component off from every other program."""
+        node = self._node(component)
+        for other in self.network.nodes:
+            if other is not node and self.network.reaches(node, other):
+                self.network.cut(node, other)
+
+    def rejoin(self, component: Component) -> None:
+        """Let a component reach every other program again."""
+        node = self._node(component)
+        for other in self.network.nodes:
+            if other is not node and not self.network.reaches(node, other):
+                self.network.reconnect(node, other)
+
+    def advance(self, seconds: float) -> None:
+        """Let simulated time pass."""
+        self.network.run(lambda: False, seconds)
+
+    def until(self, condition: Callable[[], bool], seconds: float = UNTIL_SECONDS) -> bool:
+        """Let simulated time pass until something holds; returns whether it does."""
+        return self.network.run(condition, seconds)
+
+    def _node(self, component: Component) -> MemoryBus:
+        for runtime, bus in self._runtimes.values():
+            if runtime.component is component:
+                return bus
+        raise ProgrammerError(f"{component!r} does not live in this ecology; add it first")
+
+
+def _advertisement(component: Component | None, given: str | Path | None) -> Advertisement:
+    """The advertisement of a component class, or the one in a document that is given."""
+    if given is not None:
+        index, left_out = gathered([text_of(given)])
+        found, wrong = list(index.values()), [str(one) for one in left_out]
+    elif component is not None:
+        good, bad = files.advertisements(type(component).advertisement_path())
+        found, wrong = good, [f"{one.component}: {one.problems[0]}" for one in bad]
+    else:
+        found, wrong = [], []
+    name = "" if component is None else type(component).component
+    wanted = [one for one in found if not name or one.component == name]
+    if wrong:
+        raise AuthorError(wrong[0])
+    if len(wanted) != 1:
+        raise AuthorError(f"one advertisement is needed, and there are {len(wanted)}; name one by `component`")
+    return wanted[0]

@@ -1,0 +1,148 @@
+"""Composition of a task from advertisements: hints, fallbacks and what stands by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pytest
+
+from selfconf.composition import composer as compose
+from selfconf.composition.composer import STANDBY, Composer, Strategy
+from selfconf.model.configuration import Configuration
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.optimum import Optimum
+from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Wire
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.advertisement import Advertisement
+from selfconf.rdf.tasks import templates
+from selfconf.rdf.tasks.templates import TaskDocument
+from selfconf.rdf.turtle import document as turtle
+from tests.lab import PREFIXES, iri
+
+NOBODY: frozenset[IRI] = frozenset()
+CONTROL = """
+:control a sc:Role ; sh:class :Controller .
+:position a sc:Role ; sh:class :Locator ; sc:feeds :control .
+"""
+PLAIN = f":navigate a sc:Template ; sc:roles ( :position :control ) . {CONTROL}"
+PRICED = (
+    ":navigate a sc:Template ; sc:roles ( :position :control ) ;"
+    f" sc:cost ( [ sc:term [ sc:property :price ] ] ) . {CONTROL}"
+)
+
+
+def task(text: str) -> TaskDocument:
+    """A template as a task."""
+    return templates.read_task(turtle.parse(PREFIXES + text, "template.ttl"))
+
+
+def ecology(*described: str) -> Mapping[IRI, Advertisement]:
+    """Components by what they say of themselves."""
+    found, malformed = advertisements.read(turtle.parse(PREFIXES + "\n".join(described), "ads.ttl"))
+    assert not malformed
+    return {one.component: one for one in found}
+
+
+def locator(name: str, signal: str = "Pose", price: int = 1) -> str:
+    """A component that tells where something is."""
+    output = f'[ sc:name "pose" ; sc:signalType :{signal} ]'
+    return f":{name} a sc:Component, :Locator ; :price {price} ; sc:hasOutput {output} ."
+
+
+def controller(name: str, **inputs: str) -> str:
+    """A component with those inputs; by default it wants to know where something is."""
+    wanted = inputs or {"where": "Pose"}
+    ports = " , ".join(f'[ sc:name "{port}" ; sc:signalType :{signal} ]' for port, signal in wanted.items())
+    return f":{name} a sc:Component, :Controller ; :price 1 ; sc:hasInput {ports} ."
+
+
+def configured(composer: Composer, given: Mapping[IRI, Advertisement]) -> Configuration:
+    """The configuration of an ecology that has one."""
+    answer = composer.compose(given, NOBODY, None)
+    assert isinstance(answer, Configuration), answer
+    return answer
+
+
+# The hint that subclasses would do.
+
+
+def test_a_signal_that_is_of_a_subclass_of_what_is_wanted_is_a_hint() -> None:
+    composer, given = Composer(task(PLAIN)), ecology(locator("gps", "PlanarPose"), controller("cap"))
+    above = Hierarchy([(iri("PlanarPose"), iri("Pose"))])
+    assert isinstance(composer.compose(given, NOBODY, None), Refusal)
+    assert composer.possible_under(given, above)
+    assert configured(Composer(task(PLAIN), above), given).connections
+
+
+def test_a_hierarchy_in_which_no_more_matches_is_no_hint() -> None:
+    composer, given = Composer(task(PLAIN)), ecology(locator("gps", "PlanarPose"), controller("cap"))
+    for lower, upper in (("PlanarPose", "Thing"), ("Pose", "PlanarPose"), ("Locator", "Pose")):
+        assert not composer.possible_under(given, Hierarchy([(iri(lower), iri(upper))]))
+
+
+def test_subclasses_that_match_but_do_not_suffice_are_no_hint() -> None:
+    composer = Composer(task(PLAIN))
+    given = ecology(locator("gps", "PlanarPose"), controller("cap", where="Pose", when="Time"))
+    assert not composer.possible_under(given, Hierarchy([(iri("PlanarPose"), iri("Pose"))]))
+
+
+# The strategy `best`.
+
+
+def test_where_the_best_is_not_decided_the_first_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compose, "SLICES", (1,))
+    given = ecology(locator("gps", price=9), locator("odometry", price=2), controller("cap"))
+    answers = list(Composer(task(PRICED), strategy=Strategy.BEST).answers(given, NOBODY, None))
+    assert isinstance(answers[0], Undecided)
+    assert answers[-1] == configured(Composer(task(PRICED)), given)
+
+
+def test_where_it_is_decided_the_best_is_the_last_answer() -> None:
+    given = ecology(locator("gps", price=9), locator("odometry", price=2), controller("cap"))
+    *_, answer = Composer(task(PRICED), strategy=Strategy.BEST).answers(given, NOBODY, None)
+    assert isinstance(answer, Optimum)
+    assert answer.proved
+    assert answer.configuration.assignments[0].components == (iri("odometry"),)
+
+
+def test_with_steps_given_no_more_than_these_are_taken_for_the_best() -> None:
+    given = ecology(locator("gps", price=9), locator("odometry", price=2), controller("cap"))
+    composer = Composer(task(PRICED), strategy=Strategy.BEST, steps=1)
+    assert all(isinstance(answer, Undecided) for answer in composer.answers(given, NOBODY, None))
+
+
+# Who stands by.
+
+
+def test_components_that_could_feed_an_input_next_stand_by_and_chosen_ones_do_not() -> None:
+    names = [f"locator{number}" for number in range(STANDBY + 3)]
+    given = ecology(*map(locator, names), controller("cap", start="Pose", end="Pose"))
+    composer = Composer(task(PLAIN))
+    configuration = configured(composer, given)
+    playing, *others = [iri(name) for name in names]
+    assert configuration.assignments[0].components == (playing,)
+    spare = tuple(Wire(one, "pose") for one in others[:STANDBY])
+    assert composer.standby(configuration, NOBODY) == {iri("cap"): {"start": spare, "end": spare}}
+
+
+def test_a_lost_component_does_not_stand_by() -> None:
+    names = [f"locator{number}" for number in range(STANDBY + 3)]
+    given = ecology(*map(locator, names), controller("cap"))
+    composer = Composer(task(PLAIN))
+    found = composer.standby(configured(composer, given), frozenset({iri(names[1])}))
+    assert found == {iri("cap"): {"where": tuple(Wire(iri(one), "pose") for one in names[2 : 2 + STANDBY])}}
+
+
+def test_a_component_in_another_role_does_not_stand_by() -> None:
+    text = PLAIN.replace(":position :control", ":position :spare :control") + ":spare a sc:Role ; sh:class :Locator ."
+    given = ecology(locator("a"), locator("b"), locator("c"), controller("cap"))
+    composer = Composer(task(text))
+    found = composer.standby(configured(composer, given), NOBODY)
+    assert found == {iri("cap"): {"where": (Wire(iri("c"), "pose"),)}}
+
+
+def test_where_no_candidate_is_left_none_stands_by() -> None:
+    composer, given = Composer(task(PLAIN)), ecology(locator("gps"), controller("cap"))
+    assert composer.standby(configured(composer, given), NOBODY) == {}

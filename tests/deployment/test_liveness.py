@@ -1,0 +1,295 @@
+"""Lives that end, seem to end, and begin again; sites that come late; and configurators that are cut off."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.bus.port import Request, Urgency
+from selfconf.configurator.state import Phase, Policy
+from selfconf.deployment.liveness import ASK_AGAIN, SETTLING
+from selfconf.discovery import DISCOVERY_ATTEMPTS
+from selfconf.model.refusal import Refusal
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Cause, Page
+from selfconf.sdk.supervision import GRACE
+from tests.deployment.tasks import TASK
+from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
+
+
+def test_a_component_that_crashes_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash("tracker")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.acts("lost")[0].cause == "crash"
+
+
+def test_a_component_that_dies_during_deployment_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.DEPLOYING)
+    lab.crash("tracker")
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_component_that_dies_while_it_is_activated_has_crashed(lab: Lab) -> None:
+    class Fragile(Recorder):
+        def started(self) -> None:
+            lab.crash("tracker")
+
+    lab.crash("tracker")
+    lab.component("tracker", Fragile())
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
+    assert agent.state.lost[iri("person-tracker")].cause is Cause.CRASH
+    assert [account.cause for account in lab.acts("lost")] == ["crash"]
+
+
+def test_a_new_life_of_a_lost_component_may_be_chosen_again(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash("tracker")
+    lab.let_pass(1.0)
+    lab.component("tracker")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}  # what runs is not changed for it
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_component_that_is_restarted_while_it_acts_is_activated_and_set_anew(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash("control")
+    lab.let_pass(0.5)
+    assert agent.state.phase is Phase.REFUSED
+    lab.ended.clear()
+    lab.component("control")
+    again = lab.agent()
+    assert lab.running(again)
+    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)")]
+
+
+def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_turned_themselves_off(lab: Lab) -> None:
+    """It sees all lives end and begin at one moment; meanwhile the components have not seen their supervisor."""
+    agent = lab.agent(policy=Policy.DISMANTLE)
+    lab.running(agent)
+    for name in TASK | {"tracker"}:
+        lab.runtimes[name]._orphaned()
+    epoch = agent.state.epoch
+    lab.isolate(agent)
+    lab.rejoin(agent)
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert agent.state.epoch > epoch
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["control"].said[-2:] == [("started",), ("goal", "(AT BEDROOM)")]
+    assert not lab.acts("lost")
+    assert len(lab.acts("connected")) == 1
+
+
+def test_a_configurator_that_was_suspended_yields_to_the_one_that_has_taken_over(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    for name in TASK | {"tracker"}:
+        lab.runtimes[name]._orphaned()
+    second = lab.agent()
+    lab.running(second)
+    lab.isolate(first)
+    lab.rejoin(first)
+    assert lab.until(lambda: first.state.phase is Phase.REFUSED)
+    assert lab.active() == TASK | {"tracker"}
+    assert all(lab.runtimes[name].activation.supervisor == second.supervisor for name in TASK | {"tracker"})
+
+
+def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_configuration(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate("tracker")
+    lab.let_pass(GRACE / 2)
+    assert lab.active() == TASK | {"odometry", "tracker"}
+    lab.rejoin("tracker")
+    lab.let_pass(0.1)
+    assert lab.active() == TASK | {"odometry"}
+    lab.let_pass(10.0)
+    assert lab.active() == TASK | {"odometry"}
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert agent.state.phase is Phase.RUNNING
+
+
+def test_a_component_that_fails_while_it_is_cut_off_for_a_moment_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate("tracker")
+    lab.components["tracker"].fail("unheard")
+    lab.let_pass(0.01)
+    lab.rejoin("tracker")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_component_that_is_cut_off_for_a_moment_and_goes_on_is_kept(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate("tracker")
+    lab.let_pass(0.01)
+    lab.rejoin("tracker")
+    lab.let_pass(10.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.acts("lost") == []
+
+
+@pytest.mark.parametrize("seconds", [0.3, GRACE + 0.5, 30.0])
+def test_a_configurator_that_was_cut_off_brings_its_configuration_up_again(lab: Lab, seconds: float) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate(agent)
+    lab.let_pass(seconds)
+    assert lab.active() == (TASK | {"tracker"} if seconds < GRACE else set())
+    lab.rejoin(agent)
+    lab.let_pass(SETTLING + 1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["control"].said[-1] in (("goal", "(AT BEDROOM)"), ("started",))
+    assert not lab.acts("lost")
+
+
+def test_a_component_that_died_while_the_configurator_was_cut_off_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate(agent)
+    lab.let_pass(0.3)
+    lab.crash("tracker")
+    lab.let_pass(0.3)
+    lab.rejoin(agent)
+    lab.let_pass(SETTLING + 1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_configurator_that_is_cut_off_can_be_stopped(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.isolate(agent)
+    lab.let_pass(0.1)
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended), 10.0)
+    lab.let_pass(GRACE + 0.1)
+    assert lab.active() == set()
+
+
+def test_a_site_that_came_after_the_start_counts_before_the_task_is_given_up(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "odometry", "control", "drive")
+    for name in TASK | {"odometry"}:
+        lab.component(name)
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.site("living-room", "tracker")
+    lab.component("tracker")
+    lab.let_pass(1.0)
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+
+
+@pytest.mark.parametrize("pages", [0, 1])
+def test_a_site_that_does_not_answer_in_full_is_named_when_asked_and_when_the_task_is_refused(
+    tmp_path: Path, pages: int
+) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control")
+    node = lab.network.node()
+    node.announce(lab.keys.site_life("living-room", "1"))
+
+    def answer(request: Request) -> None:
+        for _ in range(pages):
+            page = encode(Page(0, 2, 1, iri("pippi-drive"), "pippi.ttl"))
+            payload = (PREFIXES + ADVERTISEMENTS["pippi"]).encode()
+            request.reply(lab.keys.advertisement("living-room", iri("pippi-drive")), payload, page)
+        request.finish()
+
+    node.serve(lab.keys.advertisements("living-room"), answer)
+    lab.agent()
+    assert lab.until(lambda: bool(lab.ended))
+    (discovered,) = lab.acts("discovered")
+    assert discovered.sites == ("astrid", "living-room")
+    assert discovered.missing == ("living-room",)
+    assert discovered.components == 3 + pages
+    assert lab.ended[0] is not None
+    assert lab.ended[0].missing_sites == ("living-room",)
+
+
+def test_a_site_that_answers_later_is_not_missing_from_the_refusal_any_more(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in TASK:
+        lab.component(name)
+    node = lab.network.node()
+    node.announce(lab.keys.site_life("living-room", "1"))
+    undo = node.serve(lab.keys.advertisements("living-room"), lambda _: None)
+    agent = lab.agent(patient=True)
+    lab.let_pass(2 * ASK_AGAIN)
+    assert isinstance(agent.state.refusal, Refusal)
+    assert agent.state.refusal.missing_sites == ("living-room",)
+    undo()
+    empty = encode(Page(0, 0, 1))
+
+    def answer(request: Request) -> None:
+        request.reply(lab.keys.advertisements("living-room").replace("**", "none"), b"", empty)
+        request.finish()
+
+    node.serve(lab.keys.advertisements("living-room"), answer)
+    lab.let_pass(2 * ASK_AGAIN)
+    assert isinstance(agent.state.refusal, Refusal)
+    assert agent.state.refusal.missing_sites == ()
+
+
+def test_a_site_that_does_not_answer_is_asked_again_at_one_interval_whatever_else_changes(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar")
+    node = lab.network.node()
+    node.announce(lab.keys.site_life("living-room", "1"))
+    asked: list[float] = []
+
+    def answer(request: Request) -> None:
+        asked.append(lab.network.time)
+        request.finish()
+
+    node.serve(lab.keys.advertisements("living-room"), answer)
+    lab.agent(patient=True)
+    changed = node.publisher(lab.keys.changed("living-room"), Urgency.EVENT)
+    for _ in range(20):
+        lab.let_pass(0.2)
+        changed.put(b"")
+    lab.let_pass(ASK_AGAIN)
+    asked.clear()
+    lab.let_pass(10 * ASK_AGAIN)
+    assert len(asked) <= 10 * DISCOVERY_ATTEMPTS
+
+
+def test_a_site_that_is_started_again_is_news_though_its_earlier_life_has_not_ended_yet(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    first = lab.site("living-room", "pippi")
+    agent = lab.agent(patient=True)
+    lab.let_pass(2 * ASK_AGAIN)
+    assert agent.state.phase is Phase.REFUSED
+    (tmp_path / "living-room" / "pippi.ttl").unlink()
+    lab.site("living-room", "tracker")
+    first.bus.close()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}

@@ -1,0 +1,339 @@
+"""A task that is run in a small ecology, in simulated time: the paper's experiment, losses, patience, and reports."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.bus.port import Replies, Urgency
+from selfconf.configurator.events import Failed
+from selfconf.configurator.state import Phase, Policy
+from selfconf.deployment.runner import TRY_AGAIN
+from selfconf.errors import TemplateError
+from selfconf.model.refusal import TooFewEligible
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Verdict
+from selfconf.rdf import conformance as shacl
+from selfconf.render.run_events import event_body
+from selfconf.sdk.component import Refused
+from selfconf.sdk.supervision import GRACE
+from tests.deployment.tasks import TASK
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
+
+
+def released(recorder: Recorder) -> bool:
+    """Whether a component was turned off as often as it was turned on."""
+    return recorder.said.count(("started",)) == recorder.said.count(("stopped",))
+
+
+def test_the_task_is_configured_with_the_tracker_and_never_with_the_drive_of_pippi(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["pippi"].said == []
+    assert agent.configuration is not None
+    assert agent.configuration.components == tuple(
+        map(iri, ("sonar-array", "wheels", "person-tracker", "thinking-cap", "astrid-drive"))
+    )
+
+
+def test_signals_flow_along_the_connections_and_the_goal_is_set_last(lab: Lab) -> None:
+    lab.running(lab.agent())
+    lab.components["tracker"].emit("pose", {"x": 1})
+    lab.components["odometry"].emit("pose", {"x": 9})
+    lab.components["control"].emit("set.velocity", {"v": 0.3})
+    lab.let_pass(0.1)
+    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)"), ("position", {"x": 1})]
+    assert lab.components["drive"].said == [("started",), ("velocity", {"v": 0.3})]
+
+
+def test_a_lost_tracker_is_replaced_by_odometry(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.components["tracker"].fail("Astrid has left the picture")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.components["tracker"].said == [("started",), ("stopped",)]
+    lab.components["odometry"].emit("pose", {"x": 2})
+    lab.let_pass(0.1)
+    assert lab.components["control"].said[-1] == ("position", {"x": 2})
+    (lost,) = lab.acts("lost")
+    assert lost.component == iri("person-tracker")
+    assert lost.detail == "Astrid has left the picture"
+
+
+def test_repair_neither_stops_nor_starts_nor_sets_anew_what_runs(lab: Lab) -> None:
+    lab.running(lab.agent())
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)")]
+    for name in ("sonar", "encoder", "drive"):
+        assert lab.components[name].said == [("started",)]
+
+
+def test_dismantling_first_stops_all_components_as_the_paper_does(lab: Lab) -> None:
+    agent = lab.agent(policy=Policy.DISMANTLE)
+    lab.running(agent)
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.components["drive"].said == [("started",), ("stopped",), ("started",)]
+    assert lab.components["control"].said == [
+        ("started",),
+        ("goal", "(AT BEDROOM)"),
+        ("stopped",),
+        ("started",),
+        ("goal", "(AT BEDROOM)"),
+    ]
+
+
+def test_when_odometry_fails_too_the_task_is_refused_and_everything_is_off(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    for name in ("tracker", "odometry"):
+        lab.components[name].fail("broken")
+        lab.let_pass(1.0)
+    assert agent.state.phase is Phase.REFUSED
+    assert lab.active() == set()
+    (refusal,) = lab.ended
+    assert refusal is not None
+    assert [reason.role for reason in refusal.reasons if isinstance(reason, TooFewEligible)] == [iri("position")]
+
+
+def test_a_stop_takes_everything_down_once(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    agent.stop()
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    assert lab.ended == [None]
+    assert lab.active() == set()
+    assert all(map(released, lab.components.values()))
+
+
+@pytest.mark.parametrize("moment", [0.0, 0.0004, 0.0012, 0.0018, 0.0024, 0.003, 0.0035, 0.004, 0.0045, 0.01])
+@pytest.mark.parametrize("policy", Policy)
+def test_a_stop_at_any_moment_leaves_nothing_active(lab: Lab, moment: float, policy: Policy) -> None:
+    agent = lab.agent(policy=policy)
+    lab.let_pass(moment)
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    lab.let_pass(1.0)
+    assert lab.ended == [None]
+    assert lab.active() == set()
+
+
+def test_what_changes_nothing_is_no_loss(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.DEPLOYING)
+    agent._step(Failed(iri("person-tracker"), "", Cause.SILENCE, "no signal"))  # it may not have begun
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+    agent.stop()
+    lab.crash("tracker")
+    assert lab.until(lambda: bool(lab.ended))
+    assert lab.acts("lost") == []
+
+
+def test_an_output_that_promised_a_rate_and_stops_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    promising = ADVERTISEMENTS["tracker"].replace(
+        "sc:signalType rob:PlanarPose2D", "sc:signalType rob:PlanarPose2D ; sc:rate [ sc:value 10 ; sc:unit unit:HZ ]"
+    )
+    monkeypatch.setitem(ADVERTISEMENTS, "tracker", promising)
+
+    class Tracker(Recorder):
+        seeing = True
+
+        def started(self) -> None:
+            self.every(0.1, self.look)
+
+        def look(self) -> None:
+            if self.seeing:
+                self.emit("pose", {"x": 0})
+
+    lab = Lab(tmp_path)
+    lab.navigation()
+    lab.crash("tracker")
+    tracker = Tracker()
+    lab.component("tracker", tracker)
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.let_pass(5.0)
+    assert lab.active() == TASK | {"tracker"}
+    tracker.seeing = False
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.acts("lost")[0].cause == "silence"
+
+
+def test_the_fail_of_a_component_that_was_activated_anew_counts(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.components["odometry"].fail("idle, so nobody hears")
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}
+    lab.components["odometry"].fail("now it does")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.REFUSED
+
+
+def test_a_stranger_cannot_make_a_component_fail(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    mallory = lab.network.node()
+    forged = encode(Fail(iri("person-tracker"), "", 1, Cause.FAIL, "says who"))
+    for key in (lab.keys.fail(iri("pippi-drive")), lab.keys.fail(iri("thinking-cap"))):
+        mallory.publisher(key, Urgency.EVENT).put(forged)
+    mallory.publisher(lab.keys.fail(iri("person-tracker")), Urgency.EVENT).put(b"not a message")
+    silent = encode(Fail(iri("person-tracker"), "", 1, Cause.SILENCE, "says a stranger"))
+    mallory.publisher(lab.keys.fail(iri("pippi-drive")), Urgency.EVENT).put(silent)
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_when_the_configurator_dies_everything_turns_itself_off_and_a_new_one_recovers(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash(agent)
+    lab.let_pass(GRACE - 0.1)
+    assert lab.active() == TASK | {"tracker"}
+    lab.let_pass(0.2)
+    assert lab.active() == set()
+    again = lab.agent()
+    assert lab.running(again)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_new_configurator_takes_over_at_once_from_one_that_died(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    lab.crash(first)
+    again = lab.agent()
+    assert lab.running(again)
+    assert lab.active() == TASK | {"tracker"}
+    lab.let_pass(10.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["drive"].said == [("started",)]
+
+
+def test_two_tasks_share_the_ecology_as_long_as_they_need_different_components(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    template = PREFIXES + ":watch a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class rob:PositionSensor ."
+    second = lab.agent(template, bound=())
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker", "odometry"}
+    first.stop()
+    lab.let_pass(1.0)
+    assert lab.active() == {"odometry"}
+
+
+def test_patience_waits_until_the_ecology_has_what_it_needs(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in TASK:
+        lab.component(name)
+    agent = lab.agent(patient=True)
+    lab.let_pass(5.0)
+    assert agent.state.phase is Phase.REFUSED
+    assert lab.ended == []
+    lab.component("tracker")
+    lab.site("living-room", "tracker")
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_patience_notices_an_advertisement_that_is_added_to_a_site(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    site = lab.site("astrid", "sonar", "encoder", "control", "drive")
+    for name in TASK | {"odometry"}:
+        lab.component(name)
+    agent = lab.agent(patient=True)
+    lab.let_pass(5.0)
+    assert agent.state.phase is Phase.REFUSED
+    (tmp_path / "astrid" / "odometry.ttl").write_text(PREFIXES + ADVERTISEMENTS["odometry"])
+    assert lab.running(agent)
+    assert site.name == "astrid"
+
+
+def test_patience_recovers_when_a_lost_component_lives_again(lab: Lab) -> None:
+    agent = lab.agent(patient=True)
+    lab.running(agent)
+    lab.crash("drive")
+    lab.let_pass(1.0)
+    assert (agent.state.phase, lab.active()) == (Phase.REFUSED, set())
+    lab.component("drive")
+    assert lab.running(agent)
+    agent.stop()
+    assert lab.until(lambda: lab.ended == [None])
+    assert lab.active() == set()
+
+
+def test_patience_goes_on_when_a_component_that_another_configurator_held_is_free(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(patient=True)
+    lab.let_pass(3 * TRY_AGAIN)
+    assert second.state.phase is Phase.REFUSED
+    (waiting,) = lab.acts("waiting")
+    assert set(waiting.lost.values()) == {f"refused, the configurator {first.name} holds it"}
+    first.stop()
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.runtimes["drive"].activation.supervisor == second.supervisor
+
+
+def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(patient=True)
+    lab.let_pass(2 * TRY_AGAIN)
+    lab.crash(first)
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_patience_does_not_try_a_component_again_that_has_refused_for_itself(lab: Lab) -> None:
+    lab.components["drive"].refusal = Refused("the battery is empty")
+    agent = lab.agent(patient=True)
+    lab.let_pass(4 * TRY_AGAIN)
+    assert agent.state.phase is Phase.REFUSED
+    assert lab.components["drive"].said.count(("started",)) == 1
+
+
+def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
+    lab.running(lab.agent())
+    replies: list[Replies] = []
+    them = lab.keys.configurator_life("them", "1")
+    payload = encode(Release(1 << 60, them))
+    lab.network.node().ask(lab.keys.call(iri("astrid-drive"), "release"), payload, 1.0, replies.append)
+    assert lab.until(lambda: bool(replies))
+    assert decode(replies[0].samples[0].payload, CallAnswer).verdict is Verdict.BUSY
+    assert "drive" in lab.active()
+
+
+def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shacl, "SHAPE_SECONDS", 0.05)
+    broken = NAVIGATE + ':drive sh:pattern "^([^!]+)+!$" .\n'
+    agent = lab.agent(broken)
+    assert lab.until(lambda: bool(lab.ended))
+    assert isinstance(agent.trouble, TemplateError)
+    assert lab.active() == set()
+
+
+def test_what_it_does_is_reported_in_the_order_of_the_four_acts(lab: Lab) -> None:
+    lab.running(lab.agent())
+    lab.let_pass(0.1)
+    acts = [account.act for account in lab.events]
+    firsts = [
+        acts.index(act) for act in ("query", "discovered", "composed", "watching", "activating", "set", "running")
+    ]
+    assert firsts == sorted(firsts)
+    assert max(i for i, act in enumerate(acts) if act == "watching") < acts.index("activating")
+    connected = {(str(a.source), str(a.output)) for a in lab.acts("connecting")}
+    assert (str(iri("person-tracker")), "pose") in connected
+    assert all(event_body(event) for event in lab.events)

@@ -1,0 +1,172 @@
+"""Streaming makes of a document what the careful reader makes of it."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pyoxigraph as ox
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from selfconf.errors import TurtleError
+from selfconf.rdf.advertisements import loader, statements
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
+from selfconf.rdf.advertisements.segments import SegmentCache
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.turtle.document import Triple
+from selfconf.rdf.turtle.serialization import ntriples
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+
+VALUES = st.sampled_from(
+    (
+        ":Astrid", ":kitchen", ":c1", '"words"', '"a , b ;\\n\\t.\\n <x> \\"q\\""', '"mot"@fr', "7", "-2.50", "1e3",
+        "true", '"07"^^xsd:int', "[ :unit :m ; :value 2 ]", "[ :range [ :from 1 ; :to 2 ] ]", "[]", "( 1 2 )",
+    )
+)  # fmt: skip
+NAMES = st.sampled_from(('"scan"', '"pose"', '""', '"a\\"b"', '"scan"@en', "3"))
+SIGNALS = st.sampled_from(("rob:RangeScan", "rob:PlanarPose2D", '"text"'))
+PORTS = st.one_of(
+    st.builds("[ sc:name {} ; sc:signalType {} ]".format, NAMES, SIGNALS),
+    st.builds("[ a sc:Output ; sc:name {} ; sc:signalType {} ]".format, NAMES, SIGNALS),
+    st.builds("[ sc:signalType {1} ; sc:name {0} ; rdfs:label 'port' ]".format, NAMES, SIGNALS),
+    st.builds(
+        "[ sc:name {} ; sc:signalType {} ; sc:rate [ sc:value {} ; sc:unit unit:HZ ] ]".format,
+        NAMES, SIGNALS, st.sampled_from(("5.0", "0", '"fast"')),
+    ),
+    st.sampled_from(("[]", "[ sc:name 'x' ]", ":shared-port", "'port'")),
+)  # fmt: skip
+CLAUSES = st.one_of(
+    st.builds("a {}".format, st.sampled_from(("sc:Component", "rob:Encoder", "sc:Component, :T", "owl:Thing", "'x'"))),
+    st.builds("sc:hasInput {}".format, PORTS),
+    st.builds("sc:hasOutput {} , {}".format, PORTS, PORTS),
+    st.builds(
+        "sc:hasParameter [ sc:name {} ; sc:parameterType {} ]".format, NAMES, st.sampled_from((":Goal", "'Goal'"))
+    ),
+    st.builds("sc:preference {}".format, st.sampled_from(("1", "2.5", '"high"', "1 , 1", "1 , 2"))),
+    st.builds("sc:grounding [ sc:command {} ]".format, st.sampled_from(('"go --fast"', "5", '"a", "b"'))),
+    st.sampled_from(("sc:grounding :kitchen", "sc:command 'go'", "sc:grounding 'go'")),
+    st.builds("{} {}".format, st.sampled_from((":place", "rob:support", "rdfs:label", "rdfs:domain")), VALUES),
+    st.builds(":near {} , {}".format, VALUES, VALUES),
+    st.just(":with [ a sc:Component, :Inner ]"),
+)
+SUBJECTS = st.sampled_from((":c1", ":c2", ":c3", ":kitchen", ":shared-port", "[]"))
+GOOD = "a sc:Component, rob:Encoder ; sc:hasOutput [ sc:name 'ticks' ; sc:signalType rob:Odometry2D ]"
+
+
+@st.composite
+def documents(draw: st.DrawFn) -> str:
+    """Turtle about a few subjects, mostly advertisements, some of it wrong."""
+    statements = []
+    for _ in range(draw(st.integers(1, 5))):
+        said = [GOOD] if draw(st.booleans()) else []
+        said += draw(st.lists(CLAUSES, max_size=4))
+        if said:
+            statements.append(f"{draw(SUBJECTS)} {' ; '.join(said)} .")
+    return PREFIXES + "@prefix owl: <http://www.w3.org/2002/07/owl#> .\n" + "\n".join(statements)
+
+
+def shape_of(triples: tuple[Triple, ...]) -> list[str]:
+    """Triples, whatever their blank nodes are called."""
+    dataset = ox.Dataset(
+        ox.Quad(t.subject, t.predicate, t.object) for t in ox.parse(ntriples(triples), format=ox.RdfFormat.N_TRIPLES)
+    )
+    dataset.canonicalize(ox.CanonicalizationAlgorithm.UNSTABLE)
+    return sorted(map(str, dataset))
+
+
+def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tuple[object, object]:
+    """All that is to be the same, whatever blank nodes are called."""
+    good, bad = found
+    return (
+        [
+            (
+                a.component,
+                a.types,
+                Counter((p, "[]" if type(v).__name__ == "BlankNode" else v) for p, v in a.profile.properties),
+                (a.profile.inputs, a.profile.outputs, a.profile.parameters),
+                (a.profile.preference, a.profile.command, str(a.profile.place)),
+                shape_of(a.triples),
+            )
+            for a in good
+        ],
+        [("[]" if m.component.startswith("_:") else m.component, m.problems, m.place) for m in bad],
+    )
+
+
+@given(documents())
+@example(PREFIXES + f":c1 {GOOD} ; :place ( 1 2 ) .")
+@example(PREFIXES + f":c1 {GOOD} ; sc:hasInput [ sc:signalType :S ; sc:name 'in' ; rdfs:label 'port' ] .")
+@example(PREFIXES + f":c1 {GOOD} ; :near [] , [] .")
+@example(PREFIXES + f":c1 {GOOD} ; :size [ :of [ :unit 'm' ] ; :by 'hand' ] , [] , [ :by 'eye' ] .")
+@example(PREFIXES + f":c1 {GOOD} . [] {GOOD} . :c1 rob:support :c2 . :c2 {GOOD} ; sc:hasInput :shared-port .")
+@example(PREFIXES + f":c1 {GOOD} ; :place :kitchen . :c2 {GOOD} ; :place :kitchen . :kitchen :size [ :value 3 ] .")
+def test_the_fast_loader_reads_what_the_careful_reader_reads(text: str) -> None:
+    careful = advertisements.read(turtle.parse(text, "a.ttl", "file:///a.ttl"))
+    assert told(loader.read(text.encode(), "a.ttl", "file:///a.ttl")) == told(careful)
+
+
+def test_a_document_longer_than_a_window_is_read_as_one() -> None:
+    text = PREFIXES + "\n".join(f":c{k} {GOOD} ; rob:support :robot{k % 7} ." for k in range(500))
+    good, bad = loader.read(text.encode(), "a.ttl")
+    assert (len(good), bad) == (500, [])
+    assert told((good, bad)) == told(advertisements.read(turtle.parse(text, "a.ttl")))
+
+
+def test_documents_may_share_their_segments() -> None:
+    shared = SegmentCache()
+    found = [loader.read((PREFIXES + text).encode(), name, None, shared)[0][0] for name, text in ADVERTISEMENTS.items()]
+    assert [a.profile.place and a.profile.place.source for a in found] == list(ADVERTISEMENTS)
+    assert found[2].profile.preference == 10
+
+
+def test_blank_nodes_of_two_advertisements_are_never_the_same() -> None:
+    text = PREFIXES + f":c1 {GOOD} ; :size [ :value 3 ] . :c2 {GOOD} ; :size [ :value 3 ] ."
+    (one, other), _ = loader.read(text.encode(), "a.ttl")
+    assert one.profile.values(iri("size")) != other.profile.values(iri("size"))
+    assert one != other
+
+
+def test_what_is_no_turtle_is_blamed_by_line_and_column() -> None:
+    with pytest.raises(TurtleError, match=r"a\.ttl:2:5: not Turtle"):
+        loader.read(b"<urn:a> <urn:b> <urn:c> .\n<x> ; .", "a.ttl", "file:///")
+
+
+@pytest.mark.parametrize("form", [':c1 rdfs:label "{}" .', ":c1 a sc:Component, :A ; rdfs:label '''{}''' ."])
+def test_a_literal_that_is_too_long_for_the_parser_is_blamed_on_its_file(form: str) -> None:
+    text = (PREFIXES + form.format("a" * (17 << 20))).encode()
+    with pytest.raises(TurtleError, match=r"big\.ttl: a literal in it is over 16 MiB"):
+        loader.read(text, "big.ttl")
+    with pytest.raises(TurtleError, match="over 16 MiB"):
+        turtle.parse(text, "big.ttl")
+
+
+def test_ports_with_names_take_time_as_there_are_ports(monkeypatch: pytest.MonkeyPatch) -> None:
+    port = "sc:name 'in' ; sc:signalType :S"
+    text = PREFIXES + "".join(f":c{k} {GOOD} ; sc:hasInput :in{k} . :in{k} {port} .\n" for k in range(50))
+    careful = told(advertisements.read(turtle.parse(text, "a.ttl")))
+    monkeypatch.setattr(advertisements, "profiles", None)  # nobody looks at one by one
+    found = loader.read(text.encode(), "a.ttl")
+    assert told(found) == careful
+    assert iri("in7") in {value for _, _, value in found[0][7].triples}
+
+
+def test_blank_nodes_with_labels_are_the_same_in_one_document_and_others_in_another() -> None:
+    text = PREFIXES + f":c1 {GOOD} ; :near _:x . :c2 {GOOD} ; :near _:x . _:x :near _:y ; rdfs:label 'x' ."
+    one, other = loader.read(text.encode(), "a.ttl")[0]
+    again, _ = loader.read(text.encode(), "a.ttl")[0]
+    assert one.profile.values(iri("near")) == other.profile.values(iri("near")) != again.profile.values(iri("near"))
+    assert one.profile.values(iri("near"))[0] in {subject for subject, _, _ in one.triples}
+
+
+def test_oxigraph_writes_a_subject_as_the_fast_loader_expects_it() -> None:
+    text = "<s:a> a <s:T> , <s:U> ; <s:p> 'x\ty ;\\n\\t' , [ <s:q> 1 ; <s:r> [ <s:q> 2 ] ] ."
+    parser = ox.parse(text, format=ox.RdfFormat.TURTLE)
+    written = (ox.serialize(parser, format=ox.RdfFormat.TURTLE) or b"").decode()
+    lines = [
+        block.partition(" ")[2].split(statements.NEXT)
+        for block in written[: -len(statements.END)].split(statements.END)
+    ]
+    assert lines[0] == ["a <s:T> , <s:U>", '<s:p> "x\\ty ;\\n\\t"']
+    assert [line[0].partition(" ")[0] for line in lines[1:]] == ["<s:q>", "<s:q>", "<s:r>", "<s:p>"]

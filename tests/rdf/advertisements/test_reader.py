@@ -1,0 +1,195 @@
+"""Advertisements: the profile of each component, every problem named, and nothing said but about oneself."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf.model.profile import Input, OperationalParameter, Output, candidate_order
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.advertisements import loader
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.vocabulary import RDFS, ROB, SC
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+
+BAD = Path(__file__).resolve().parents[2] / "bad"
+UNDECLARED = {"component-untyped"}
+"""Files about something that says nowhere that it is a component."""
+PORT = '[ sc:name "a" ; sc:signalType :S'
+Read = tuple[list[Advertisement], list[MalformedAdvertisement]]
+
+
+def read(text: str) -> Read:
+    """The advertisements of a text."""
+    return advertisements.read(turtle.parse(PREFIXES + text, "ads.ttl"))
+
+
+def one(text: str) -> Advertisement:
+    """The only advertisement of a text."""
+    (good,), bad = read(text)
+    assert bad == []
+    return good
+
+
+def test_the_profile_of_the_thinking_cap_is_that_of_the_paper() -> None:
+    profile = one(ADVERTISEMENTS["control"]).profile
+    assert profile.component == iri("thinking-cap")
+    assert profile.types == {SC.Component, ROB.NavigationControl}
+    assert profile.inputs == (
+        Input("localize", ROB.Odometry2D),
+        Input("position", ROB.PlanarPose2D),
+        Input("sonar", ROB.RangeScan),
+    )
+    assert profile.outputs == (Output("set.velocity", ROB.Velocity2D),)
+    assert profile.parameters == (OperationalParameter("goal", ROB.BehaviouralGoal),)
+    assert (profile.preference, profile.command) == (0.0, None)
+
+
+@pytest.mark.parametrize(
+    ("low", "high"),
+    [
+        ("0.1", "0.10000000000000000001"),
+        ("9007199254740992", "9007199254740993"),
+        ("-0.10000000000000000000000000000000002", "-0.10000000000000000000000000000000001"),
+        ("1e-320", "1e-319"),
+    ],
+)
+def test_preferences_are_compared_exactly(low: str, high: str) -> None:
+    lamps = [one(f":a a sc:Component, :Lamp ; sc:preference {wish} .").profile for wish in (low, high)]
+    assert lamps[1].preference > lamps[0].preference
+    assert candidate_order(lamps[1]) < candidate_order(lamps[0])
+
+
+def test_properties_are_what_is_neither_a_type_nor_a_port() -> None:
+    profile = one(ADVERTISEMENTS["tracker"] + ' :person-tracker rdfs:label "tracker"@en ; :watts 5 .').profile
+    assert profile.preference == 10
+    assert {predicate for predicate, _ in profile.properties} == {ROB.place, RDFS.label, iri("watts")}
+    assert profile.values(ROB.place) == (iri("living-room"),)
+
+
+def test_an_advertisement_without_ports_or_with_unknown_types_is_still_one() -> None:
+    profile = one(":lamp a sc:Component, :Lamp .").profile
+    assert (profile.inputs, profile.outputs, profile.parameters) == ((), (), ())
+
+
+def test_a_promised_rate_and_a_command_are_read() -> None:
+    profile = one(
+        ':t a sc:Component, :T ; sc:grounding [ sc:command "python t.py" ] ; sc:hasOutput'
+        ' [ sc:name "p" ; sc:signalType :S ; sc:rate [ sc:value 2.5 ; sc:unit unit:HZ ] ] .'
+    ).profile
+    assert profile.outputs == (Output("p", iri("S"), 2.5),)
+    assert profile.command == "python t.py"
+
+
+def test_a_document_may_hold_several_components_in_the_order_of_the_text() -> None:
+    good, bad = read("\n".join(ADVERTISEMENTS.values()))
+    assert [advertisement.profile.component.short for advertisement in good][:2] == ["sonar-array", "wheels"]
+    assert len(good) == len(ADVERTISEMENTS)
+    assert bad == []
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        (":x a sc:Component .", "a type of its own"),
+        ("[] a sc:Component, :Lamp .", "needs an IRI"),
+        (':x a sc:Component, :Lamp ; sc:preference "high" .', "sc:preference is one number"),
+        (":x a sc:Component, :Lamp ; sc:preference 1, 2 .", "sc:preference is one number"),
+        (':x a sc:Component, :Lamp ; sc:preference "INF"^^xsd:double .', "sc:preference is one number"),
+        (":x a sc:Component, :Lamp ; sc:hasInput [ sc:signalType :S ] .", "exactly one sc:name"),
+        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "" ; sc:signalType :S ] .', "not empty"),
+        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "a" ] .', "exactly one sc:signalType"),
+        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "a" ; sc:signalType "S" ] .', "an IRI"),
+        (':x a sc:Component, :Lamp ; sc:hasInput "a" .', "exactly one sc:name"),
+        (f":x a sc:Component, :L ; sc:hasInput {PORT} ], {PORT} ] .", "stands for two"),
+        (':x a sc:Component, :Lamp ; sc:hasParameter [ sc:name "a" ] .', "sc:parameterType"),
+        (f":x a sc:Component, :L ; sc:hasOutput {PORT} ; sc:rate [ sc:value 0 ; sc:unit unit:HZ ] ] .", "above zero"),
+        (f":x a sc:Component, :L ; sc:hasOutput {PORT} ; sc:rate 5 ] .", "sc:rate"),
+    ],
+)
+def test_what_does_not_conform_is_left_out_with_one_sentence(text: str, problem: str) -> None:
+    good, (bad,) = read(text)
+    assert good == []
+    assert any(problem in said for said in bad.problems)
+    assert str(bad.place).startswith("ads.ttl")
+
+
+def test_every_problem_is_named_not_the_first_alone() -> None:
+    _, (bad,) = read(':x a sc:Component ; sc:preference "high" ; sc:hasInput [ sc:name "a" ] .')
+    assert len(bad.problems) == 3
+
+
+def test_one_that_does_not_conform_leaves_its_neighbours_alone() -> None:
+    good, bad = read(":x a sc:Component . " + ADVERTISEMENTS["drive"])
+    assert [advertisement.profile.component for advertisement in good] == [iri("astrid-drive")]
+    assert [malformed.component for malformed in bad] == [iri("x")]
+
+
+def test_an_advertisement_takes_along_what_it_says_about_things_but_not_about_other_components() -> None:
+    triples = one(":a a sc:Component, :L ; rob:place :hall . :hall :floor 2 . :elsewhere :floor 3 .").triples
+    assert (iri("hall"), iri("floor"), Literal("2", IRI("http://www.w3.org/2001/XMLSchema#integer"))) in triples
+    assert iri("elsewhere") not in {subject for subject, _, _ in triples}
+    good, _ = read(":a a sc:Component, :L ; :near :b . :b a sc:Component, :L ; :secret 1 .")
+    assert iri("secret") not in {predicate for _, predicate, _ in good[0].triples}
+
+
+@pytest.mark.parametrize(
+    "axiom",
+    [
+        ":L rdfs:subClassOf rob:MotorDrive",
+        ":a rdfs:subPropertyOf rob:support",
+        ":a rdfs:domain :X",
+        ":a <http://www.w3.org/2002/07/owl#sameAs> :b",
+        ":a <http://www.w3.org/2002/07/owl#equivalentClass> rob:MotorDrive",
+        ":a sh:targetClass sc:Component",
+        ":a a sh:NodeShape",
+        ":a a <http://www.w3.org/2002/07/owl#Class>",
+        ":a a rdfs:Class",
+    ],
+)
+def test_axioms_and_shapes_are_nothing_that_an_advertisement_can_say(axiom: str) -> None:
+    plain = one(":a a sc:Component, :L .")
+    smuggled = one(f":a a sc:Component, :L . {axiom} .")
+    assert set(smuggled.triples) == set(plain.triples)
+    assert smuggled.profile == plain.profile
+
+
+def test_two_advertisements_are_equal_if_they_say_the_same() -> None:
+    text = ":a a sc:Component, :L ; rob:place :hall ."
+    assert one(text) == one(text)
+    assert one(text) != one(text.replace("hall", "attic"))
+
+
+@given(st.lists(st.sampled_from(list(ADVERTISEMENTS)), unique=True))
+def test_the_order_of_components_in_a_file_changes_no_profile(names: list[str]) -> None:
+    forward, _ = read(" ".join(ADVERTISEMENTS[name] for name in names))
+    backward, _ = read(" ".join(ADVERTISEMENTS[name] for name in reversed(names)))
+    assert [a.profile for a in forward] == [a.profile for a in reversed(backward)]
+
+
+def broken(path: Path) -> bool:
+    """Whether a bad file breaks the shape of an advertisement, and not another."""
+    return re.match(r"# expect: \S+ error\[SC-A", path.read_text()) is not None
+
+
+@pytest.mark.parametrize("path", sorted(filter(broken, BAD.glob("*.ttl"))), ids=lambda path: path.stem)
+def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
+    text = path.read_bytes()
+    careful, streamed = advertisements.read(turtle.parse(text, path.name)), loader.read(text, path.name)
+    if path.stem in UNDECLARED:
+        assert careful == streamed == ([], [])
+    else:
+        assert [malformed.problems for malformed in streamed[1]] == [malformed.problems for malformed in careful[1]]
+        assert careful[1]
+
+
+def test_what_a_grounding_with_a_name_says_is_read() -> None:
+    text = ':a a sc:Component, :L ; sc:grounding :g . :g sc:command "go" . :b a sc:Component, :L ; sc:grounding :g .'
+    assert [a.profile.command for a in read(text)[0]] == ["go", "go"]
+    assert [a.profile.command for a in loader.read((PREFIXES + text).encode(), "ads.ttl")[0]] == ["go", "go"]

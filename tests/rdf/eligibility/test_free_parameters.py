@@ -1,0 +1,164 @@
+"""A parameter that is left free: whoever may play is eligible under the value that it is given in the end."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf import rdflib_terms
+from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.eligibility.free_parameters import Suitable
+from selfconf.rdf.eligibility.partitioner import ANOTHER, Partitioner
+from selfconf.rdf.tasks import bindings, parameter_values, templates
+from selfconf.rdf.tasks.templates import TaskDocument
+from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.vocabulary import RDF, XSD
+from selfconf.search.problem import Problem
+from selfconf.search.strategies import first as solve
+from tests.lab import PREFIXES, iri
+from tests.rdf.eligibility.test_compiler import COMPONENTS, ecology
+
+PARAMETER = ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :v . :v a sc:Parameter ; sc:name 'v'"
+SETS = "; sc:sets [ sc:parameterType :T ; sc:value :v ]"
+POSITIVE = (
+    "[ sh:path :p ; sh:hasValue :v ]",
+    "[ sh:path :q ; sh:in ( :v :y ) ]",
+    "[ sh:path :p ; sh:minCount 1 ; sh:in ( :v ) ]",
+)
+PROPERTIES = st.sampled_from(
+    (
+        *POSITIVE,
+        "[ sh:path ( :near :place ) ; sh:hasValue :v ]",
+        "[ sh:path [ sh:alternativePath ( :p :r ) ] ; sh:hasValue :v ]",
+        "[ sh:path [ sh:zeroOrMorePath :p ] ; sh:hasValue :v ]",
+        "[ sh:path :near ; sh:minCount 1 ; sh:class :v ]",
+        "[ sh:path :p ; sh:not [ sh:in ( :v ) ] ]",
+        "[ sh:path :p ; sh:qualifiedValueShape [ sh:hasValue :v ] ; sh:qualifiedMaxCount 1 ]",
+    )
+)
+SHAPES = st.one_of(
+    PROPERTIES.map("sh:property {}".format),
+    PROPERTIES.map("sh:not [ sh:property {} ]".format),
+    PROPERTIES.map("sh:or ( [ sh:property {} ] [ sh:class :D ] )".format),
+    st.just("sh:not [ sh:hasValue :v ]"),
+)
+
+
+def document(text: str) -> TaskDocument:
+    """A task."""
+    return templates.read_task(turtle.parse(f"{PREFIXES} {text}", "t.ttl"))
+
+
+def bound(task: TaskDocument, value: Term) -> TaskDocument:
+    """The same with a value for its parameter."""
+    text = f"<{value}>" if isinstance(value, IRI) else rdflib_terms.rdflib_term(value).n3()
+    return bindings.complete(bindings.bind(task, [("v", text)]))
+
+
+@given(SHAPES, COMPONENTS)
+@example("sh:not [ sh:property [ sh:path :p ; sh:hasValue :v ] ]", [(":A", [(":p", "1")], False)])
+def test_a_candidate_allows_the_values_with_which_it_is_eligible(
+    shape: str, components: list[tuple[str, list[tuple[str, str]], bool]]
+) -> None:
+    task = document(f"{PARAMETER} . :r a sc:Role ; {shape} .")
+    ads = ecology([(kind, [p for p in said if p[1][0] != "["], talks) for kind, said, talks in components])
+    partition = Partitioner(bindings.complete(task)).partition(ads)
+    allowed = {c.profile.component: c.admits[0] if c.admits else -1 for c in partition.candidates[0]}
+    domain = partition.variables[0].domain if partition.variables else ()
+    for number, value in enumerate((*domain, ANOTHER)):
+        (eligible,) = Partitioner(bound(task, value)).partition(ads).candidates
+        names = {candidate.profile.component for candidate in eligible}
+        if value == ANOTHER:
+            assert {component for component, mask in allowed.items() if mask < 0} == names
+        else:
+            assert {component for component, mask in allowed.items() if mask >> number & 1} == names
+
+
+@pytest.mark.parametrize("constraint", ["sh:nodeKind sh:IRI", "sh:in ( :x )", "sh:datatype xsd:anyURI"])
+def test_a_free_parameter_takes_no_value_that_it_could_not_be_bound_to(constraint: str) -> None:
+    task = document(f"{PARAMETER} ; {constraint} . :r a sc:Role ; sh:property [ sh:path :p ; sh:in ( :v ) ] .")
+    ads = ecology([(":A", [(":p", '"abc"')], False), (":A", [(":p", ":x")], False), (":A", [], False)])
+    partition = Partitioner(bindings.complete(task)).partition(ads)
+    names = [candidate.profile.component.short for candidate in partition.candidates[0]]
+    assert names == (["c2"] if "datatype" in constraint else ["c1", "c2"])
+
+
+def test_a_parameter_that_lists_its_values_has_no_others() -> None:
+    text = f"{PARAMETER} ; sh:in ( :x :y ) . :r a sc:Role ; sh:not [ sh:property [ sh:path :p ; sh:hasValue :v ] ] ."
+    ads = ecology([(":A", [(":p", ":x"), (":p", ":y")], False), (":A", [(":p", ":x")], False), (":A", [], False)])
+    partition = Partitioner(bindings.complete(document(text))).partition(ads)
+    assert [(c.profile.component.short, c.admits) for c in partition.candidates[0]] == [("c1", (2,)), ("c2", (3,))]
+
+
+def test_a_role_that_must_not_have_the_value_of_another_is_not_played_by_its_like() -> None:
+    text = (
+        ":t a sc:Template ; sc:roles ( :r :s ) ; sc:parameter :v . :v a sc:Parameter ; sc:name 'v' ."
+        " :r a sc:Role ; sh:class :A ; sh:not [ sh:property [ sh:path :p ; sh:hasValue :v ] ] ."
+        " :s a sc:Role ; sh:class :B ; sh:property [ sh:path :p ; sh:minCount 1 ; sh:in ( :v ) ] ."
+    )
+    task = bindings.complete(document(text))
+    here, there = (":A", [(":p", ":x")], False), (":A", [(":p", ":y")], False)
+    other = (":B", [(":p", ":x")], False)
+    refused = solve.search(Problem(task.task, Partitioner(task).partition(ecology([here, other]))))
+    assert isinstance(refused, Refusal)
+    found = solve.search(Problem(task.task, Partitioner(task).partition(ecology([here, other, there]))))
+    assert isinstance(found, Configuration)
+    assert [component.short for component in found.components] == ["c2", "c1"]
+
+
+def test_a_role_that_may_stay_empty_may_set_what_has_no_value() -> None:
+    text = (
+        f"{PARAMETER} . :r a sc:Role ; sc:minCount 0 ; sh:property [ sh:path :p ; sh:in ( :v ) ] ;"
+        " sc:sets [ sc:parameterType :T ; sc:value :v ] ."
+    )
+    task = bindings.complete(document(text))
+    component = f"{PREFIXES} :c a sc:Component, :A ; sc:hasParameter [ sc:name 'q' ; sc:parameterType :T ] ."
+    partition = Partitioner(task).partition(advertisements.read(turtle.parse(component, "a.ttl"))[0])
+    assert len(partition.candidates[0]) == 1
+    found = solve.search(Problem(task.task, partition))
+    assert isinstance(found, Configuration)
+    assert found.components == ()
+
+
+@pytest.mark.parametrize("shape", ["{}", "sh:and ( [ {} ] )"])
+def test_a_parameter_that_lists_its_values_has_them_though_no_component_states_any(shape: str) -> None:
+    looked_at = shape.format("sh:property [ sh:path :p ; sh:in ( :v ) ]")
+    task = bindings.complete(document(f"{PARAMETER} ; sh:in ( :y :x ) . :r a sc:Role ; {looked_at} {SETS} ."))
+    text = f'{PREFIXES} :a a sc:Component, :A ; sc:hasParameter [ sc:name "k" ; sc:parameterType :T ] .'
+    ads = advertisements.read(turtle.parse(text, "a.ttl"))[0]
+    found = solve.search(Problem(task.task, Partitioner(task).partition(ads)))
+    assert isinstance(found, Configuration)
+    assert [setting.value for setting in found.settings] == list(found.bindings.values()) == [iri("x")]
+
+
+TERMS = (
+    IRI("urn:x"),
+    BlankNode("_:b"),
+    Literal("abc"),
+    Literal("abc", RDF.langString, "en"),
+    Literal("7", XSD.integer),
+)
+SAID = (
+    "sh:nodeKind sh:IRI", "sh:nodeKind sh:IRIOrLiteral", "sh:datatype xsd:integer", "sh:minLength 4", 'sh:pattern "^a"',
+    "sh:minInclusive 5", "sh:in ( 'abc' 7 )", "sh:not [ sh:datatype xsd:string ]", "sh:hasValue 7",
+)  # fmt: skip
+
+
+@given(st.lists(st.sampled_from(SAID), max_size=2, unique_by=lambda each: each.partition(" ")[0]))
+def test_compiled_tests_and_pyshacl_agree_on_which_values_suit_a_parameter(said: list[str]) -> None:
+    given = document(" ; ".join([PARAMETER, *said]) + " . :r a sc:Role .")
+    (parameter,) = given.task.template.parameters
+    found = Suitable({parameter.iri: parameter}, given.document).of(parameter.iri, frozenset(TERMS))
+    assert found == set(TERMS) - bindings.misfits(parameter, TERMS, given.document).keys()
+
+
+def test_a_plain_constraint_on_many_values_is_not_a_question_for_pyshacl(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parameter_values, "_judged", None)
+    given = document(f"{PARAMETER} ; sh:nodeKind sh:IRI . :r a sc:Role .")
+    (parameter,) = given.task.template.parameters
+    suitable = Suitable({parameter.iri: parameter}, given.document)
+    assert suitable.of(parameter.iri, frozenset(TERMS)) == {IRI("urn:x")}

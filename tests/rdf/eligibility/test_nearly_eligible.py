@@ -1,0 +1,118 @@
+"""Near misses: exactly one thing keeps them out, whoever finds out what, and letting them in leaves no surprise."""
+
+from __future__ import annotations
+
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from selfconf.composition.composer import Composer
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.refusal import Refusal
+from selfconf.rdf.advertisements.advertisement import Advertisement
+from selfconf.rdf.eligibility.nearly_eligible import near_misses
+from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.eligibility.role_tests import ClassTest
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
+from tests.lab import ADVERTISEMENTS, PREFIXES
+from tests.rdf.eligibility.test_compiler import COMPONENTS, HIERARCHIES, SHAPES, by_pyshacl, ecology
+from tests.rdf.eligibility.test_partitioner import partitioner, read
+
+ROLE = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; "
+ROBOT = ':t a sc:Template ; sc:parameter :robot . :robot a sc:Parameter ; sc:name "robot" ; '
+
+
+def near(text: str, *ads: str) -> list[tuple[str, str]]:
+    """The near misses of a template among some advertisements, each with what it is told by."""
+    return [(miss.component.short, str(miss)) for miss in near_misses(partitioner(text), read(ads))]
+
+
+def repairs(text: str, *ads: str) -> list[str]:
+    """What would mend the refusal of a template by some advertisements, by letting somebody in."""
+    task = bindings.complete(templates.read_task(turtle.parse(PREFIXES + text, "t.ttl")))
+    composer, found = Composer(task), {one.component: one for one in read(ads)}
+    refused = composer.compose(found, frozenset(), None)
+    assert isinstance(refused, Refusal)
+    mended = composer.mended(found, refused)
+    return [str(repair) for repair in mended.repairs if repair.code == "accept-near-miss"]
+
+
+def test_near_misses_are_those_of_the_class_whom_one_thing_keeps_out() -> None:
+    text = f"{ROLE} sh:class rob:MotorDrive ; sh:property [ sh:path rob:support ; sh:in ( :Astrid ) ] ."
+    found = near(text, ADVERTISEMENTS["pippi"], ADVERTISEMENTS["encoder"])
+    assert found == [("pippi-drive", "its support is Pippi, not Astrid")]
+
+
+@given(SHAPES, COMPONENTS, st.sampled_from(HIERARCHIES))
+def test_tests_and_pyshacl_agree_on_the_near_misses(
+    shape: str, components: list[tuple[str, list[tuple[str, str]], bool]], hierarchy: Hierarchy
+) -> None:
+    assume("lessThan" not in shape and "NaN" not in str(components))  # of what has no order pySHACL says no more
+    text = f"{PREFIXES} :t a sc:Template ; sc:roles ( :role ) . :role a sc:Role ; {shape} ."
+    task = bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
+    ads = ecology(components)
+
+    def of_its_class(one: Advertisement) -> bool:
+        classes = [test for test in Partitioner(task, hierarchy).roles[0].tests if isinstance(test, ClassTest)]
+        return all(test.admits(one.types, hierarchy) for test in classes)
+
+    akin = {one.component for one in ads if of_its_class(one)}
+    alone = {miss.component for miss in near_misses(by_pyshacl(Partitioner(task, hierarchy)), ads)}
+    assert {miss.component for miss in near_misses(Partitioner(task, hierarchy), ads)} == alone & akin
+
+
+def test_what_only_pyshacl_can_judge_is_an_obstacle_like_any_other() -> None:
+    text = (
+        f"{ROLE} sh:class :A ; sh:property [ sh:path :power ; sh:minInclusive 5 ] ;"
+        " sh:property [ sh:path [ sh:alternativePath ( :room :place ) ] ; sh:hasValue :kitchen ] ."
+    )
+    found = near(
+        text,
+        ":both a sc:Component, :A ; :power 3 ; :room :cellar .",
+        ":weak a sc:Component, :A ; :power 3 ; :room :kitchen .",
+        ":away a sc:Component, :A ; :power 5 ; :room :cellar .",
+        ":good a sc:Component, :A ; :power 5 ; :place :kitchen .",
+    )
+    assert [component for component, _ in found] == ["away", "weak"]
+    assert "violates: " in found[0][1]
+    assert found[1][1] == "its power is 3, not at least 5"
+
+
+def test_one_property_is_one_obstacle_with_all_that_is_wrong_with_it() -> None:
+    text = f"{ROLE} sh:property [ sh:path :room ; sh:minCount 2 ; sh:in ( :kitchen :hall ) ] ."
+    found = near(text, ":a a sc:Component, :A ; :room :cellar .")
+    assert found == [("a", "it has 1 of room, too few; room is cellar, not hall or kitchen")]
+
+
+def test_what_looks_alike_is_told_apart() -> None:
+    text = f'{ROLE} sh:property [ sh:path :n ; sh:in ( 1 "ab"@en "2020-01-01"^^xsd:date ) ] .'
+    wrong = {"a": '"1"', "b": '"ab"@en-GB', "c": '"2020-01-01"^^xsd:dateTime'}
+    found = near(text, *(f":{name} a sc:Component, :A ; :n {value} ." for name, value in wrong.items()))
+    wanted = '"2020-01-01"^^date or "ab"@en or 1'
+    assert [told for _, told in found] == [
+        f'its n is "1", not {wanted}',
+        f'its n is "ab"@en-gb, not {wanted}',
+        f'its n is "2020-01-01"^^dateTime, not {wanted}',
+    ]
+
+
+def test_a_near_miss_brings_along_the_values_that_it_allows() -> None:
+    power = "sh:property [ sh:path :power ; sh:minInclusive 5 ] ;"
+    on = "sh:property [ sh:path :support ; sh:in ( :robot ) ]"
+    text = f"{ROBOT} sh:nodeKind sh:IRI . :t sc:roles ( :a :b ) . :a a sc:Role ; sh:class :A ; {power} {on} . "
+    text += f":b a sc:Role ; sh:class :B ; {on} ."
+    weak, other = ":a1 a sc:Component, :A ; :power 3 ; :support :X .", ":b1 a sc:Component, :B ; :support "
+    assert near(text, weak) == [("a1", "its power is 3, not at least 5")]
+    assert repairs(text, weak, f"{other} :Y .") == []
+    assert repairs(text, weak, f"{other} :X .") == ["let a1 play a, although its power is 3, not at least 5"]
+    assert repairs(text, weak, ":b1 a sc:Component, :B .") == ["let a1 play a, although its power is 3, not at least 5"]
+    judged = text.replace(power, "sh:property [ sh:path [ sh:inversePath [ sh:inversePath :power ] ] ; sh:in ( 5 ) ] ;")
+    assert repairs(judged, weak, f"{other} :Y .") == []
+    assert len(repairs(judged, weak, f"{other} :X .")) == 1
+
+
+def test_a_component_that_leaves_no_value_for_a_parameter_is_kept_out_by_that_too() -> None:
+    text = f"{ROBOT} sh:in ( :Astrid ) . :t sc:roles ( :r ) . :r a sc:Role ; sh:class :A ;"
+    text += " sh:property [ sh:path :power ; sh:in ( 5 ) ] ; sh:property [ sh:path :support ; sh:in ( :robot ) ] ."
+    assert near(text, ":a a sc:Component, :A ; :power 3 ; :support :Pippi .") == []
+    assert near(text, ":a a sc:Component, :A ; :power 3 ; :support :Astrid .") == [("a", "its power is 3, not 5")]

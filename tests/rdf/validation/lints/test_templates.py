@@ -1,0 +1,82 @@
+"""Lints about templates: roles that nobody lists or nobody can play, parameters that nobody uses."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.rdf.validation.lints.test_terms import HEAD, TEMPLATE, lints, only
+
+
+def test_a_role_that_has_the_type_of_its_component_is_told_what_to_write() -> None:
+    assert only(TEMPLATE.replace("sc:Role ; sh:class rob:Lamp", "sc:Role, rob:Lamp")).hint == "Write sh:class rob:Lamp."
+
+
+def test_a_role_may_say_that_it_is_a_shape() -> None:
+    assert not lints(TEMPLATE + ":r a sh:NodeShape, :Pivotal .")
+
+
+def test_a_parameter_that_no_template_lists_is_noticed() -> None:
+    text = TEMPLATE + ":r sh:property [ sh:path rob:place ; sh:in ( :p ) ] . :p a sc:Parameter ; sc:name 'p' ."
+    assert only(text).code == "SC-L15"
+    assert not lints(text + ":t sc:parameter :p .")
+
+
+@pytest.mark.parametrize(
+    ("condition", "noticed"),
+    [
+        ("$this rob:place home:p", True),
+        ("$this rob:place <https://example.org/home#p>", True),
+        ("$this rob:place home:place, ?p, 'home:p' # home:p", False),
+    ],
+)
+def test_a_parameter_in_the_text_of_a_query_is_noticed(condition: str, noticed: bool) -> None:
+    prefixes = " ".join(
+        f"[ sh:prefix '{name}' ; sh:namespace '{iri}'^^<http://www.w3.org/2001/XMLSchema#anyURI> ]"
+        for name, iri in (("home", "https://example.org/home#"), ("rob", "https://w3id.org/selfconf/robotics#"))
+    ).replace("] [", "] , [")
+    text = (
+        f"{TEMPLATE} :t sc:parameter :p . :p a sc:Parameter ; sc:name 'p' . :prefixes sh:declare {prefixes} .\n"
+        ":r sh:property [ sh:path rob:place ; sh:in ( :p ) ] ; sh:sparql [ sh:prefixes :prefixes ;\n"
+        f'sh:select """SELECT $this WHERE {{ FILTER NOT EXISTS {{ {condition}\n}} }}""" ] .'
+    )
+    assert [found.code for found in lints(text)] == ["SC-L16"] * noticed
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "sh:minCount 2 ; sh:maxCount 1",
+        "sh:minCount 1 ; sh:in ()",
+        "sh:minCount 3 ; sh:in ( :x :y )",
+        "sh:hasValue :z ; sh:in ( :x :y )",
+    ],
+)
+def test_a_property_shape_that_contradicts_itself_is_noticed(shape: str) -> None:
+    assert only(TEMPLATE + f":r sh:property [ sh:path rob:place ; {shape} ] .").code == "SC-L11"
+
+
+@pytest.mark.parametrize(
+    "shape", ["sh:minCount 1 ; sh:maxCount 1", "sh:minCount 2 ; sh:in ( :x :y )", "sh:hasValue :x ; sh:in ( :x )"]
+)
+def test_a_property_shape_that_can_be_kept_is_left_alone(shape: str) -> None:
+    assert not lints(TEMPLATE + f":r sh:property [ sh:path rob:place ; {shape} ] .")
+
+
+def test_a_contradiction_is_shown_at_its_second_side_and_names_the_place_of_the_first() -> None:
+    first = ":r sh:property [ sh:path rob:place ; sh:maxCount 1 ] .\n"
+    found = only(TEMPLATE + first + ":r sh:node [ sh:property [ sh:path rob:place ; sh:minCount 2 ] ] .")
+    assert (found.line - HEAD, found.column) == (3, 48)
+    assert found.message == (
+        f"sh:minCount 2 and sh:maxCount 1 (line {HEAD + 2}) exclude each other, so nobody can play the role :r."
+    )
+
+
+def test_a_closed_role_that_does_not_let_a_component_have_a_type_is_told_how_to() -> None:
+    found = only(TEMPLATE + ":r sh:closed true .")
+    assert found.hint is not None
+    assert "sh:ignoredProperties" in found.hint
+
+
+def test_a_contradiction_in_a_shape_that_is_no_role_is_not_reported() -> None:
+    shape = ":s a sh:NodeShape ; sh:property [ sh:path rob:place ; sh:minCount 2 ; sh:maxCount 1 ] ."
+    assert not lints(TEMPLATE + shape)

@@ -1,0 +1,220 @@
+"""Validation: what it finds, where it finds it, and that files leave each other alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from selfconf import library
+from selfconf.errors import TurtleError
+from selfconf.model.codes import CODES, PREAMBLE, Code
+from selfconf.model.diagnostic import Diagnostic, Report, Severity
+from selfconf.rdf.validation.checking import SourceText, validate
+from tests.bad_files import BAD, checked, promised
+
+ADVERTISEMENT = ":tuner a sc:Component, rob:Tuner .\n"
+
+
+def load(path: Path) -> SourceText:
+    return SourceText(str(path), path.read_bytes(), path.resolve().as_uri())
+
+
+SHAPES = [load(path) for path in library.shapes()]
+ONTOLOGIES = [load(path) for path in library.ontologies()]
+
+
+def check(*texts: str, ontologies: Iterable[SourceText] = ()) -> Report:
+    """Validate texts, which get the names 0.ttl, 1.ttl and so on and the usual prefixes."""
+    sources = [SourceText(f"{number}.ttl", (PREAMBLE + text).encode()) for number, text in enumerate(texts)]
+    return validate(sources, SHAPES, [*ONTOLOGIES, *ontologies])
+
+
+def found(report: Report) -> list[str]:
+    """Line (counted from below the prefixes), column and code of each problem."""
+    head = PREAMBLE.count("\n")
+    return [f"{each.line - head}:{each.column} {each.code}" for each in report.diagnostics]
+
+
+@pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
+def test_a_bad_file_earns_what_its_first_line_says(path: Path) -> None:
+    found = [f"{each.line}:{each.column} {each.severity.value}[{each.code}]" for each in checked(path).diagnostics]
+    assert sorted(found) == sorted(promised(path))
+
+
+@pytest.mark.parametrize("code", [code for code in CODES if code.bad], ids=lambda code: code.code)
+def test_the_bad_example_of_a_code_earns_it_and_the_good_one_nothing(code: Code) -> None:
+    bad, good = check(code.bad), check(code.good)
+    assert {each.code for each in bad.diagnostics} == {code.code}
+    assert not good.diagnostics
+
+
+@pytest.mark.parametrize("path", [*library.ontologies(), *library.shapes()], ids=lambda path: path.stem)
+def test_what_selfconf_brings_along_conforms(path: Path) -> None:
+    assert not validate([load(path)], SHAPES, ONTOLOGIES).diagnostics
+
+
+def test_all_problems_are_reported_in_the_order_of_the_text() -> None:
+    text = ':a a sc:Component ;\n sc:preference "x" .\n:b a rob:Tuner ; sc:hasInput 1 .\n[] a sc:Task .'
+    assert found(check(text)) == ["1:1 SC-A03", "2:16 SC-A04", "3:1 SC-A02", "3:30 SC-A06", "4:1 SC-K01"]
+
+
+def test_a_file_that_is_not_turtle_does_not_keep_others_from_being_checked() -> None:
+    report = check(":a a sc:Component ;", ":b a sc:Component .", ADVERTISEMENT)
+    assert [(each.file, each.code) for each in report.diagnostics] == [("0.ttl", "SC-S01"), ("1.ttl", "SC-A03")]
+    assert report.unreadable == {"0.ttl"}
+    assert not report.conforms
+
+
+def test_every_syntax_error_of_a_file_is_reported() -> None:
+    assert found(check(":a a , .\n:b :c :d .\n:e x:f :g .\n:h x:i :j .")) == ["1:6 SC-S01", "3:4 SC-S01"]
+
+
+def test_bytes_that_are_not_utf_8_are_placed() -> None:
+    (problem,) = validate([SourceText("a.ttl", "# ä\n:a :b ".encode() + b"\xe4 .")], SHAPES, ONTOLOGIES).diagnostics
+    assert (problem.line, problem.column, problem.code) == (2, 7, "SC-S02")
+
+
+def test_a_byte_order_mark_is_allowed() -> None:
+    source = SourceText("a.ttl", b"\xef\xbb\xbf" + (PREAMBLE + ADVERTISEMENT).encode())
+    assert not validate([source], SHAPES, ONTOLOGIES).diagnostics
+
+
+def test_a_file_cannot_bring_shapes_that_judge_another() -> None:
+    shape = ":mine a sh:NodeShape ; sh:targetClass rob:Tuner ; sh:property [ sh:path rob:place ; sh:minCount 1 ] ."
+    assert not check(shape, ADVERTISEMENT).errors
+
+
+def test_a_file_cannot_bring_axioms_that_judge_another() -> None:
+    axiom = "rob:Tuner rdfs:subClassOf sc:Template . sc:Component rdfs:subClassOf sc:Template ."
+    assert not [each for each in check(axiom, ADVERTISEMENT).diagnostics if each.file == "1.ttl"]
+
+
+def test_two_files_that_speak_of_one_port_do_not_add_up() -> None:
+    first = ':tuner a sc:Component, rob:Tuner ; sc:hasOutput :out . :out sc:name "a" ; sc:signalType rob:Audio .'
+    second = ':radio a sc:Component, rob:Tuner ; sc:hasOutput :out . :out sc:name "b" ; sc:signalType rob:Audio .'
+    assert not check(first, second).diagnostics
+
+
+def test_a_component_that_two_files_describe_is_an_error_in_the_second() -> None:
+    (problem,) = check(ADVERTISEMENT, "\n" + ADVERTISEMENT).diagnostics
+    assert (problem.file, problem.code) == ("1.ttl", "SC-L04")
+    assert "0.ttl" in problem.message
+
+
+def test_an_advertisement_needs_no_port_no_label_and_no_known_type() -> None:
+    assert check(":a a sc:Component, <https://example.org/else#Thing> .").conforms
+
+
+def test_a_signal_type_is_known_if_a_given_ontology_declares_it() -> None:
+    text = ':a a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name "x" ; sc:signalType <urn:my:Noise> ] .'
+    ontology = SourceText("my.ttl", b"<urn:my:Noise> a <http://www.w3.org/2002/07/owl#Class> .")
+    assert [each.code for each in check(text).diagnostics] == ["SC-L03"]
+    assert not check(text, ontologies=[ontology]).diagnostics
+
+
+def test_a_signal_type_is_known_if_another_file_of_the_run_declares_it() -> None:
+    text = ':a a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name "x" ; sc:signalType :Noise ] .'
+    assert not check(text, ':Noise a owl:Class ; rdfs:label "noise" .').diagnostics
+
+
+@pytest.mark.parametrize(
+    "ontology",
+    [
+        ":Noise a owl:Class ; rdfs:label 'noise' .",
+        ":Noise rdfs:subClassOf rob:Audio ; rdfs:label 'noise' .",
+        ":Sound a owl:Class ; rdfs:label 'sound' . :Noise rdfs:comment 'a sound that is not liked' .",
+        ":Sound a owl:Class ; rdfs:label 'sound' .",
+        ":hears rdfs:subPropertyOf rob:support .",
+        "rdfs:comment rdfs:comment 'says nothing of noise' .",
+    ],
+)
+@pytest.mark.parametrize("signal", [":Noise", ":Noize"])
+def test_an_ontology_is_known_alike_given_as_such_or_validated_beside(ontology: str, signal: str) -> None:
+    text = f':a a sc:Component, rob:Tuner ; :volume 3 ; sc:hasOutput [ sc:name "x" ; sc:signalType {signal} ] .'
+    given = check(text, ontologies=[SourceText("my.ttl", (PREAMBLE + ontology).encode())])
+    beside = check(text, ontology)
+    assert [each for each in beside.diagnostics if each.file == "0.ttl"] == list(given.diagnostics)
+
+
+def test_a_class_without_a_namespace_covers_none() -> None:
+    ontology = SourceText("my.ttl", b"<urn:Noise> a <http://www.w3.org/2002/07/owl#Class> .")
+    assert not check(":a a sc:Component, <urn:Kind> .", ontologies=[ontology]).diagnostics
+
+
+def test_an_ontology_that_is_not_turtle_is_refused_by_name() -> None:
+    with pytest.raises(TurtleError, match=r"my\.ttl:1:1: "):
+        check(ADVERTISEMENT, ontologies=[SourceText("my.ttl", b"a .")])
+
+
+def test_an_ontology_that_is_not_utf_8_is_refused_by_name() -> None:
+    with pytest.raises(TurtleError, match=r"my\.ttl:1:5: .*UTF-8"):
+        check(ADVERTISEMENT, ontologies=[SourceText("my.ttl", b"<urn\xff> .")])
+
+
+def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
+    text = """
+:t a sc:Template ; sc:roles ( :r ) ; sc:parameter :n, :least, :room, :words, :any .
+:n a sc:Parameter ; sc:name "n" ; sh:datatype xsd:integer .
+:least a sc:Parameter ; sc:name "least" ; sh:datatype xsd:double ; sh:defaultValue 0.5e0 .
+:room a sc:Parameter ; sc:name "room" ; sh:nodeKind sh:IRI .
+:words a sc:Parameter ; sc:name "words" ; sh:datatype xsd:string .
+:any a sc:Parameter ; sc:name "any" .
+:r a sc:Role ; sh:class rob:Lamp ;
+    sh:property [ sh:path rob:place ; sh:hasValue :room ; sh:minCount :n ] ,
+        [ sh:path rdfs:label ; sh:pattern :words ; sh:maxCount :any ] ,
+        [ sh:path :brightness ; sh:minInclusive :least ] .
+"""
+    assert not check(text).diagnostics
+
+
+@pytest.mark.parametrize(
+    ("shape", "column"),
+    [
+        ("sh:class 5", 10),
+        ("sh:minCount 1", 1),
+        ("sh:property 5", 13),
+        ("sh:property [ sh:minCount 1 ]", 13),
+        ("sh:property [ sh:path ( rob:place ) ]", 23),
+        ("sh:or :x", 7),
+        ("sh:node 5", 9),
+        ("sh:property [ sh:path rob:place ; sh:minInclusive :x ]", 51),
+    ],
+)
+def test_a_role_that_is_no_shape_is_reported(shape: str, column: int) -> None:
+    text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class rob:Lamp .\n:r\n{shape} ."
+    problems = check(text).diagnostics
+    assert problems
+    assert {problem.code for problem in problems} == {"SC-T13"}
+    head = PREAMBLE.count("\n")
+    places = [(problem.line - head, problem.column) for problem in problems]
+    assert (3, column) in places or (column == 1 and places == [(1, 38)])
+
+
+def test_a_misspelt_term_comes_with_what_was_probably_meant() -> None:
+    (problem,) = check(":t a sc:Component, rob:Tuner ; sc:prefernce 5 .").diagnostics
+    assert problem.hint == "Did you mean sc:preference?"
+    assert problem.severity is Severity.ERROR
+    assert problem.width == len("sc:prefernce")
+
+
+def test_two_diagnostics_are_equal_whatever_line_they_show() -> None:
+    assert Diagnostic("a", 1, 1, "SC-S01", "x", source="y") == Diagnostic("a", 1, 1, "SC-S01", "x")
+
+
+def test_a_file_with_a_nul_is_no_turtle_at_the_place_of_the_nul() -> None:
+    text = b'# a note\n<urn:x:a> <urn:x:p> "a\x00b" .\n'
+    report = validate([SourceText("nul.ttl", text)], SHAPES, ONTOLOGIES)
+    assert [(found.line, found.column, found.code) for found in report.diagnostics] == [(2, 23, "SC-S01")]
+    assert report.unreadable == {"nul.ttl"}
+
+
+@pytest.mark.slow
+def test_a_chain_of_two_thousand_roles_conforms() -> None:
+    names = [f":r{number}" for number in range(2_000)]
+    chain = "".join(f"{one} sc:feeds {after} .\n" for one, after in pairwise(names))
+    roles = "".join(f"{one} a sc:Role ; sh:class rob:Tuner .\n" for one in names)
+    text = f"{PREAMBLE}:t a sc:Template ; sc:roles ( {' '.join(names)} ) .\n{chain}{roles}"
+    assert not validate([SourceText("t.ttl", text.encode())], SHAPES, ONTOLOGIES).diagnostics

@@ -1,0 +1,46 @@
+"""Which tests run in one process where pytest-xdist spreads them over several.
+
+The mark `xdist_group` cannot say it: pytest-xdist 3.8 adds the group to a node's name by an attribute that pytest 9.2
+no longer reads. So the scheduler is told the group of a test by its name.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+INHABITED = {
+    "tests/cli/test_budget.py",
+    "tests/cli/test_discover.py",
+    "tests/cli/test_query_sources.py",
+    "tests/cli/test_run.py",
+    "tests/cli/test_run_trouble.py",
+    "tests/cli/test_status.py",
+}
+"""Modules with tests that use the fixture `inhabited`, which starts a site and seven components: once is enough."""
+BAD_FILES = ("test_a_bad_file_", "test_the_log_of_every_bad_file_")
+"""How the names of tests begin that share the reports about all files of `tests/bad`."""
+RECORDED = "tests/recorded/test_recorded.py"
+"""A module whose tests share the answers to a group of cases, which is their parameter."""
+
+
+def group_of(test: str) -> str:
+    """Return the name of a test's group; a test that may run in any process is a group by itself."""
+    module, _, name = test.partition("::")
+    if module in INHABITED:
+        return "inhabited"
+    if name.startswith(BAD_FILES):
+        return "bad files"
+    if module == RECORDED and "_as_recorded[" in name:
+        return module + name.partition("[")[2]
+    return test
+
+
+def scheduler(config: Any, log: Any) -> Any:
+    """Make a scheduler of pytest-xdist that keeps each group in one process and begins with the largest."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Grouped(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return group_of(nodeid)
+
+    return Grouped(config, log)

@@ -1,0 +1,60 @@
+"""Clause learning finds the least solution, and is a guest in the process that takes no signal of others."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given
+
+from benchmarks.search import families
+from selfconf.search.budget import Budget
+from selfconf.search.engines import clause_learning
+from selfconf.search.problem import Problem
+from selfconf.search.reduction.constraints import pruned
+from selfconf.search.reduction.dominance import reduced
+from tests.search.comparison import least_numbers, numbers
+from tests.search.worlds import agreement, problems
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Handle SIGINT as Python does at a terminal: a shell starts what runs in the background with SIGINT ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(), signal.SIGINT)"
+
+
+@given(problems())
+@agreement(0.6)
+def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
+    pytest.importorskip("pysat")
+    expected = least_numbers(problem)
+    assert numbers(clause_learning.least_by_clauses(pruned(reduced(problem)), Budget())) == expected
+    assert numbers(clause_learning.least_by_clauses(reduced(problem), Budget(10_000))) == expected
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_an_interrupt_in_the_middle_of_a_call_reaches_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20_000)  # conflicts: calls of about a tenth of a second
+    command = [sys.executable, "-c", INTERRUPTING]
+    with (
+        clause_learning.ClauseSolver(reduced(families.satisfiability(400, 4.26, seed=1))) as clauses,
+        subprocess.Popen(command, stdin=subprocess.PIPE) as other,
+    ):
+        solve_limited = clauses._solver.solve_limited
+
+        def solving(**options: object) -> object:
+            if other.stdin is not None and not other.stdin.closed:
+                other.stdin.close()
+            return solve_limited(**options)
+
+        monkeypatch.setattr(clauses._solver, "solve_limited", solving)
+        with pytest.raises(KeyboardInterrupt):
+            clauses.solve((), Budget())

@@ -1,0 +1,73 @@
+"""Every way to search for the first configuration gives one and the same answer."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+
+from benchmarks.search import families, sparql
+from selfconf.model.refusal import Undecided
+from selfconf.search.budget import Budget
+from selfconf.search.engines import clause_learning
+from selfconf.search.problem import Problem
+from selfconf.search.reduction.dominance import LazyReduction, reduced
+from selfconf.search.strategies import first
+from tests.search.comparison import first_configuration, least_pairs, numbers
+from tests.search.oracle import World
+from tests.search.worlds import agreement, problems
+
+
+@given(problems())
+@agreement()
+def test_first_is_what_enumeration_finds_first(problem: Problem) -> None:
+    assert first_configuration(problem) == World(problem.task, problem.partition, problem.hierarchy).first()
+
+
+@given(problems())
+@agreement()
+def test_first_is_the_best_answer_set_of_a_logic_program(problem: Problem) -> None:
+    pytest.importorskip("clingo")
+    from tests.search import encodings
+
+    found = encodings.first(problem)
+    assert found == least_pairs(problem)
+    assert (found is None) == (first_configuration(problem) is None)
+
+
+@given(problems(roles=3, components=4))
+@agreement()
+def test_first_is_the_first_answer_to_one_query_for_the_whole_template(problem: Problem) -> None:
+    found = sparql.first(problem)
+    assert found == least_pairs(problem)
+    assert sparql.oxigraph(problem) == (found is not None) == (first_configuration(problem) is not None)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_cause_near_the_beginning_is_found_there_and_the_answer_is_the_same(seed: int) -> None:
+    pytest.importorskip("pysat")
+    problem = families.graph("graph", 150, 10 + seed, 3, seed)
+    given_ = LazyReduction(problem)
+    found = first.solution(given_, Budget())
+    expected = numbers(clause_learning.least_by_clauses(reduced(problem), Budget()))
+    assert isinstance(found, list) == (expected is not None)
+    if isinstance(found, list):
+        assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == expected
+
+
+def test_where_the_first_roles_are_impossible_the_whole_problem_is_not_reduced() -> None:
+    pytest.importorskip("pysat")
+    given_ = LazyReduction(families.graph("graph", 200, 10, 3, 7_001))
+    assert first.solution(given_, Budget()) is None
+    assert "reduced" not in vars(given_)
+
+
+def test_a_problem_is_possible_though_the_steps_end_before_its_first_solution_is_proved() -> None:
+    pytest.importorskip("pysat")
+    problem = families.satisfiability(60, 3.8, seed=2)
+    # Each call of the solver is a step, and the first solution takes one more for each slot at least.
+    undecided = [
+        steps
+        for steps in range(300, 540, 6)
+        if isinstance(first.solution(LazyReduction(problem), Budget(steps)), Undecided)
+    ]
+    assert any(first.possible(problem, Budget(steps)) for steps in undecided)

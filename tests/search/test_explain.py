@@ -1,0 +1,182 @@
+"""A refusal names constraints that cannot hold together, every one of which is needed for that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import combinations, product
+
+import pytest
+from hypothesis import given
+
+from selfconf.model.partition import ANY_VALUE, Candidate
+from selfconf.model.refusal import Refusal
+from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
+from selfconf.search.engines import clause_learning
+from selfconf.search.problem import Problem
+from selfconf.search.strategies import first
+from tests.search.oracle import World
+from tests.search.worlds import agreement, component, problem, problems
+
+
+def possible(world: World, force: Iterable[Requirement]) -> bool:
+    """Return whether requirements can hold together, by enumeration; what is not required is allowed to fail."""
+    wanted = set(force)
+    choices = [
+        [
+            chosen
+            for size in (
+                range(role.minimum, role.minimum + 1) if RolePlayed(role.iri) in wanted else range(role.minimum + 1)
+            )
+            for chosen in combinations(candidates, size)
+        ]
+        for role, candidates in zip(world.roles, world.candidates, strict=True)
+    ]
+    return any(_holds(world, players, wanted) for players in product(*choices))
+
+
+def _holds(world: World, players: tuple[tuple[Candidate, ...], ...], wanted: set[Requirement]) -> bool:
+    components = [c.profile.component for role in players for c in role]
+    if OneRoleEach() in wanted and len(components) > len(set(components)):
+        return False
+    for number, variable in enumerate(world.variables):
+        if OneValue(variable.parameter.short) in wanted:
+            is_set = any(p.is_set for p in world.template.parameters if p.iri == variable.parameter)
+            common = (1 << len(variable.domain)) - 1 if is_set else ANY_VALUE
+            for role in players:
+                for candidate in role:
+                    common &= candidate.admits[number]
+            if not common:
+                return False
+    unfed = _unfed(world, players)
+    return not any(need in unfed for r in wanted if isinstance(r, InputFed) for need in ((r.role, r.signal, r.input),))
+
+
+def _unfed(world: World, players: tuple[tuple[Candidate, ...], ...]) -> set[tuple[str, str, str | None]]:
+    found = set()
+    for role, chosen in zip(world.roles, players, strict=True):
+        named = any(i.input for i in world.template.interactions if i.sink == role.iri)
+        for candidate in chosen:
+            for wanted in candidate.profile.inputs:
+                links = [
+                    i for i in world.template.interactions if i.sink == role.iri and i.input in (None, wanted.name)
+                ]
+                fed = any(
+                    wanted.signal in world.hierarchy.superclasses(output.signal) and link.output in (None, output.name)
+                    for link in links
+                    for source in players[world.place[link.source]]
+                    for output in source.profile.outputs
+                )
+                if not fed:
+                    # Inputs that the same links feed are one requirement, named after any of them.
+                    same = [
+                        i.name
+                        for c in world.candidates[world.place[role.iri]]
+                        for i in c.profile.inputs
+                        if i.signal == wanted.signal
+                        and [k for k in world.template.interactions if k.sink == role.iri and k.input in (None, i.name)]
+                        == links
+                    ]
+                    found |= {(role.iri, wanted.signal, name if named else None) for name in same}
+    return found
+
+
+def _check(problem: Problem) -> None:
+    refusal = first.search(problem)
+    if not isinstance(refusal, Refusal):
+        return
+    assert refusal.irreducible
+    assert refusal.reasons
+    world = World(problem.task, problem.partition, problem.hierarchy)
+    for reason in refusal.reasons:
+        assert str(reason)
+        assert reason.code
+        assert reason.role in {role.iri for role in problem.roles}
+        assert not possible(world, reason.requirements)
+        for dropped in reason.requirements:
+            assert possible(world, [r for r in reason.requirements if r != dropped]), (reason, dropped)
+
+
+@given(problems(roles=3, components=4))
+@agreement()
+def test_a_reason_is_irreducible(problem: Problem) -> None:
+    _check(problem)
+
+
+@given(problems(roles=3, components=4))
+@agreement(0.2)
+def test_a_reason_is_irreducible_without_a_solver_library(problem: Problem) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(clause_learning, "find_spec", lambda name: None)
+        _check(problem)
+
+
+def test_the_cause_comes_first_and_then_what_follows_from_it() -> None:
+    given_ = problem(
+        {
+            "sonar": [component("bumper", outputs="o:Bump")],
+            "control": [component("cap", "scan:RangeScan", "v:Velocity")],
+            "drive": [component("wheels", "v:Velocity")],
+        },
+        "sonar>control control>drive",
+    )
+    (reason,) = first.search(given_).reasons
+    assert reason.code == "input-unfed"
+    assert str(reason).startswith("the input 'scan' (RangeScan) of cap cannot be fed: no candidate of sonar issues")
+
+
+@pytest.mark.parametrize(
+    ("caps", "words"),
+    [
+        (["b"], "b cannot play the role control"),
+        (["b", "c"], "b and one other cannot play the role control"),
+        (["b", "c", "d"], "b and 2 others cannot play the role control"),
+    ],
+)
+def test_components_that_cannot_play_for_the_same_cause_are_counted(caps: list[str], words: str) -> None:
+    given_ = problem(
+        {
+            "sonar": [component("bumper", outputs="o:Bump")],
+            "position": [component("gps", "scan:RangeScan", "p:Pose"), component("clock", outputs="t:Time")],
+            "control": [component(name, "pose:Pose") for name in caps],
+        },
+        "sonar>position position>control",
+    )
+    answer = first.search(given_)
+    assert isinstance(answer, Refusal)
+    (reason,) = answer.reasons
+    cause = "the input 'scan' (RangeScan) of gps cannot be fed: no candidate of sonar issues a RangeScan for it"
+    assert str(reason) == f"{cause}; so {words}, as nobody left in position issues a Pose"
+
+
+def test_a_component_that_cannot_play_for_another_cause_is_not_counted() -> None:
+    given_ = problem(
+        {
+            "sonar": [component("bumper", outputs="o:Bump")],
+            "position": [component("gps", "scan:RangeScan", "p:Pose"), component("clock", outputs="t:Time")],
+            "control": [
+                component("b", "pose:Pose"),
+                component("c", "pose:Pose", "v:Velocity"),
+                component("d", "h:Heat"),
+            ],
+        },
+        "sonar>position position>control",
+    )
+    answer = first.search(given_)
+    assert isinstance(answer, Refusal)
+    (reason,) = answer.reasons
+    assert "b and one other cannot play the role control, as nobody left in position issues a Pose" in str(reason)
+
+
+def test_a_source_with_a_minimum_of_zero_is_not_said_to_issue_nothing() -> None:
+    given_ = problem(
+        {
+            "sonar": [component("ring", outputs="scan:RangeScan")],
+            "bumper": [component("skirt", outputs="o:Bump")],
+            "control": [component("cap", "scan:RangeScan", "v:Velocity")],
+        },
+        "sonar>control bumper>control",
+        {"sonar": (0, 1)},
+    )
+    (reason,) = first.search(given_).reasons
+    cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for nobody (sc:minCount 0)"
+    assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"

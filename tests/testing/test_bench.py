@@ -1,0 +1,112 @@
+"""A component is tried by itself: fed, heard, timed, failed and stopped, without a network."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from selfconf.errors import ProgrammerError
+from selfconf.sdk import Component, Refused, Signal
+from selfconf.testing import ComponentBench
+
+ADVERTISEMENT = """@prefix sc: <https://w3id.org/selfconf#> .
+@prefix : <urn:test:> .
+:thermostat a sc:Component, :Thermostat ;
+    sc:hasInput [ sc:name "temperature" ; sc:signalType :Temperature ] ;
+    sc:hasOutput [ sc:name "heating" ; sc:signalType :Switch ] , [ sc:name "ticks" ; sc:signalType :Number ] ;
+    sc:hasParameter [ sc:name "wanted" ; sc:parameterType :Degrees ] , [ sc:name "mode" ; sc:parameterType :Mode ] .
+"""
+
+
+class Thermostat(Component):
+    """Heats while it is colder than wanted, and counts the seconds."""
+
+    wanted: Any = 20.0
+    mode: Any = None
+    ticks = 0
+    rests = 0
+
+    def started(self) -> None:
+        if self.wanted == "never":
+            raise Refused("there is no heating here")
+        self.every(1.0, self.tick)
+
+    def stopped(self) -> None:
+        self.rests += 1
+
+    def tick(self) -> None:
+        self.ticks += 1
+        self.emit("ticks", self.ticks)
+
+    def received(self, port: str, signal: Signal) -> None:
+        if signal["celsius"] > 1000:
+            self.fail("it burns")
+        else:
+            self.emit("heating", {"on": signal["celsius"] < self.wanted})
+
+    def parameter_set(self, name: str, value: Any) -> None:
+        setattr(self, name, value)
+
+
+def test_what_is_sent_is_answered() -> None:
+    bench = ComponentBench(Thermostat(), ADVERTISEMENT)
+    bench.start()
+    bench.send("temperature", {"celsius": 15.0})
+    bench.send("temperature", {"celsius": 25.0})
+    assert bench.emitted["heating"] == [{"on": True}, {"on": False}]
+
+
+def test_parameters_are_set_as_what_they_are() -> None:
+    thermostat = Thermostat()
+    bench = ComponentBench(thermostat, ADVERTISEMENT)
+    bench.start(wanted=10.5, mode='a "quiet" one')
+    assert (thermostat.wanted, thermostat.mode) == (10.5, 'a "quiet" one')
+    bench.send("temperature", {"celsius": 15.0})
+    assert bench.emitted["heating"] == [{"on": False}]
+
+
+def test_time_is_turned_by_hand() -> None:
+    bench = ComponentBench(Thermostat(), ADVERTISEMENT)
+    bench.start()
+    before = len(bench.emitted["ticks"])
+    bench.advance(10.0)
+    assert len(bench.emitted["ticks"]) - before == 10
+
+
+def test_a_failure_is_told_and_a_stop_brings_it_to_rest() -> None:
+    thermostat = Thermostat()
+    bench = ComponentBench(thermostat, ADVERTISEMENT)
+    assert not bench.active
+    bench.start()
+    assert bench.active
+    assert bench.failure is None
+    bench.send("temperature", {"celsius": 2000.0})
+    assert bench.failure == "it burns"
+    assert not bench.active
+    bench.stop()
+    assert thermostat.rests >= 1
+
+
+def test_what_breaks_in_a_component_is_its_failure() -> None:
+    bench = ComponentBench(Thermostat(), ADVERTISEMENT)
+    bench.start()
+    bench.send("temperature", {"fahrenheit": 15.0})
+    assert bench.failure is not None
+    assert "KeyError" in bench.failure
+
+
+def test_a_component_that_declines_says_why() -> None:
+    thermostat = Thermostat()
+    thermostat.wanted = "never"
+    with pytest.raises(ProgrammerError, match="there is no heating here"):
+        ComponentBench(thermostat, ADVERTISEMENT).start()
+
+
+def test_ports_and_parameters_that_are_not_there_are_named() -> None:
+    bench = ComponentBench(Thermostat(), ADVERTISEMENT)
+    with pytest.raises(ProgrammerError, match="no parameter 'colour'"):
+        bench.start(colour="red")
+    bench.start()
+    with pytest.raises(ProgrammerError, match="no input 'pressure'"):
+        bench.send("pressure", 1)

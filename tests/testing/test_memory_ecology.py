@@ -1,0 +1,92 @@
+"""A task is tried without a network: it runs, a component crashes, another one takes over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import selfconf as sc
+from selfconf.errors import AuthorError, ProgrammerError
+from selfconf.model.run_event import ComponentLost, TaskRunning
+from selfconf.sdk import Component, Signal
+from selfconf.testing import Faults, MemoryEcology
+
+PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
+@prefix sh: <http://www.w3.org/ns/shacl#> .
+@prefix : <urn:test:> .
+"""
+CLOCK = PREFIXES + ':NAME a sc:Component, :Clock ; sc:hasOutput [ sc:name "time" ; sc:signalType :Time ] .'
+SCREEN = PREFIXES + ':screen a sc:Component, :Screen ; sc:hasInput [ sc:name "text" ; sc:signalType :Time ] .'
+TASK = (
+    PREFIXES
+    + """:tell a sc:Template ; sc:roles ( :source :sink ) .
+:source a sc:Role ; sh:class :Clock ; sc:feeds :sink .
+:sink a sc:Role ; sh:class :Screen ."""
+)
+
+
+class Clock(Component):
+    """Says its name every second."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def started(self) -> None:
+        self.every(1.0, lambda: self.emit("time", self.name))
+
+
+class Screen(Component):
+    """Notes what it is shown."""
+
+    def __init__(self) -> None:
+        self.shown: list[str] = []
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.shown.append(signal.value)
+
+
+def test_a_task_runs_and_goes_on_when_a_component_crashes() -> None:
+    ecology = MemoryEcology()
+    first = ecology.add(Clock("first"), CLOCK.replace("NAME", "a"))
+    ecology.add(Clock("second"), CLOCK.replace("NAME", "b"))
+    screen = ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK)).started()
+    assert run.configuration is not None
+    assert ecology.until(lambda: screen.shown == ["first"])
+    ecology.crash(first)
+    assert ecology.until(lambda: "second" in screen.shown)
+    acts = [type(event) for event in run.events]
+    assert acts.count(TaskRunning) == 2
+    assert acts.count(ComponentLost) == 1
+    run.stop()
+    assert run.ended
+    assert not screen.active
+
+
+def test_a_component_that_is_cut_off_comes_back() -> None:
+    ecology = MemoryEcology(seed=3, faults=Faults(loss=0.05, doubling=0.05))
+    clock = ecology.add(Clock("only"), CLOCK.replace("NAME", "a"))
+    ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK), wait=True).started()
+    ecology.isolate(clock)
+    assert ecology.until(lambda: not run.running)
+    ecology.rejoin(clock)
+    assert ecology.until(lambda: run.running)
+
+
+def test_a_task_that_cannot_run_says_why() -> None:
+    ecology = MemoryEcology()
+    ecology.add(Screen(), SCREEN)
+    with pytest.raises(ProgrammerError, match="the task does not run; it is refused"):
+        ecology.run(sc.template(TASK)).started()
+
+
+def test_an_advertisement_that_is_none_is_refused(tmp_path: Path) -> None:
+    ecology = MemoryEcology()
+    with pytest.raises(AuthorError, match="sc:signalType"):
+        ecology.add(Screen(), SCREEN.replace("sc:signalType :Time", "sc:signalType 1"))
+    with pytest.raises(AuthorError, match="one advertisement is needed"):
+        ecology.advertise(PREFIXES)
+    with pytest.raises(ProgrammerError, match="add it first"):
+        ecology.crash(Screen())
