@@ -1,4 +1,4 @@
-"""The advertisements of an endpoint become files for a site, of what a task may want, and of endpoints to be trusted."""
+"""The advertisements of an endpoint become files for a site: what a task may want, and of endpoints to be trusted."""
 
 from __future__ import annotations
 
