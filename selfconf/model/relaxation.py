@@ -65,7 +65,7 @@ class AskForFewer:
 
 @dataclass(frozen=True, slots=True)
 class AskForOne:
-    """A role that asks for no component, though others need what it issues, makes the task possible by asking for one."""
+    """A role that asks for no component, though others need its output, makes the task possible by asking for one."""
 
     code: ClassVar[str] = "ask-for-one"
     role: IRI

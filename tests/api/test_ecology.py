@@ -8,7 +8,7 @@ import pytest
 
 import selfconf as sc
 from selfconf.api.ecology import Solutions
-from selfconf.api.tables import ROWS_PRINTED
+from selfconf.api.tables import LONGEST_TABLE
 from selfconf.errors import QueryError
 from selfconf.rdf.vocabulary import RDF, XSD
 
@@ -66,9 +66,9 @@ def test_more_rows_than_asked_for_are_cut_and_more_than_a_screen_are_counted(hom
     assert (len(few), few.cut) == (2, True)
     many = home.query("SELECT * { VALUES ?a { 1 2 3 4 5 6 7 8 9 } VALUES ?b { 1 2 3 4 5 6 7 8 9 } }")
     assert len(many) == 81
-    assert len(repr(many).splitlines()) == ROWS_PRINTED + 3
-    assert repr(many).endswith(f"... only the first {ROWS_PRINTED} are shown")
-    assert many._repr_html_().count("<tr>") == ROWS_PRINTED + 1
+    assert len(repr(many).splitlines()) == LONGEST_TABLE + 3
+    assert repr(many).endswith(f"... only the first {LONGEST_TABLE} are shown")
+    assert many._repr_html_().count("<tr>") == LONGEST_TABLE + 1
 
 
 @pytest.mark.parametrize("query", ["SELEC", "DELETE WHERE { ?s ?p ?o }", "SELECT ?c WHERE {", ""])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from selfconf.api.tables import CHARACTERS_PRINTED, ROWS_PRINTED, Tabular
+from selfconf.api.tables import LONGEST_TABLE, WIDEST_CELL, Tabular
 
 
 class Numbers(Tabular):
@@ -24,15 +24,15 @@ class Numbers(Tabular):
 
 def test_no_more_rows_are_made_than_are_printed() -> None:
     million = Numbers(1_000_000)
-    assert repr(million).splitlines()[-1] == f"... only the first {ROWS_PRINTED} are shown"
-    assert million.made == ROWS_PRINTED + 1
+    assert repr(million).splitlines()[-1] == f"... only the first {LONGEST_TABLE} are shown"
+    assert million.made == LONGEST_TABLE + 1
     assert "only the first" in million._repr_html_()
-    assert "only the first" not in repr(Numbers(ROWS_PRINTED))
+    assert "only the first" not in repr(Numbers(LONGEST_TABLE))
 
 
 def test_a_long_cell_is_cut_and_one_of_several_lines_is_one_line() -> None:
     assert repr(Numbers(1, "a" * 10_000)).splitlines()[-1].endswith("a…")
-    assert max(map(len, repr(Numbers(1, "a" * 10_000)).splitlines())) < CHARACTERS_PRINTED + 20
+    assert max(map(len, repr(Numbers(1, "a" * 10_000)).splitlines())) < WIDEST_CELL + 20
     assert repr(Numbers(1, "a\nb\tc")).splitlines()[-1] == "0       a\\nb\\tc"
 
 
