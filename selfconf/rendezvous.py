@@ -143,15 +143,20 @@ def environment(ecology: str, endpoint: str) -> dict[str, str]:
     return {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
 
 
+def asked_for(ecology: str | None, connect: Sequence[str]) -> tuple[str | None, list[str]]:
+    """The ecology and the endpoints that are given, else those that the environment names, if it does."""
+    if ecology is None:
+        ecology = os.environ.get(ECOLOGY_VARIABLE) or None
+    return ecology, list(connect) or os.environ.get(CONNECT_VARIABLE, "").split()
+
+
 def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
     """The ecology and the endpoints to connect to.
 
     Each is what is given, else what the environment says, else that of the sites on this machine. Raises NetworkError,
     saying what to try, if there are none, and AuthorError for what cannot name an ecology.
     """
-    if ecology is None:
-        ecology = os.environ.get(ECOLOGY_VARIABLE) or None
-    endpoints = list(connect) or os.environ.get(CONNECT_VARIABLE, "").split()
+    ecology, endpoints = asked_for(ecology, connect)
     if ecology is not None:
         checked_name(ecology, "an ecology")
     if endpoints:

@@ -51,6 +51,14 @@ def test_of_several_ecologies_one_must_be_named() -> None:
         rendezvous.find(None, [])
 
 
+def test_what_is_given_counts_before_what_the_environment_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert rendezvous.asked_for(None, []) == (None, [])
+    monkeypatch.setenv("SELFCONF_ECOLOGY", "lab")
+    monkeypatch.setenv("SELFCONF_CONNECT", "tcp/127.0.0.1:1 tcp/127.0.0.1:2")
+    assert rendezvous.asked_for(None, []) == ("lab", ["tcp/127.0.0.1:1", "tcp/127.0.0.1:2"])
+    assert rendezvous.asked_for("home", ["tcp/127.0.0.1:3"]) == ("home", ["tcp/127.0.0.1:3"])
+
+
 def test_the_usual_endpoint_of_an_ecology_is_the_same_each_time_and_its_own() -> None:
     assert rendezvous.usual_endpoint("home") == rendezvous.usual_endpoint("home")
     assert rendezvous.usual_endpoint("home") != rendezvous.usual_endpoint("office")

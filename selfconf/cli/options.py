@@ -99,13 +99,18 @@ def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
 
 def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
     """The options by which a command finds the living ecology."""
-    parser.add_argument("--ecology", metavar="NAME", help="the ecology; by default the only one on this machine")
+    parser.add_argument(
+        "--ecology",
+        metavar="NAME",
+        help="the ecology (default: $SELFCONF_ECOLOGY, or else the only one on this machine)",
+    )
     parser.add_argument(
         "--connect",
         metavar="ENDPOINT",
         action="append",
         default=[],
-        help="where a site listens, such as tcp/127.0.0.1:7447; repeatable; by default the sites on this machine",
+        help="where a site listens, such as tcp/127.0.0.1:7447; repeatable (default: $SELFCONF_CONNECT, or else the"
+        " sites on this machine)",
     )
 
 
