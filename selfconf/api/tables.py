@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from itertools import islice
 
 from selfconf.model.wording import plain
-from selfconf.render import html_table, html_text, table
 
 LONGEST_TABLE = 60
 """How many rows are printed; the value itself has them all."""
@@ -35,10 +34,16 @@ class Tabular(ABC):
         return rows[:LONGEST_TABLE], more
 
     def __repr__(self) -> str:
+        from selfconf.render import (
+            table,  # loads what refusals say, which most values that print as a table do not need
+        )
+
         rows, remark = self._printed()
         return "\n".join(filter(None, (table(self._head(), rows), remark)))
 
     def _repr_html_(self) -> str:
+        from selfconf.render import html_table, html_text
+
         rows, remark = self._printed()
         return html_table(self._head(), rows) + (html_text(remark) if remark else "")
 

@@ -15,7 +15,6 @@ from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
 from selfconf.rdf import validation
 from selfconf.rdf.validation import CheckEach, SourceText
-from selfconf.render import count, html_text
 
 LARGEST_FILE = 64 << 20
 """A file of more bytes is not read."""
@@ -33,11 +32,15 @@ class ValidationReport(Tabular, Report):
             yield [found.file, str(found.line), found.severity.value, found.code, found.message]
 
     def __repr__(self) -> str:
+        from selfconf.render import count  # loads what refusals say, which the command line does not need here
+
         counted = f"{count(self.errors, 'error')} and {count(self.warnings, 'warning')}"
         said = f"<{counted} in {count(len(self.files), 'file')}>"
         return f"{said}\n{super().__repr__()}" if self.diagnostics else said
 
     def _repr_html_(self) -> str:
+        from selfconf.render import html_text
+
         return super()._repr_html_() if self.diagnostics else html_text(repr(self))
 
 

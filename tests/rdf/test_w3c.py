@@ -19,8 +19,9 @@ from selfconf.model.profile import Profile
 from selfconf.model.template import Role, Task, Template
 from selfconf.model.term import IRI
 from selfconf.rdf import rdflib_terms
-from selfconf.rdf.advertisements.reader import STRUCTURE, ParsedAdvertisement
+from selfconf.rdf.advertisements.advertisement import ParsedAdvertisement
 from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.permitted_fields import STRUCTURE
 from selfconf.rdf.reasoning.closure import hierarchy
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle

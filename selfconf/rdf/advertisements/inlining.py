@@ -18,8 +18,8 @@ from itertools import islice
 import pyoxigraph as ox
 
 from selfconf.rdf import turtle
-from selfconf.rdf.advertisements.fields import NEXT
 from selfconf.rdf.advertisements.statements import END, NotInlinableError, Statement, StatementTable, bracketed
+from selfconf.rdf.permitted_fields import NEXT
 from selfconf.rdf.vocabulary import FIRST, NIL, REST
 
 CHUNK_TRIPLES = 512

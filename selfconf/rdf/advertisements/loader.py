@@ -21,7 +21,6 @@ from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement, about, property_order
-from selfconf.rdf.advertisements.fields import LINKS, NEXT
 from selfconf.rdf.advertisements.segments import SegmentCache, inlined_document
 from selfconf.rdf.advertisements.statements import (
     END,
@@ -30,6 +29,7 @@ from selfconf.rdf.advertisements.statements import (
     StatementTable,
     bracketed,
 )
+from selfconf.rdf.permitted_fields import LINKS, NEXT
 from selfconf.rdf.turtle import SKOLEM, Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
 

@@ -1,7 +1,7 @@
 """The careful reader: from triples to the profile of each component, with every problem named.
 
 `shapes/advertisement.ttl` is the authority on which advertisements conform. Reading builds the profile and notes on
-its way everything that the shape forbids; both follow the table of fields (`selfconf.rdf.advertisements.fields`), and
+its way everything that the shape forbids; both follow the table of fields (`selfconf.rdf.permitted_fields`), and
 a test holds the two verdicts together.
 """
 
@@ -21,7 +21,7 @@ from selfconf.rdf.advertisements.advertisement import (
     allowed,
     property_order,
 )
-from selfconf.rdf.advertisements.fields import COMPONENT, PORT_NAME, STRUCTURE, Field, Subject
+from selfconf.rdf.permitted_fields import COMPONENT, PORT_NAME, STRUCTURE, Field, Subject
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import turtle
-from selfconf.rdf.advertisements.fields import COMPONENT, GROUNDING, NEXT, PORT_NAME, PORTS, Field
+from selfconf.rdf.permitted_fields import COMPONENT, GROUNDING, NEXT, PORT_NAME, PORTS, Field
 from selfconf.rdf.vocabulary import RDF, SC, XSD
 
 SUBJECT = IRI("urn:selfconf:component")

@@ -16,8 +16,8 @@ from selfconf.model.term import IRI, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import allowed
-from selfconf.rdf.advertisements.fields import COMPONENT, LINKS, NEXT, STRUCTURE
 from selfconf.rdf.advertisements.recognition import SUBJECT, port_of, ported, property_of, setting_of
+from selfconf.rdf.permitted_fields import COMPONENT, LINKS, NEXT, STRUCTURE
 from selfconf.rdf.vocabulary import SC, TYPE
 
 END = " .\n"

@@ -18,9 +18,9 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from selfconf.rdf.advertisements.fields import RATE
 from selfconf.rdf.advertisements.recognition import port_of
 from selfconf.rdf.advertisements.statements import Statement, StatementTable
+from selfconf.rdf.permitted_fields import RATE
 from selfconf.rdf.vocabulary import SC
 
 OCCURRENCES = 4

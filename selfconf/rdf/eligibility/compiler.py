@@ -21,7 +21,6 @@ from itertools import chain
 
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf.advertisements import STRUCTURE
 from selfconf.rdf.eligibility.role_tests import (
     ClassTest,
     CompiledRole,
@@ -31,6 +30,7 @@ from selfconf.rdf.eligibility.role_tests import (
     RoleTest,
     SelfTest,
 )
+from selfconf.rdf.permitted_fields import STRUCTURE
 from selfconf.rdf.shacl import compiled
 from selfconf.rdf.tasks import ROLE_STRUCTURE
 from selfconf.rdf.turtle import Document, Triple

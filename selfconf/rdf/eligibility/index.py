@@ -14,8 +14,9 @@ from operator import attrgetter
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements import STRUCTURE, Advertisement, LoadedAdvertisement
+from selfconf.rdf.advertisements import Advertisement, LoadedAdvertisement
 from selfconf.rdf.eligibility.role_tests import Count, ParameterTest, PropertyTest, RoleTest, SelfTest
+from selfconf.rdf.permitted_fields import STRUCTURE
 from selfconf.rdf.vocabulary import SC
 
 _BRACKETED = attrgetter("bracketed")

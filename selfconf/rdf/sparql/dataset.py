@@ -7,16 +7,19 @@ Oxigraph. They read the dataset and nothing else: SERVICE is refused, and FROM o
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 import pyoxigraph as ox
 
 from selfconf.errors import QueryError
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql.mistakes import mistake
 from selfconf.rdf.sparql.read_only import only_reads, says
 from selfconf.rdf.turtle import Triple, ox_term
 from selfconf.rdf.vocabulary import PROV, RDF, RDFS, ROB, SC, SH, XSD
+
+if TYPE_CHECKING:
+    from selfconf.rdf.advertisements import Advertisement
 
 QUERY_PREFIXES = {
     "sc": SC.base,

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import pyoxigraph as ox
 
-from selfconf.rdf.advertisements import COMPONENT, Field, Subject
+from selfconf.rdf.permitted_fields import COMPONENT, Field, Subject
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE
 
 MOST_PROBLEMS = 100
@@ -224,16 +224,19 @@ class _Advertisements:
         return SC.rate not in properties or self._holds(properties, _RATE)
 
     def _conforms(self, properties: Properties, subject: Subject) -> bool:
-        return all(
-            self._holds(properties, asked) if asked.predicate in properties else asked.least == 0
-            for asked in subject.fields
-        )
+        for asked in subject.fields:  # a loop, since this runs for each node of each file
+            if not (self._holds(properties, asked) if asked.predicate in properties else asked.least == 0):
+                return False
+        return True
 
     def _holds(self, properties: Properties, asked: Field) -> bool:
         """Whether a field that is there has as many values as it may, each of its kind."""
         values = properties[asked.predicate]
-        if not asked.counts(len(values)) or not all(_allowed(asked, value) for value in values):
+        if not asked.counts(len(values)):
             return False
+        for value in values:
+            if not _allowed(asked, value):
+                return False
         if not asked.into.fields:
             return True
         nodes = [self.statements.get(node, {}) for node in values if isinstance(node, str)]

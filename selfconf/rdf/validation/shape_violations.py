@@ -11,15 +11,20 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import pyshacl
 from pyshacl.errors import ReportableRuntimeError, ValidationFailure
 from rdflib import RDF, Graph, Literal, Namespace, URIRef
+from rdflib.plugins.sparql import prepareQuery
+from rdflib.plugins.sparql.sparql import Query
+from rdflib.query import Result
 from rdflib.term import Node
 
 from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
-from selfconf.rdf.advertisements import COMPONENT
+from selfconf.rdf.permitted_fields import COMPONENT
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.validation.diagnostics import at
 
@@ -115,9 +120,25 @@ def _lists_stray(graph: Graph) -> bool:
     return False
 
 
+class _PreparingGraph(Graph):
+    """A graph that prepares each query once: pySHACL asks the query of a constraint anew for each focus node."""
+
+    def query(self, query_object: str | Query, *given: Any, **options: Any) -> Result:
+        if isinstance(query_object, str):
+            prefixes = options.get("initNs") or dict(self.namespaces())
+            query_object = _prepared(query_object, tuple(sorted(prefixes.items())))
+        return super().query(query_object, *given, **options)
+
+
+@lru_cache(maxsize=64)
+def _prepared(text: str, prefixes: tuple[tuple[str, str], ...]) -> Query:
+    return prepareQuery(text, initNs=dict(prefixes))
+
+
 def reported_violations(graph: Graph, shapes: Graph) -> Iterator[ReportedViolation]:
     """What pySHACL finds in a graph."""
-    _, report, text = pyshacl.validate(graph, shacl_graph=shapes, inference="none")
+    asked = _PreparingGraph(graph.store, graph.identifier, graph.namespace_manager)
+    _, report, text = pyshacl.validate(asked, shacl_graph=shapes, inference="none")
     if isinstance(report, ValidationFailure) or not isinstance(report, Graph):
         raise ReportableRuntimeError(f"pySHACL cannot judge this file: {text}")
     for result in report.objects(predicate=_SH.result):

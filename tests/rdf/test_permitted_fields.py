@@ -17,7 +17,7 @@ from selfconf import library
 from selfconf.model import number as numbers
 from selfconf.model import term as model
 from selfconf.rdf.advertisements import reader
-from selfconf.rdf.advertisements.fields import (
+from selfconf.rdf.permitted_fields import (
     COMMAND_LINE,
     COMPONENT,
     GROUNDING,
