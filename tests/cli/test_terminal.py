@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.terminal import Terminal, guard, plain, show
+from selfconf.cli.terminal import Terminal, display, guard, plain
 from tests.lab import PREFIXES
 
 pytestmark = pytest.mark.process
@@ -41,13 +41,13 @@ def test_what_nobody_reads_ends_nothing_and_what_cannot_be_encoded_is_escaped(mo
         monkeypatch.setattr(sys, "stdout", pipe)
         monkeypatch.setattr(sys, "stderr", None)
         guard()
-        show("file \udcff")
+        display("file \udcff")
         assert os.read(ours, 100) == b"file \\udcff\n"
         os.close(ours)
-        show("more than is read")
-        show("and yet more")
+        display("more than is read")
+        display("and yet more")
         with sys.stderr as nowhere:
-            show("nothing", nowhere)
+            display("nothing", nowhere)
 
 
 def test_what_programs_read_is_utf_8_whatever_the_terminal_would_have(tmp_path: Path) -> None:

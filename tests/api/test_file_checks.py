@@ -10,7 +10,6 @@ import pytest
 
 from selfconf.api.file_checks import Remembered, shared
 from selfconf.api.validation import check
-from selfconf.cli.main import main
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
 
@@ -99,18 +98,3 @@ def test_a_memory_that_is_broken_or_of_other_versions_is_forgotten(content: str,
 def test_a_memory_that_cannot_be_written_is_done_without(files: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
     assert check([str(files)], each=Remembered(tmp_path / "file", [str(files)])) == check([str(files)])
-
-
-def test_the_option_remembers(files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SELFCONF_CACHE_DIR", str(tmp_path / "cache"))
-    codes = {main(["validate", str(files), "--cache"]) for _ in range(2)}
-    assert len(codes) == 1
-    assert len(list((tmp_path / "cache" / "validate").iterdir())) == 1
-
-
-def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("selfconf.api.validation.LARGEST_FILE", 10)
-    (tmp_path / "a.ttl").write_text("# more than ten bytes")
-    report = check([str(tmp_path)])
-    assert [each.code for each in report.diagnostics] == ["SC-S05"]
-    assert report.unreadable

@@ -116,14 +116,3 @@ def test_what_comes_from_elsewhere_has_no_place_and_what_cannot_be_read_again_no
     for later in (text + "#" * LARGEST_REREAD, "no Turtle"):
         file.write_text(later)
         assert Places(template, ecology).of(component) == Place(str(file))
-
-
-def test_an_answer_that_is_not_certified_is_never_printed(
-    capsys: pytest.CaptureFixture[str], home: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write(home, TIME.replace(":Clok", ":Clock") + SINK, CLOCK, SCREEN.replace("SIGNAL", "rob:Text"))
-    assert configure(capsys, home).code == 0
-    monkeypatch.setattr("selfconf.search.problem.Problem.feeders", lambda *_: iter(()))
-    monkeypatch.setattr("selfconf.search.problem.Problem.compatible", lambda *_: True)
-    for form in ("text", "json", "turtle"):
-        assert configure(capsys, home, "--format", form).is_one_sentence("the search has made a mistake", "missing")
