@@ -5,17 +5,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
+from selfconf.model.number import plain_number
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, XSD_NAMESPACE, Literal, Term
+
+_BOOLEAN = XSD_NAMESPACE + "boolean"
+_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+"""The lexical forms of a truth value (XSD 1.1 part 2, section 3.3.2.2)."""
 
 
 def configuration_body(configuration: Configuration) -> dict[str, Any]:
@@ -95,17 +99,9 @@ def _place(fact: Reason | Relaxation | NearMiss) -> dict[str, Any]:
 
 def value_body(value: Term) -> Any:
     """A term: IRIs and strings as text, numbers and truth values as such; JSON has no INF and no NaN."""
-    if isinstance(value, Literal):
-        kind = value.datatype.rpartition("#")[2]
-        try:
-            if kind in ("integer", "int", "long"):
-                return int(value.lexical)
-            if kind in ("decimal", "double", "float"):
-                number = float(value.lexical)
-                return number if math.isfinite(number) else value.lexical
-        except ValueError:
-            return value.lexical
-        if kind == "boolean":
-            return value.lexical in ("true", "1")
-        return value.lexical
-    return str(value)
+    if not isinstance(value, Literal):
+        return str(value)
+    if value.datatype == _BOOLEAN:
+        return _TRUTH.get(value.lexical, value.lexical)
+    number = plain_number(value)
+    return value.lexical if number is None else number
