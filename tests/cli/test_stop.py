@@ -19,3 +19,7 @@ def test_stop_tells_programs_what_it_took_down(inhabited: Home, capsys: pytest.C
     assert run(capsys, "stop", "--format", "json", *where).body == stopped
     assert program.ended() == 0
     assert run(capsys, "stop", "--format", "json", *where).body == {**stopped, "stopped": []}
+
+
+def test_without_an_ecology_it_says_what_to_start(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "stop").is_one_sentence("no site runs on this machine", "selfconf site")

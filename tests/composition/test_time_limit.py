@@ -100,3 +100,29 @@ def test_that_there_is_none_is_told_even_if_no_time_is_left_for_reasons(
     outcome = configure(capsys, team, "--seconds", "30")
     assert outcome.code == 1
     assert "no time was left to find out why" in outcome.out
+
+
+def test_what_is_asked_without_a_limit_is_always_answered() -> None:
+    unlimited = TimeLimit(None)
+    assert [unlimited.within(lambda: "answer", "no answer") for _ in range(3)] == ["answer"] * 3
+
+
+def test_what_is_asked_later_has_less_time_and_none_once_it_is_over() -> None:
+    limit, asked = TimeLimit(0.2), list[int]()
+
+    def endless() -> str:
+        asked.append(1)
+        while True:
+            pass
+
+    assert limit.within(lambda: "answer", "no answer") == "answer"
+    began = time.monotonic()
+    assert limit.within(endless, "no answer") == "no answer"
+    assert limit.within(endless, "no answer") == "no answer"
+    assert (len(asked), limit.seconds) == (1, 0.2)
+    assert time.monotonic() - began < 5.0
+
+
+def test_an_error_of_what_is_asked_is_no_answer_of_the_limit() -> None:
+    with pytest.raises(ZeroDivisionError):
+        TimeLimit(60.0).within(lambda: 1 // 0, 0)

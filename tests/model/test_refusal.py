@@ -55,8 +55,8 @@ WORDED: list[tuple[Reason, str]] = [
     (
         Conflict((EYE, MIND), requirements=(OneRoleEach(), InputFed(MIND, IMAGE))),
         (
-            "the roles eye and mind cannot all be played with a different component for each so that mind gets the Image "
-            "that it needs"
+            "the roles eye and mind cannot all be played with a different component for each so that mind gets the "
+            "Image that it needs"
         ),
     ),
 ]

@@ -8,6 +8,9 @@ from pathlib import Path
 import pytest
 
 from selfconf.cli.main import main
+from selfconf.cli.reports import RENDERERS
+from selfconf.model.diagnostic import report
+from tests.cli.diagnosed import NASTY
 
 
 def test_json_holds_every_problem(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -27,3 +30,15 @@ def test_json_holds_every_problem(folder: Path, capsys: pytest.CaptureFixture[st
         "hint": None,
         "shape": "https://w3id.org/selfconf/shapes#ComponentKind",
     }
+
+
+def test_words_come_back_as_they_were() -> None:
+    (found,) = json.loads(RENDERERS["json"](NASTY))["diagnostics"]
+    (problem,) = NASTY.diagnostics
+    assert (found["file"], found["message"], found["hint"]) == (problem.file, problem.message, "Try.")
+    assert found["end_column"] - found["column"] == 2
+
+
+def test_a_report_without_problems_conforms() -> None:
+    content = json.loads(RENDERERS["json"](report(["a.ttl"], [])))
+    assert (content["conforms"], content["files"], content["diagnostics"]) == (True, 1, [])
