@@ -8,7 +8,14 @@ from __future__ import annotations
 
 
 class SelfconfError(Exception):
-    """Anything that selfconf raises on purpose."""
+    """Anything that selfconf raises on purpose.
+
+    >>> try:
+    ...     read("no-such-folder")
+    ... except SelfconfError as error:
+    ...     print(error)
+    there is no file or folder no-such-folder
+    """
 
 
 class AuthorError(SelfconfError):

@@ -13,13 +13,13 @@ import os
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
-from selfconf.termination import alive
+from selfconf.termination import alive, start_time
 
 ECOLOGY_VARIABLE = "SELFCONF_ECOLOGY"
 """The variable that names the ecology of a program to which none is given."""
@@ -42,6 +42,8 @@ class LocalSite:
     site: str
     endpoint: str
     process: int
+    started: str = field(default="", compare=False)
+    """When the process began: after a restart of the machine another one may have its number. Empty if not known."""
 
 
 def runtime_folder() -> Path:
@@ -97,6 +99,7 @@ def turn() -> Iterator[None]:
 
 def announce(site: LocalSite) -> Path:
     """Write the file of a site, which `leave` removes; return its path. Raises NetworkError where that cannot be."""
+    site = replace(site, started=start_time(site.process))
     if any(other.site == site.site and other.process != os.getpid() for other in local_sites(site.ecology)):
         raise NetworkError(f"a site {site.site!r} of ecology {site.ecology!r} runs on this machine already")
     with _writing() as root:
@@ -125,7 +128,7 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
     for path in sorted(root.glob("*.json")):
         try:
             site = LocalSite(**json.loads(path.read_text()))
-            living = alive(int(site.process))
+            living = alive(int(site.process)) and site.started in ("", start_time(site.process))
         except (OSError, ValueError, TypeError):
             continue
         if not living:
@@ -140,15 +143,20 @@ def environment(ecology: str, endpoint: str) -> dict[str, str]:
     return {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
 
 
+def asked_for(ecology: str | None, connect: Sequence[str]) -> tuple[str | None, list[str]]:
+    """The ecology and the endpoints that are given, else those that the environment names, if it does."""
+    if ecology is None:
+        ecology = os.environ.get(ECOLOGY_VARIABLE) or None
+    return ecology, list(connect) or os.environ.get(CONNECT_VARIABLE, "").split()
+
+
 def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
     """The ecology and the endpoints to connect to.
 
     Each is what is given, else what the environment says, else that of the sites on this machine. Raises NetworkError,
     saying what to try, if there are none, and AuthorError for what cannot name an ecology.
     """
-    if ecology is None:
-        ecology = os.environ.get(ECOLOGY_VARIABLE) or None
-    endpoints = list(connect) or os.environ.get(CONNECT_VARIABLE, "").split()
+    ecology, endpoints = asked_for(ecology, connect)
     if ecology is not None:
         checked_name(ecology, "an ecology")
     if endpoints:

@@ -46,12 +46,24 @@ def alive(process: int) -> bool:
     return not _zombie(process)
 
 
+def start_time(process: int) -> str:
+    """When a process of this machine began, to tell it from a later one with its number; empty where not known.
+
+    It is counted in clock ticks since the machine began (proc_pid_stat(5), field 22).
+    """
+    return b"".join(_status(process)[19:20]).decode()
+
+
 def _zombie(process: int) -> bool:
+    return _status(process)[:1] in ([b"Z"], [b"X"])
+
+
+def _status(process: int) -> list[bytes]:
+    """The fields of a process from its state on; none if it is gone, or this system has no such files."""
     try:
-        status = Path(f"/proc/{process}/stat").read_bytes()
-    except OSError:  # it is gone by now, or this system has no such files
-        return False
-    return status.rpartition(b")")[2].split()[:1] in ([b"Z"], [b"X"])
+        return Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()
+    except OSError:
+        return []
 
 
 def end_as_by_ctrl_c() -> None:

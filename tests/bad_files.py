@@ -12,7 +12,7 @@ from pathlib import Path
 
 from selfconf import library
 from selfconf.model.diagnostic import Report
-from selfconf.rdf.validation import SourceText, validate
+from selfconf.rdf.validation import SourceText, validate_texts
 
 BAD = tuple(sorted((Path(__file__).parent / "bad").glob("*.ttl")))
 
@@ -35,7 +35,7 @@ def source(path: Path) -> SourceText:
 @cache
 def checked(path: Path) -> Report:
     """The report of one bad file that is validated alone, with the shapes and ontologies that ship."""
-    return validate([source(path)], _all(library.shapes()), _all(library.ontologies()))
+    return validate_texts([source(path)], _all(library.shapes()), _all(library.ontologies()))
 
 
 def _all(paths: list[Path]) -> tuple[SourceText, ...]:

@@ -130,7 +130,7 @@ class Lab:
     def component(self, name: str, recorder: Recorder | None = None) -> Recorder:
         """A living component with one of the advertisements."""
         document = turtle.parse(PREFIXES + ADVERTISEMENTS[name], name)
-        (advertisement,), _ = advertisements.read(document)
+        (advertisement,), _ = advertisements.read_document(document)
         recorder = recorder or Recorder()
         life = f"{name}{len(self.network.nodes)}"
         self.runtimes[name] = ComponentRuntime(self.network.node(), self.keys, advertisement.profile, recorder, life)

@@ -1,4 +1,4 @@
-"""Which files a path stands for, and what is said of those that nobody can read."""
+"""Which files a path stands for, and what is said of those that cannot be read."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CLOCK = "@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:x:> . :clock 
 
 @pytest.fixture
 def ads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with one that nobody may read in it; whoever is root may read everything, and is refused here."""
+    """A folder with one in it that may not be read; root may read everything, so it is refused here."""
     for name in ("open", "closed", "open/folder.ttl"):
         (tmp_path / name).mkdir()
     for name in ("open/a.ttl", "open/notes.txt", "closed/b.ttl", "z.ttl"):

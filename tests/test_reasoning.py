@@ -84,7 +84,7 @@ def hierarchies(tmp_path_factory: pytest.TempPathFactory) -> dict[Reasoning, Hie
 def configured(template: str, ads: str, above: Hierarchy) -> bool:
     """Whether there is a configuration."""
     task = bindings.complete(templates.read_task(turtle.parse(PREFIXES + template, "t.ttl")))
-    found, malformed = advertisements.read(turtle.parse(PREFIXES + ads, "a.ttl"))
+    found, malformed = advertisements.read_document(turtle.parse(PREFIXES + ads, "a.ttl"))
     assert not malformed
     ecology = {one.component: one for one in found}
     outcome = Composer(task, above, Strategy.FIRST).compose(ecology, frozenset(), None)

@@ -13,6 +13,7 @@ import pytest
 from selfconf import rendezvous
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.rendezvous import LocalSite
+from selfconf.termination import start_time
 
 
 def meeting(ecology: str = "home", site: str = "a", process: int | None = None) -> LocalSite:
@@ -50,11 +51,34 @@ def test_of_several_ecologies_one_must_be_named() -> None:
         rendezvous.find(None, [])
 
 
+def test_what_is_given_counts_before_what_the_environment_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert rendezvous.asked_for(None, []) == (None, [])
+    monkeypatch.setenv("SELFCONF_ECOLOGY", "lab")
+    monkeypatch.setenv("SELFCONF_CONNECT", "tcp/127.0.0.1:1 tcp/127.0.0.1:2")
+    assert rendezvous.asked_for(None, []) == ("lab", ["tcp/127.0.0.1:1", "tcp/127.0.0.1:2"])
+    assert rendezvous.asked_for("home", ["tcp/127.0.0.1:3"]) == ("home", ["tcp/127.0.0.1:3"])
+
+
 def test_the_usual_endpoint_of_an_ecology_is_the_same_each_time_and_its_own() -> None:
     assert rendezvous.usual_endpoint("home") == rendezvous.usual_endpoint("home")
     assert rendezvous.usual_endpoint("home") != rendezvous.usual_endpoint("office")
     for name in ("home", "office", "lab"):
         assert 1024 < int(rendezvous.usual_endpoint(name).rpartition(":")[2]) < 32768
+
+
+def test_a_site_whose_process_number_another_process_has_by_now_is_gone() -> None:
+    path = rendezvous.announce(meeting())
+    path.write_text(json.dumps({**json.loads(path.read_text()), "started": "1"}))
+    assert rendezvous.local_sites() == []
+    assert not path.exists()
+
+
+def test_a_site_that_does_not_say_when_its_process_began_is_known_by_its_number() -> None:
+    path = rendezvous.announce(meeting())
+    body = json.loads(path.read_text())
+    del body["started"]
+    path.write_text(json.dumps(body))
+    assert rendezvous.local_sites() == [meeting()]
 
 
 def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
@@ -137,7 +161,8 @@ def test_a_folder_of_another_user_is_neither_written_nor_read(
 
 def test_the_file_is_plain_json(runtime_folder: Path) -> None:
     body = json.loads(rendezvous.announce(meeting()).read_text())
-    assert body == {"ecology": "home", "site": "a", "endpoint": "tcp/127.0.0.1:7001", "process": os.getpid()}
+    process = {"process": os.getpid(), "started": start_time(os.getpid())}
+    assert body == {"ecology": "home", "site": "a", "endpoint": "tcp/127.0.0.1:7001", **process}
 
 
 def test_the_name_of_a_living_site_is_taken() -> None:

@@ -11,7 +11,15 @@ from collections.abc import Iterator
 import pytest
 
 from selfconf.bus.memory import Network
-from selfconf.termination import PARENT_CHECK, Termination, alive, end_as_by_ctrl_c, orphaned, parent_environment
+from selfconf.termination import (
+    PARENT_CHECK,
+    Termination,
+    alive,
+    end_as_by_ctrl_c,
+    orphaned,
+    parent_environment,
+    start_time,
+)
 
 
 def test_a_process_lives_until_it_has_ended_even_if_its_parent_has_not_waited_for_it() -> None:
@@ -88,3 +96,11 @@ def test_a_program_that_another_one_started_is_an_orphan_once_that_one_is_gone(
 
 def test_a_program_tells_those_that_it_starts_who_it_is() -> None:
     assert parent_environment() == {"SELFCONF_PARENT": str(os.getpid())}
+
+
+def test_a_process_began_at_one_time_and_a_dead_one_at_none() -> None:
+    assert start_time(os.getpid()).isdigit()
+    assert start_time(os.getpid()) == start_time(os.getpid())
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    process.wait()
+    assert start_time(process.pid) == ""

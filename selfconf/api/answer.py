@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
+from selfconf.api.arguments import Paths, listed_paths, option
 from selfconf.api.ecology import Ecology
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.places import Places
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained
+from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import Hierarchy, Reasoning
@@ -19,6 +23,7 @@ from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
+from selfconf.model.wording import plain
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.provenance import configuration_iri, configuration_triples
 from selfconf.rdf.tasks import TaskDocument
@@ -32,6 +37,7 @@ from selfconf.render import (
     html_sections,
     html_text,
     mermaid,
+    refusal_text,
 )
 
 
@@ -50,12 +56,13 @@ class Method:
         cls,
         strategy: str = "first",
         reasoning: str = "syntactic",
-        ontologies: Sequence[str | Path] = (),
+        ontologies: Paths = (),
         steps: int | None = None,
         seconds: float | None = None,
     ) -> Method:
-        """A method by the words of the command line. Raises ValueError for a word that is none of them."""
-        return cls(Strategy(strategy), Reasoning(reasoning), tuple(map(Path, ontologies)), steps, seconds)
+        """A method by the words of the command line. Raises ProgrammerError for a word that is none of them."""
+        chosen, mode = option(Strategy, "strategy", strategy), option(Reasoning, "reasoning", reasoning)
+        return cls(chosen, mode, tuple(map(Path, listed_paths(ontologies))), steps, seconds)
 
     def composer(self, task: TaskSpecification) -> Composer:
         """The composer of a task, which has to be complete."""
@@ -82,10 +89,30 @@ class Answer(Configuration):
     what_if: tuple[Consequence, ...] | None = field(default=None, kw_only=True, repr=False, compare=False)
     """What would replace each component if it failed, where that was asked for and there was time."""
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bindings", MappingProxyType(dict(self.bindings)))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """An answer can be copied and pickled, though a read-only view of its bindings cannot."""
+        facts = {one.name: getattr(self, one.name) for one in fields(self)}
+        return _answer, ({**facts, "bindings": dict(self.bindings)},)
+
     @property
     def names(self) -> Names:
         """Shortens IRIs by the prefixes of the template's document."""
         return Names(self.task.document.prefixes)
+
+    @property
+    def roles(self) -> tuple[IRI, ...]:
+        """The roles, in the order of the template."""
+        return tuple(assignment.role for assignment in self.assignments)
+
+    def __iter__(self) -> Iterator[str]:
+        """The roles by their local names, as a dictionary gives its keys."""
+        return (role.short for role in self.roles)
+
+    def __contains__(self, role: object) -> bool:
+        return any(role in (one, one.short, self.names(one)) for one in self.roles)
 
     def __getitem__(self, role: str) -> tuple[IRI, ...]:
         for assignment in self.assignments:
@@ -97,7 +124,7 @@ class Answer(Configuration):
     @property
     def plain(self) -> Configuration:
         """The configuration by itself."""
-        return Configuration(self.template, self.assignments, self.connections, self.settings, self.bindings)
+        return Configuration(self.template, self.assignments, self.connections, self.settings, dict(self.bindings))
 
     def to_turtle(self) -> str:
         """The configuration in RDF, as Turtle."""
@@ -118,18 +145,49 @@ class Answer(Configuration):
         return "\n".join(parts)
 
     def __repr__(self) -> str:
-        return f"<{self}>"
+        return plain(f"<{self}>")
 
     def _repr_html_(self) -> str:
         sections = {f"configured {self.names(self.template)}": diagram(self, self.names)}
-        return html_sections(sections) + html_text(str(self))
+        return html_sections(sections) + html_text(plain(str(self)))
+
+
+def _answer(facts: Mapping[str, Any]) -> Answer:
+    return Answer(**facts)
+
+
+@dataclass(frozen=True)
+class ExplainedRefusal(Refusal):
+    """A refusal as the library answers with it: it prints on one screen, with the place of each fact."""
+
+    task: TaskDocument = field(kw_only=True, repr=False, compare=False)
+
+    @property
+    def names(self) -> Names:
+        """Shortens IRIs by the prefixes of the template's document."""
+        return Names(self.task.document.prefixes)
+
+    def __str__(self) -> str:
+        return refusal_text(self, self.names)
+
+    def __repr__(self) -> str:
+        return plain(f"<{self}>")
+
+    def _repr_html_(self) -> str:
+        return html_text(plain(str(self)))
 
 
 class Inquiry:
     """One question, answered: a task in an ecology by a method, with the figures of how it was answered."""
 
     def __init__(self, task: TaskSpecification, ecology: Ecology, method: Method) -> None:
-        """Reads what the task may want of the ecology. Raises AuthorError and NetworkError."""
+        """Reads what the task may want of the ecology. Raises AuthorError, ProgrammerError and NetworkError."""
+        if not isinstance(task, TaskSpecification):
+            raise ProgrammerError(f"a task is what selfconf.template() gives, not {type(task).__name__}")
+        if not isinstance(ecology, Ecology):
+            raise ProgrammerError(
+                f"an ecology is what selfconf.read() or selfconf.join() gives, not {type(ecology).__name__}"
+            )
         self.task, self.method = task.complete(), method
         self.seconds: dict[str, float] = {}
         """How long each part took: load, partition, search."""
@@ -198,7 +256,8 @@ def refusal_with_places(
     `described` are the advertisements as files of this machine have them, where the ecology's come from elsewhere.
     """
     refusal = explained(composer, ecology, refusal, method.wider(), limit)
-    return Places(composer.task.task.template, ecology if described is None else described).placed(refusal)
+    placed = Places(composer.task.task.template, ecology if described is None else described).placed(refusal)
+    return ExplainedRefusal(**{one.name: getattr(placed, one.name) for one in fields(Refusal)}, task=composer.task)
 
 
 def configure(
@@ -207,7 +266,7 @@ def configure(
     *,
     strategy: str = "first",
     reasoning: str = "syntactic",
-    ontologies: Sequence[str | Path] = (),
+    ontologies: Paths = (),
     steps: int | None = None,
     seconds: float | None = None,
     what_if: bool = False,
@@ -218,7 +277,8 @@ def configure(
     line. `steps` and `seconds` limit the search; `seconds` holds in the main thread. `what_if` also tells what would
     replace each component.
 
-    Raises BindingError where a parameter needs a value, TemplateError for a shape that cannot be judged, NetworkError.
+    Raises BindingError where a parameter needs a value, TemplateError for a shape that cannot be judged, NetworkError,
+    and ProgrammerError for arguments of another kind.
 
     >>> answer = configure(template("examples/clock/tell-the-time.ttl"), read("examples/clock"))
     >>> answer["screen"]

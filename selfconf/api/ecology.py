@@ -8,22 +8,24 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.wording import plain
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner
 from selfconf.rdf.sparql import Dataset
 from selfconf.rdf.vocabulary import RDF, SC
-from selfconf.render import html_table, short, table
+from selfconf.render import count, html_table, short
 
 if TYPE_CHECKING:
     from selfconf.query import Question, Shown
 
 
-class Components(Mapping[IRI, Profile]):
+class Components(Tabular, Mapping[IRI, Profile]):
     """The components of an ecology by IRI, each with its profile; prints as a table."""
 
     def __init__(self, advertisements: Mapping[IRI, Advertisement]) -> None:
@@ -38,26 +40,20 @@ class Components(Mapping[IRI, Profile]):
     def __len__(self) -> int:
         return len(self._advertisements)
 
-    def _rows(self) -> tuple[list[str], list[list[str]]]:
-        rows = [
-            [
+    def _head(self) -> Sequence[str]:
+        return "component", "types", "inputs", "outputs"
+
+    def _cells(self) -> Iterator[list[str]]:
+        for profile in (self[component] for component in sorted(self)):
+            yield [
                 short(profile.component),
                 ", ".join(sorted(short(kind) for kind in profile.types - {SC.Component})),
                 ", ".join(port.name for port in profile.inputs),
                 ", ".join(port.name for port in profile.outputs),
             ]
-            for profile in (self[component] for component in sorted(self))
-        ]
-        return ["component", "types", "inputs", "outputs"], rows
-
-    def __repr__(self) -> str:
-        return table(*self._rows())
-
-    def _repr_html_(self) -> str:
-        return html_table(*self._rows())
 
 
-class Solutions(Sequence[Mapping[str, Term]]):
+class Solutions(Tabular, Sequence[Mapping[str, Term]]):
     """The solutions of a SELECT query, each the values of its variables by name; prints as a table."""
 
     def __init__(self, variables: Sequence[str], rows: Sequence[Mapping[str, Term]], cut: bool = False) -> None:
@@ -70,18 +66,25 @@ class Solutions(Sequence[Mapping[str, Term]]):
     def __len__(self) -> int:
         return len(self._rows)
 
-    def _cells(self) -> list[list[str]]:
-        return [[short(row[name]) if name in row else "" for name in self.variables] for row in self._rows]
+    def _head(self) -> Sequence[str]:
+        return self.variables
+
+    def _cells(self) -> Iterator[list[str]]:
+        return ([short(row[name]) if name in row else "" for name in self.variables] for row in self._rows)
 
     def __repr__(self) -> str:
-        return table(self.variables, self._cells()) if self.variables else f"{len(self)} solutions"
-
-    def _repr_html_(self) -> str:
-        return html_table(self.variables, self._cells())
+        return super().__repr__() if self.variables else count(len(self), "solution")
 
 
 class Ecology(ABC):
-    """Components that can play in a configuration, wherever their advertisements are: loaded, remote or living."""
+    """Components that can play in a configuration, wherever their advertisements are: loaded, remote or living.
+
+    >>> home.components
+    component  types    inputs  outputs
+    ---------  -------  ------  -------
+    clock      Clock            time
+    display    Display  text
+    """
 
     left_out: tuple[LeftOut, ...] = ()
     """The advertisements that do not count, and why."""
@@ -146,7 +149,7 @@ class Ecology(ABC):
         return True
 
     def __repr__(self) -> str:
-        return f"<ecology of {len(self)} components>"
+        return f"<ecology of {count(len(self), 'component')}>"
 
     def _repr_html_(self) -> str:
         return self.components._repr_html_()
@@ -165,7 +168,8 @@ class LoadedEcology(Ecology):
         return self._index
 
     def __repr__(self) -> str:
-        return f"<ecology of {len(self)} components from {', '.join(self.names)}>"
+        origin = f" from {', '.join(self.names)}" if self.names else ""
+        return plain(f"<ecology of {count(len(self), 'component')}{origin}>")
 
 
 class EndpointEcology(Ecology):

@@ -37,7 +37,7 @@ def endpoint_files(ecology: EndpointEcology, task: TaskSpecification, method: Me
 
 
 def _trustworthy(url: str) -> bool:
-    """Whether nobody between this machine and the endpoint can change what it answers."""
+    """Whether what it answers cannot be changed between the endpoint and this machine."""
     where = urlsplit(url)
     try:
         return where.scheme == "https" or where.hostname == "localhost" or ip_address(where.hostname or "").is_loopback

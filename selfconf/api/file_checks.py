@@ -1,4 +1,4 @@
-"""The close looks of `validate` over many files: shared among processes, and remembered from one run to the next.
+"""The full checks of `validate` over many files: shared among processes, and remembered from one run to the next.
 
 Processes are forked: a validating program has no other threads, and what is loaded is loaded once.
 """
@@ -21,34 +21,34 @@ from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf.validation import CheckEach, FileChecker, UnclearedFile
 
 WORTH = 16
-"""Close looks that take about as long as starting a process."""
+"""Full checks that take about as long as starting a process."""
 PROGRAMS = ("selfconf", "pyshacl", "rdflib", "pyoxigraph")
-_judge: FileChecker | None = None
+_checker: FileChecker | None = None
 
 
-def shared(judge: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
-    """Look at each suspect, in as many processes as there are processors to use, where that pays."""
+def shared(checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
+    """Check each suspect, in as many processes as there are processors to use, where that pays."""
     processes = min(os.cpu_count() or 1, len(suspects) // WORTH)
     if processes < 2:
-        yield from map(judge, suspects)
+        yield from map(checker, suspects)
         return
-    yield judge(suspects[0])  # loads what each process will need
-    with multiprocessing.get_context("fork").Pool(processes, _begin, (judge,)) as pool:
-        yield from pool.imap(_look, suspects[1:], chunksize=4)
+    yield checker(suspects[0])  # loads what each process will need
+    with multiprocessing.get_context("fork").Pool(processes, _begin, (checker,)) as pool:
+        yield from pool.imap(_checked, suspects[1:], chunksize=4)
 
 
-def _begin(judge: FileChecker) -> None:
-    global _judge
-    _judge = judge
+def _begin(checker: FileChecker) -> None:
+    global _checker
+    _checker = checker
 
 
-def _look(suspect: UnclearedFile) -> list[Diagnostic]:
-    assert _judge is not None
-    return _judge(suspect)
+def _checked(suspect: UnclearedFile) -> list[Diagnostic]:
+    assert _checker is not None
+    return _checker(suspect)
 
 
 class Remembered:
-    """Close looks whose outcomes are kept in a file, of the last run only; it depends on nothing but what is hashed."""
+    """Full checks whose outcomes are kept in a file, of the last run only; it depends on nothing but what is hashed."""
 
     def __init__(self, folder: Path, paths: Iterable[str], each: CheckEach = shared) -> None:
         """`paths` are what is validated: each selection of files has a memory of its own."""
@@ -56,13 +56,13 @@ class Remembered:
         self._file = folder / "validate" / f"{hashlib.blake2s(absolute.encode(), digest_size=8).hexdigest()}.json"
         self._each, self._versions = each, {name: version(name) for name in PROGRAMS}
 
-    def __call__(self, judge: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
+    def __call__(self, checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
         """What is remembered, and then what is not."""
         known = self._recalled()
-        keys = [judge.key(suspect) for suspect in suspects]
+        keys = [checker.key(suspect) for suspect in suspects]
         outcomes = {key: known[key] for key in keys if key in known}
         unknown = {key: suspect for key, suspect in zip(keys, suspects, strict=True) if key not in outcomes}
-        outcomes.update(zip(unknown, self._each(judge, list(unknown.values())), strict=True))
+        outcomes.update(zip(unknown, self._each(checker, list(unknown.values())), strict=True))
         if outcomes.keys() != known.keys():
             self._keep(outcomes)
         yield from (outcomes[key] for key in keys)
@@ -77,7 +77,7 @@ class Remembered:
             return {}  # none yet, or not one of ours
 
     def _keep(self, outcomes: dict[str, list[Diagnostic]]) -> None:
-        """Write it so that nobody ever reads half of it; a memory that cannot be written is done without."""
+        """Replace the file as a whole, so that no reader sees half of it; without it where it cannot be written."""
         entries = {key: [asdict(found) for found in problems] for key, problems in outcomes.items()}
         with contextlib.suppress(OSError):
             self._file.parent.mkdir(parents=True, exist_ok=True)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
 from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, configure
+from selfconf.api.arguments import Paths, option
 from selfconf.api.ecology import Ecology
 from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.task import TaskSpecification
@@ -35,7 +35,14 @@ _Result = TypeVar("_Result")
 
 
 class LivingEcology(Ecology):
-    """Everything that is alive under one name, as seen over the network; use it in a `with` statement."""
+    """Everything that is alive under one name, as seen over the network; use it in a `with` statement.
+
+    >>> with join() as living:
+    ...     for component in living.components:
+    ...         print(component.short, living.state(component))
+    clock dormant
+    display dormant
+    """
 
     def __init__(self, name: str, endpoints: Sequence[str]) -> None:
         """Connects; raises NetworkError if no site of the ecology answers."""
@@ -131,13 +138,21 @@ class LivingEcology(Ecology):
         *,
         strategy: str = "first",
         reasoning: str = "syntactic",
-        ontologies: Sequence[str | Path] = (),
+        ontologies: Paths = (),
         steps: int | None = None,
         seconds: float | None = None,
+        what_if: bool = False,
     ) -> Answer | Refusal | Undecided:
         """What `selfconf.configure` answers for this ecology, as it is now. Changes nothing."""
         return configure(
-            task, self, strategy=strategy, reasoning=reasoning, ontologies=ontologies, steps=steps, seconds=seconds
+            task,
+            self,
+            strategy=strategy,
+            reasoning=reasoning,
+            ontologies=ontologies,
+            steps=steps,
+            seconds=seconds,
+            what_if=what_if,
         )
 
     def run(
@@ -148,7 +163,7 @@ class LivingEcology(Ecology):
         wait: bool = False,
         strategy: str = "first",
         reasoning: str = "syntactic",
-        ontologies: Sequence[str | Path] = (),
+        ontologies: Paths = (),
         steps: int | None = None,
         seconds: float | None = None,
     ) -> Run:
@@ -158,7 +173,7 @@ class LivingEcology(Ecology):
         ecology to change where there is no configuration.
         """
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
-        return Run(task, method, self.name, self.endpoints, Policy(policy), wait)
+        return Run(task, method, self.name, self.endpoints, option(Policy, "policy", policy), wait)
 
     def stop(self, configurator: str | None = None) -> tuple[str, ...]:
         """Take down what one configurator has deployed, or all of them; the names of those that were stopped.
@@ -208,5 +223,10 @@ def join(ecology: str | None = None, *, connect: Sequence[str] = ()) -> LivingEc
 
     `connect` are endpoints of sites, such as `tcp/127.0.0.1:7447`; without them the sites on this machine. Joining
     reads; nothing changes before `run`. Raises NetworkError, saying what to try, if there is no such ecology.
+
+    >>> with join() as living:
+    ...     answer = living.configure(template("examples/clock/tell-the-time.ttl"))
+    ...     answer["screen"], living.tasks
+    ((<https://example.org/my-home#display>,), ())
     """
     return LivingEcology(*rendezvous.find(ecology, list(connect)))

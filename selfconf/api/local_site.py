@@ -37,9 +37,9 @@ class SiteProcess:
             raise AuthorError("a site watches the files of its advertisements, so give files to --ads, not -")
         for path in self.paths:
             existing(path)
-        self.ecology = ecology or f"run-{secrets.token_hex(3)}"
+        ecology, self._connect = rendezvous.asked_for(ecology, connect)
+        self.ecology = f"run-{secrets.token_hex(3)}" if ecology is None else ecology
         self.name = f"s{secrets.token_hex(3)}"
-        self._connect = tuple(connect)
         self._process: subprocess.Popen[bytes] | None = None
         self.endpoint = ""
         """Where it listens."""
@@ -103,5 +103,9 @@ class SiteProcess:
 
 
 def sites(ecology: str | None = None) -> tuple[LocalSite, ...]:
-    """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each."""
+    """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each.
+
+    >>> [site.site for site in sites()]
+    ['home']
+    """
     return tuple(rendezvous.local_sites(ecology))

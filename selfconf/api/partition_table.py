@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 
 from selfconf.api.answer import Inquiry, Method
+from selfconf.api.arguments import Paths
 from selfconf.api.ecology import Ecology
+from selfconf.api.tables import Tabular
 from selfconf.api.task import TaskSpecification
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.partition import Candidate
 from selfconf.model.template import Role
 from selfconf.model.term import IRI
+from selfconf.model.wording import listed
 from selfconf.rdf.eligibility import CompiledRole, Exclusion, exclusions
-from selfconf.render import Names, html_table, table
+from selfconf.render import Names
 
 
-class RolePartition:
+class RolePartition(Tabular):
     """The candidates of one role, and what keeps the other components out."""
 
     def __init__(self, inquiry: Inquiry, role: Role, compiled: CompiledRole, candidates: Sequence[Candidate]) -> None:
@@ -38,15 +40,30 @@ class RolePartition:
         return tuple(exclusions(partitioner, self._compiled, frozenset(self.eligible), self._inquiry.ecology))
 
     def obstacles(self, component: IRI) -> tuple[Obstacle, ...]:
-        """What keeps a component out of the role; nothing if it is eligible."""
-        return next((one.obstacles for one in self.excluded if one.component == component), ())
+        """What keeps a component out of the role; nothing if it is eligible.
+
+        Raises KeyError for a component that the ecology does not have.
+        """
+        if component in self.eligible:
+            return ()
+        for one in self.excluded:
+            if one.component == component:
+                return one.obstacles
+        raise KeyError(f"the ecology has no component {component!r}")
 
     def __repr__(self) -> str:
-        names = ", ".join(component.short for component in self.eligible) or "no component"
-        return f"<role {self.role.iri.short}: {names}>"
+        return f"<role {self.role.iri.short}: {listed(one.short for one in self.eligible) or 'no component'}>"
+
+    def _head(self) -> Sequence[str]:
+        return "component", "eligible", "what keeps it out"
+
+    def _cells(self) -> Iterator[list[str]]:
+        names = self._inquiry.task.names
+        yield from ([names(component), str(number), ""] for number, component in enumerate(self.eligible, 1))
+        yield from ([names(one.component), "no", ", ".join(map(str, one.obstacles))] for one in self.excluded)
 
 
-class PartitionTable(Mapping[str, RolePartition]):
+class PartitionTable(Tabular, Mapping[str, RolePartition]):
     """F1 ... Fn by the local name, CURIE or IRI of the role, in the order of the roles; prints as a table."""
 
     def __init__(self, inquiry: Inquiry) -> None:
@@ -77,19 +94,15 @@ class PartitionTable(Mapping[str, RolePartition]):
     def __len__(self) -> int:
         return len(self.roles)
 
-    def _rows(self) -> tuple[list[str], list[list[str]]]:
-        rows = [
-            [self.names(one.role.iri), str(number), self.names(component)]
-            for one in self.roles
-            for number, component in enumerate(one.eligible or (IRI(""),), 1 if one.eligible else 0)
-        ]
-        return ["role", "", "eligible, in the order of trying"], rows
+    def _head(self) -> Sequence[str]:
+        return "role", "", "eligible, in the order of trying"
 
-    def __repr__(self) -> str:
-        return table(*self._rows())
-
-    def _repr_html_(self) -> str:
-        return html_table(*self._rows())
+    def _cells(self) -> Iterator[list[str]]:
+        for one in self.roles:
+            name = self.names(one.role.iri)
+            yield from ([name, str(number), self.names(found)] for number, found in enumerate(one.eligible, 1))
+            if not one.eligible:
+                yield [name, "", "no component"]
 
 
 def partition(
@@ -97,7 +110,7 @@ def partition(
     ecology: Ecology,
     *,
     reasoning: str = "syntactic",
-    ontologies: Sequence[str | Path] = (),
+    ontologies: Paths = (),
 ) -> PartitionTable:
     """The partition of an ecology by the roles of a task: which components are eligible, and why the others are not.
 

@@ -42,7 +42,7 @@ class Places:
         else:
             place = self._ecology[named].profile.place if named in self._ecology else None
         if place is None or not Path(place.source).is_file():
-            return None  # it comes from another machine, whose lines nobody here can look up
+            return None  # it comes from another machine, whose lines cannot be looked up here
         if place.source not in self._read:
             self._read[place.source] = _positions(place.source)
         found = self._read[place.source]

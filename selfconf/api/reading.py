@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import gc
+import re
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
 from selfconf import files
 from selfconf.api.ecology import Ecology, EndpointEcology, LoadedEcology
@@ -22,17 +23,31 @@ if TYPE_CHECKING:
     import rdflib
 
 
+@runtime_checkable
 class _Graph(Protocol):
     """An rdflib graph, as far as it matters here."""
 
     def serialize(self, *, format: str) -> str: ...
 
+    def namespaces(self) -> Iterable[tuple[str, str]]: ...
 
-def read(*sources: str | Path | rdflib.Graph) -> Ecology:
-    """The ecology that files, folders, Turtle text, rdflib graphs, or one SPARQL endpoint describe.
+
+@runtime_checkable
+class _Dataset(Protocol):
+    """An rdflib dataset, as far as it matters here."""
+
+    def graphs(self) -> Iterable[_Graph]: ...
+
+
+Source: TypeAlias = "str | Path | rdflib.Graph"
+
+
+def read(*sources: Source | Iterable[Source]) -> Ecology:
+    """The ecology that files, folders, Turtle text, rdflib graphs, or one SPARQL endpoint describe, or lists of them.
 
     A string that is the URL of an endpoint is asked when a task needs its advertisements; a string with a line break,
-    or that begins with a prefix, is Turtle; any other string is a path. A folder stands for all *.ttl below it.
+    or that begins as only Turtle does (`@prefix`, `<`, `[`), is Turtle; any other string is a path. A folder stands for
+    all *.ttl below it.
     `left_out` of the ecology names the advertisements that do not count.
 
     Raises AuthorError for what is not there, cannot be read or is not Turtle.
@@ -41,12 +56,13 @@ def read(*sources: str | Path | rdflib.Graph) -> Ecology:
     >>> len(home.components)
     2
     """
-    endpoints = [str(source) for source in sources if is_endpoint(source)]
+    given = [one for source in sources for one in (source if isinstance(source, list | tuple) else [source])]
+    endpoints = [str(source) for source in given if is_endpoint(source)]
     if endpoints:
-        if len(sources) > 1:
+        if len(given) > 1:
             raise AuthorError("a SPARQL endpoint is an ecology by itself; read the other sources by themselves")
         return EndpointEcology(endpoints[0])
-    return LoadedEcology(*gathered(_texts(sources)), names=tuple(map(_name, sources)))
+    return LoadedEcology(*gathered(_texts(given)), names=tuple(map(_name, given)))
 
 
 def is_endpoint(source: object) -> bool:
@@ -54,11 +70,12 @@ def is_endpoint(source: object) -> bool:
     return isinstance(source, str) and source.startswith(("http://", "https://")) and len(source.split()) == 1
 
 
+_BEGINS_TURTLE = re.compile(r"\s*(@prefix\b|@base\b|prefix\s|base\s*<|<|\[)", re.IGNORECASE)
+
+
 def is_turtle(source: object) -> bool:
     """Whether a string is Turtle text and not a path."""
-    return isinstance(source, str) and (
-        "\n" in source or source.lstrip()[:7].lower() in ("@prefix", "prefix ", "@base <")
-    )
+    return isinstance(source, str) and ("\n" in source or _BEGINS_TURTLE.match(source) is not None)
 
 
 Text = tuple[bytes, str, "str | None"]
@@ -68,8 +85,8 @@ Text = tuple[bytes, str, "str | None"]
 def _texts(sources: Iterable[object]) -> Iterator[Text]:
     paths: list[Path] = []
     for source in sources:
-        if isinstance(source, Path) or (isinstance(source, str) and not is_turtle(source)):
-            paths.append(Path(source))
+        if _is_path(source):
+            paths.append(_path(source))
         else:
             yield text_of(source)
     yield from map(file_text, listed_files(paths))
@@ -77,14 +94,30 @@ def _texts(sources: Iterable[object]) -> Iterator[Text]:
 
 def text_of(source: object) -> Text:
     """One document: a file, Turtle text, or an rdflib graph."""
-    if isinstance(source, Path) or (isinstance(source, str) and not is_turtle(source)):
-        return file_text(Path(source))
+    if _is_path(source):
+        return file_text(_path(source))
     if isinstance(source, str):
         return source.encode(), "<text>", None
-    graph: _Graph = source  # type: ignore[assignment]  # what else has a `serialize`, is told by the call itself
-    if not hasattr(source, "serialize"):
+    if not isinstance(source, _Graph):
         raise AuthorError(f"a source is a path, Turtle text, an rdflib graph or an endpoint, not {source!r}")
-    return graph.serialize(format="nt").encode(), "<graph>", None
+    return _serialized(source).encode(), "<graph>", None
+
+
+def _serialized(graph: _Graph) -> str:
+    """Turtle with the prefixes of a graph, by which its terms can be named; of a dataset all of its graphs."""
+    prefixes = (f"@prefix {prefix}: <{base}> ." for prefix, base in graph.namespaces())
+    parts = graph.graphs() if isinstance(graph, _Dataset) else [graph]
+    return "\n".join([*prefixes, *(part.serialize(format="nt") for part in parts)])
+
+
+def _is_path(source: object) -> TypeGuard[str | Path]:
+    return isinstance(source, Path) or (isinstance(source, str) and not is_turtle(source))
+
+
+def _path(source: str | Path) -> Path:
+    if not str(source):
+        raise AuthorError("an empty text is no path and no Turtle; the current folder is '.'")
+    return Path(source)
 
 
 def file_text(path: Path) -> Text:
@@ -99,7 +132,7 @@ def file_name(path: Path) -> str:
 
 
 def _name(source: object) -> str:
-    return str(source) if isinstance(source, Path) or not is_turtle(source) else "<text>"
+    return str(source) if _is_path(source) else "<text>" if isinstance(source, str) else "<graph>"
 
 
 def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, ...]]:
@@ -120,7 +153,7 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
 
 @contextmanager
 def collector_at_rest() -> Iterator[None]:
-    """No garbage collection while much is read that will stay; afterwards the collector leaves it alone.
+    """No garbage collection while much is read that will stay; afterwards it counts as old, and is looked at rarely.
 
     Values are not garbage, but looking at a million of them again and again takes as long as making them.
     """
@@ -129,7 +162,9 @@ def collector_at_rest() -> Iterator[None]:
     try:
         yield
     finally:
-        gc.freeze()
+        if not gc.get_freeze_count():  # a program that has frozen something itself does so for its own reasons
+            gc.freeze()
+            gc.unfreeze()  # moves everything to the oldest generation, without a look at it
         if collecting:
             gc.enable()
 

@@ -31,7 +31,15 @@ CHECK = 0.5
 class Run:
     """A task that runs in a living ecology; use it in a `with` statement, which takes it down at its end.
 
-    The run is driven by `events`, in the thread that reads them: read on for as long as it should be watched.
+    The run is driven by `events`, in the thread that reads them: read on for as long as it should be watched. While the
+    block deals with an event, the run notices no failure and answers no other program, so deal with it briefly.
+
+    >>> with join() as living, living.run(template("examples/clock/tell-the-time.ttl")) as run:
+    ...     for event in run.events():
+    ...         if event.act == "running":
+    ...             print(event.configuration.components)
+    ...             run.stop()
+    (<https://example.org/my-home#clock>, <https://example.org/my-home#display>)
     """
 
     def __init__(

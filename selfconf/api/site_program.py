@@ -10,7 +10,7 @@ from pathlib import Path
 from selfconf import rendezvous
 from selfconf.api.reading import existing
 from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, ZenohBus, router
-from selfconf.errors import NetworkError
+from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.keys import checked_name
 from selfconf.render import count
 from selfconf.rendezvous import LocalSite
@@ -20,7 +20,7 @@ from selfconf.termination import Termination
 
 def serve(
     paths: Sequence[Path],
-    ecology: str,
+    ecology: str | None,
     name: str | None,
     listen: str | None,
     connect: Sequence[str],
@@ -33,6 +33,9 @@ def serve(
     """
     for path in paths:
         existing(path)
+    ecology, connect = rendezvous.asked_for(ecology, connect)
+    if ecology is None:
+        raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
     checked_name(ecology, "an ecology")
     name = checked_name(name or f"s{secrets.token_hex(3)}", "a site")
     shelf = Shelf(paths, complain)

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.api.reading import Text, text_of
+from selfconf.api.reading import text_of
+from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, TemplateError
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import tasks, turtle
 from selfconf.rdf.tasks import TaskDocument
 from selfconf.rdf.vocabulary import XSD
-from selfconf.render import Names, html_table, table
+from selfconf.render import Names
 
 if TYPE_CHECKING:
     import rdflib
@@ -26,8 +27,17 @@ plain words; a number or truth value stands for the literal of its kind."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class TaskSpecification:
-    """A template with values for some of its parameters. Immutable: `bind` returns another one."""
+class TaskSpecification(Tabular):
+    """A template with values for some of its parameters. Immutable: `bind` returns another one.
+
+    >>> template("examples/clock/tell-the-time.ttl")
+    <task :tell-the-time>
+               name     asks for, or is
+    ---------  -------  ---------------
+    role       :source  :Clock
+    role       :screen  rob:Display
+    parameter  room     (free)
+    """
 
     document: TaskDocument
 
@@ -68,18 +78,18 @@ class TaskSpecification:
         """The task with defaults filled in and every value checked. Raises BindingError."""
         return TaskSpecification(tasks.complete(self.document))
 
-    def _rows(self) -> tuple[list[str], list[list[str]]]:
-        names = self.names
-        rows = [["role", names(role.iri), ", ".join(map(names, role.types))] for role in self.roles]
-        bound = self.bindings
-        rows += [["parameter", p.name, names(bound[p.name]) if p.name in bound else "(free)"] for p in self.parameters]
-        return ["", "name", "asks for, or is"], rows
+    def _head(self) -> Sequence[str]:
+        return "", "name", "asks for, or is"
+
+    def _cells(self) -> Iterator[list[str]]:
+        names, bound = self.names, self.bindings
+        yield from (["role", names(role.iri), ", ".join(map(names, role.types))] for role in self.roles)
+        for parameter in self.parameters:
+            known = parameter.name in bound
+            yield ["parameter", parameter.name, names(bound[parameter.name]) if known else "(free)"]
 
     def __repr__(self) -> str:
-        return f"<task {self.names(self.iri)}>\n{table(*self._rows())}"
-
-    def _repr_html_(self) -> str:
-        return html_table(*self._rows())
+        return f"<task {self.names(self.iri)}>\n{super(TaskSpecification, self).__repr__()}"
 
 
 def template(source: str | Path | rdflib.Graph, name: str | None = None) -> TaskSpecification:
@@ -95,14 +105,14 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
     document = turtle.parse(text, source_name, base)
     wanted = None
     if name is not None:
-        term = tasks.read_term(name, document.prefixes)
+        term = name if isinstance(name, IRI) else tasks.read_term(name, document.prefixes)
         if not isinstance(term, IRI):
             raise BindingError(f"a template is named by a CURIE or an <IRI>, not by {name!r}")
         wanted = term
     try:
         return TaskSpecification(tasks.read_task(document, wanted))
     except TemplateError as error:
-        raise _located((text, source_name, base), error) from None
+        raise tasks.placed(error, text.decode(), base or "file:///") from None
 
 
 def pairs(bound: Iterable[str]) -> dict[str, str]:
@@ -118,6 +128,10 @@ def pairs(bound: Iterable[str]) -> dict[str, str]:
     return found
 
 
+_UNUSUAL = {"inf": "INF", "-inf": "-INF", "nan": "NaN"}
+"""What XSD writes otherwise than Python does."""
+
+
 def _text(name: str, value: Value) -> str | Term:
     """A value as the reader of terms takes it: text, or a term."""
     if isinstance(value, bool):
@@ -125,7 +139,7 @@ def _text(name: str, value: Value) -> str | Term:
     if isinstance(value, int):
         return Literal(str(value), XSD.integer)
     if isinstance(value, float):
-        return Literal(repr(value), XSD.double)
+        return Literal(_UNUSUAL.get(repr(value), repr(value)), XSD.double)
     if isinstance(value, Decimal):
         return Literal(str(value), XSD.decimal)
     if isinstance(value, IRI | Literal):
@@ -133,20 +147,11 @@ def _text(name: str, value: Value) -> str | Term:
     if hasattr(value, "n3"):  # one of rdflib's terms; they are strings too
         from selfconf.rdf.rdflib_terms import from_rdflib
 
-        return from_rdflib(value)  # type: ignore[arg-type]  # told by the line above
+        value = from_rdflib(value)  # type: ignore[arg-type]  # told by the line above
+        if not isinstance(value, BlankNode):
+            return value
+    if not isinstance(value, str):
+        raise BindingError(f"a parameter is bound to text, a number, an IRI or a Literal; {name} is not, by {value!r}")
     if isinstance(value, BlankNode) or value.startswith("_:"):
         raise BindingError(f"{value} is a blank node, which has a name in its own file alone; bind {name} to an IRI")
     return value
-
-
-def _located(source: Text, error: TemplateError) -> TemplateError:
-    """The error with the line and column of the statement that it is about."""
-    from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # rdflib, for mistakes alone
-
-    text, name, base = source
-    try:
-        _, positions = parse_with_positions(text.decode(), name, base or "file:///")
-    except (NotTurtleError, RecursionError):  # rdflib's grammar and Oxigraph's differ in corners
-        return error
-    place = positions.at_the_end_of(error.subject, error.steps)
-    return error if place is None else TemplateError(error.message, file=name, line=place.line, column=place.column)

@@ -3,21 +3,45 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from selfconf import files, library
+from selfconf.api.arguments import Paths, listed_paths
 from selfconf.api.file_checks import Remembered, shared
+from selfconf.api.tables import Tabular
 from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
 from selfconf.rdf import validation
 from selfconf.rdf.validation import CheckEach, SourceText
+from selfconf.render import count, html_text
 
 LARGEST_FILE = 64 << 20
 """A file of more bytes is not read."""
 
 
-def validate(paths: Iterable[str | Path], *, ontologies: Iterable[str | Path] = (), cache: bool = False) -> Report:
+@dataclass(frozen=True)
+class ValidationReport(Tabular, Report):
+    """A report as the library answers with it: prints a line for each problem, or a table in a notebook."""
+
+    def _head(self) -> Sequence[str]:
+        return "file", "line", "severity", "code", "message"
+
+    def _cells(self) -> Iterator[list[str]]:
+        for found in self.diagnostics:
+            yield [found.file, str(found.line), found.severity.value, found.code, found.message]
+
+    def __repr__(self) -> str:
+        counted = f"{count(self.errors, 'error')} and {count(self.warnings, 'warning')}"
+        said = f"<{counted} in {count(len(self.files), 'file')}>"
+        return f"{said}\n{super().__repr__()}" if self.diagnostics else said
+
+    def _repr_html_(self) -> str:
+        return super()._repr_html_() if self.diagnostics else html_text(repr(self))
+
+
+def validate(paths: Paths, *, ontologies: Paths = (), cache: bool = False) -> ValidationReport:
     """The problems of files and folders, as the command `validate` reports them; `-` is standard input.
 
     `cache` remembers what was found, and checks only what has changed since the last run over the same paths.
@@ -26,9 +50,10 @@ def validate(paths: Iterable[str | Path], *, ontologies: Iterable[str | Path] = 
     >>> validate(["examples/clock"]).conforms
     True
     """
-    names = [str(path) for path in paths]
+    names = [str(path) for path in listed_paths(paths)]
     each = _remembered(names) if cache else shared
-    return check(names, map(str, ontologies), each)
+    found = check(names, map(str, listed_paths(ontologies)), each)
+    return ValidationReport(found.files, found.diagnostics)
 
 
 def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach = map) -> Report:
@@ -64,7 +89,7 @@ def check_text(text: tuple[bytes, str, str | None]) -> Report:
 def _validated(sources: Iterable[SourceText], ontologies: Iterable[str], each: CheckEach) -> Report:
     shapes = [_load(path) for path in library.shapes()]
     known = [*map(_load, library.ontologies()), *_ontologies(ontologies)]
-    return validation.validate(sources, shapes, known, each)
+    return validation.validate_texts(sources, shapes, known, each)
 
 
 def _remembered(paths: Iterable[str]) -> CheckEach:

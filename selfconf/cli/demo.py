@@ -54,6 +54,11 @@ def run(given: argparse.Namespace) -> int:
             "PyBullet is missing; it has wheels for Python 3.10 and 3.11 on Linux x86_64; "
             "in the checkout, pip install '.[sim]'"
         )
+    if given.pictures != "none" and importlib.util.find_spec("mitsuba") is None:
+        raise InstallationError(
+            "Mitsuba, which renders the pictures, is missing; in the checkout, pip install '.[sim]', "
+            "or go without by --pictures none"
+        )
     if given.gui and not _display(os.environ.get("DISPLAY", "")):
         raise InstallationError("--gui opens a window, and there is no display; leave it out, the pictures need none")
     try:

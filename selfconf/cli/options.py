@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import math
 from collections.abc import Iterable
 from pathlib import Path
@@ -98,13 +99,18 @@ def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
 
 def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
     """The options by which a command finds the living ecology."""
-    parser.add_argument("--ecology", metavar="NAME", help="the ecology; by default the only one on this machine")
+    parser.add_argument(
+        "--ecology",
+        metavar="NAME",
+        help="the ecology (default: $SELFCONF_ECOLOGY, or else the only one on this machine)",
+    )
     parser.add_argument(
         "--connect",
         metavar="ENDPOINT",
         action="append",
         default=[],
-        help="where a site listens, such as tcp/127.0.0.1:7447; repeatable; by default the sites on this machine",
+        help="where a site listens, such as tcp/127.0.0.1:7447; repeatable (default: $SELFCONF_CONNECT, or else the"
+        " sites on this machine)",
     )
 
 
@@ -169,6 +175,7 @@ def read_files(paths: Iterable[Path]) -> Ecology:
 
     paths = list(paths)
     ecology = read(*paths)
+    gc.freeze()  # it stays until the command ends, so the collector need not look at a million values again and again
     complain_of(ecology)
     if not len(ecology):
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 EXAMPLE = """  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --ads examples/peis-home
   selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --endpoint http://127.0.0.1:7878/query"""
-RESULT_FORMATS = ("table", "json", "csv", "tsv", "turtle")
+ANSWER_FORMATS = ("table", "json", "csv", "tsv", "turtle")
 SECONDS, ROWS = 60.0, 100_000
 # All three are the library's (`selfconf.query`), which is not loaded to parse arguments; a test compares them.
 
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_ads_argument(parser)
     add_endpoint_argument(parser)
     add_ontology_argument(parser)
-    parser.add_argument("--format", choices=RESULT_FORMATS, default=RESULT_FORMATS[0], help="default: %(default)s")
+    parser.add_argument("--format", choices=ANSWER_FORMATS, default=ANSWER_FORMATS[0], help="default: %(default)s")
     parser.add_argument(
         "--seconds",
         metavar="S",

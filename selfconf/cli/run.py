@@ -157,7 +157,7 @@ class TextLines:
         self._began: float | None = None
 
     def __call__(self, event: RunEvent) -> None:
-        """Raises OSError if nobody reads the line."""
+        """Raises OSError if the line cannot be written."""
         from selfconf.model.run_event import TaskWaiting
         from selfconf.render.run_events import details, sentence
 
@@ -170,7 +170,7 @@ class TextLines:
 
 
 def json_lines(event: RunEvent) -> None:
-    """Reports an event to programs: a JSON object on a line of stdout. Raises OSError if nobody reads it."""
+    """Reports an event to programs: a JSON object on a line of stdout. Raises OSError if it cannot be written."""
     from selfconf.render.run_events import event_body
 
     print(json.dumps(event_body(event)), flush=True)

@@ -19,7 +19,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="advertisements: files, or folders with *.ttl below them",
     )
-    parser.add_argument("--ecology", metavar="NAME", required=True, help="the ecology that this site is part of")
+    parser.add_argument(
+        "--ecology", metavar="NAME", help="the ecology that this site is part of (default: $SELFCONF_ECOLOGY)"
+    )
     parser.add_argument("--name", metavar="SITE", help="the name of the site; by default one of its own")
     parser.add_argument(
         "--listen",
@@ -32,7 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="ENDPOINT",
         action="append",
         default=[],
-        help="where other sites listen; repeatable; those of the ecology on this machine are found by themselves",
+        help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
+        " are found by themselves",
     )
 
 

@@ -1,6 +1,6 @@
 """A terminal shows what strangers have written and is not steered by it: control characters become escapes.
 
-Names, labels, file names and the words of a failure come from whoever is on the network. A file or a program that
+Names, labels, file names and the words of a failure come from the network. A file or a program that
 reads the output gets it unchanged; only a terminal obeys `ESC [ 2 J`.
 
 Nor does what a command comes to depend on its readers: one may have seen enough, or never have been there.
@@ -10,17 +10,10 @@ from __future__ import annotations
 
 import io
 import os
-import re
 import sys
 from typing import TextIO
 
-# The controls of ASCII and Latin-1 but for tab and line feed, and those that change the direction of writing.
-_STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-
-
-def plain(text: str) -> str:
-    """The text with `\\x1b` and the like spelt out."""
-    return _STEERING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+from selfconf.model.wording import plain
 
 
 class Terminal(io.TextIOBase):

@@ -53,7 +53,7 @@ def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
 
 
 def _admitted(near: NearMiss, variables: Sequence[Variable]) -> tuple[int, ...]:
-    """What a near miss would let the variables be; values that nobody else states are bits beyond the domain."""
+    """What a near miss would let the variables be; values that no candidate states are bits beyond the domain."""
     masks: list[int] = []
     for variable in variables:
         allowed = near.allows.get(variable.parameter)

@@ -37,13 +37,18 @@ class ParameterSetting:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Who plays which role (in template order), every connection and setting, the values of parameters by name."""
+    """Which components play which role (in template order), all connections and settings, the bindings by name.
+
+    >>> answer = configure(template("examples/clock/tell-the-time.ttl"), home)
+    >>> isinstance(answer, Configuration), answer.components
+    (True, (<https://example.org/my-home#clock>, <https://example.org/my-home#display>))
+    """
 
     template: IRI
     assignments: tuple[Assignment, ...]
     connections: tuple[Connection, ...] = ()
     settings: tuple[ParameterSetting, ...] = ()
-    bindings: Mapping[str, Term] = field(default_factory=dict)
+    bindings: Mapping[str, Term] = field(default_factory=dict, hash=False)
 
     @property
     def components(self) -> tuple[IRI, ...]:

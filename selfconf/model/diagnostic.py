@@ -1,4 +1,4 @@
-"""What is wrong with a file, and where: one value for each problem, whoever found it and however it is
+"""What is wrong with a file, and where: one value for each problem, however it was found and is
 printed.
 """
 

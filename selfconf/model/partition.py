@@ -28,7 +28,7 @@ class Variable:
     """Whether the parameter lists its values itself (`sh:in`): it may have any of them, and no other."""
 
     def first(self, mask: int) -> Term | None:
-        """The first value that a mask allows, or None if it allows values that nobody names."""
+        """The first value that a mask allows, or None if it allows values outside the domain."""
         if mask < 0:
             return None
         return self.domain[(mask & -mask).bit_length() - 1]

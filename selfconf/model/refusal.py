@@ -43,7 +43,7 @@ class Contradiction:
 
 @dataclass(frozen=True, slots=True)
 class ValueUnknown:
-    """A parameter is set on a component, is not bound, and nobody says what it could be."""
+    """A parameter is set on a component, is not bound, and no candidate states a value for it."""
 
     code: ClassVar[str] = "value-unknown"
     role: IRI
@@ -98,19 +98,19 @@ class DerivationStep:
     signal: IRI
     sources: tuple[IRI, ...]
     optional: tuple[IRI, ...] = ()
-    """Those of the sources that ask for nobody (`sc:minCount 0`), so that their candidates do not count."""
+    """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
 
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
-        nobody = f"nobody left in {{}} issues a {self.signal.short}"
-        lack = _lack(self.sources, self.optional, nobody, f"no interaction feeds its input {self.input!r}")
+        none_issues = f"nobody left in {{}} issues a {self.signal.short}"
+        lack = _lack(self.sources, self.optional, none_issues, f"no interaction feeds its input {self.input!r}")
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
 
 
-def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], nobody: str, no_role: str) -> str:
-    """Why nobody feeds an input: `nobody` is said of the sources that are asked for somebody."""
+def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str, no_role: str) -> str:
+    """Why an input is not fed: `none_issues` is said of the sources that ask for at least one component."""
     asked = [source.short for source in sources if source not in optional]
-    said = [nobody.format(listed(asked))] if asked else [] if optional else [no_role]
+    said = [none_issues.format(listed(asked))] if asked else [] if optional else [no_role]
     return ", and ".join([*said, *(f"the role {role.short} asks for nobody (sc:minCount 0)" for role in optional)])
 
 
@@ -126,16 +126,16 @@ class InputUnfed:
     sources: tuple[IRI, ...]
     requirements: tuple[Requirement, ...] = ()
     consequences: tuple[DerivationStep, ...] = ()
-    """What follows from it, up to the role that nobody is left to play."""
+    """What follows from it, up to the role that has no candidate left."""
     optional: tuple[IRI, ...] = ()
-    """Those of the sources that ask for nobody (`sc:minCount 0`), so that their candidates do not count."""
+    """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the role or component that it speaks of is described, if that is known."""
 
     def __str__(self) -> str:
         name = f"the input {self.input!r} ({self.signal.short}) of {self.component.short}"
-        nobody = f"no candidate of {{}} issues a {self.signal.short} for it"
-        lack = _lack(self.sources, self.optional, nobody, f"no interaction feeds it in the role {self.role.short}")
+        none_issues = f"no candidate of {{}} issues a {self.signal.short} for it"
+        lack = _lack(self.sources, self.optional, none_issues, f"no interaction feeds it in the role {self.role.short}")
         return "; so ".join([f"{name} cannot be fed: {lack}", *map(str, self.consequences)])
 
 
@@ -157,7 +157,7 @@ class TooFewDistinct:
 
     @property
     def requirements(self) -> tuple[Requirement, ...]:
-        """The roles, and that nobody plays two parts."""
+        """The roles, and that no component plays two of them."""
         return (*map(RolePlayed, self.roles), OneRoleEach())
 
     def __str__(self) -> str:
@@ -201,7 +201,14 @@ Reason = Contradiction | ValueUnknown | TooFewEligible | InputUnfed | TooFewDist
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """No configuration: the reasons, the most likely cause first, near misses, repairs, and a hint if there is one."""
+    """No configuration: the reasons, the most likely cause first, near misses, repairs, and a hint if there is one.
+
+    >>> refusal = configure(template("examples/clock/tell-the-time.ttl").bind(room=":cellar"), home)
+    >>> bool(refusal), str(refusal.reasons[0])
+    (False, 'no component is eligible for the role screen')
+    >>> str(refusal.near_misses[0]), str(refusal.near_misses[0].place)
+    ('its place is kitchen, not cellar', 'examples/clock/display.ttl:5')
+    """
 
     template: IRI
     reasons: tuple[Reason, ...]
@@ -219,7 +226,12 @@ class Refusal:
 
 @dataclass(frozen=True, slots=True)
 class Undecided:
-    """What was allowed is used up, and there is neither a configuration nor a proof that there is none."""
+    """What was allowed is used up, and there is neither a configuration nor a proof that there is none.
+
+    >>> answer = configure(template("examples/watch.ttl"), read("examples/watch"), steps=1)
+    >>> isinstance(answer, Undecided), bool(answer)
+    (True, False)
+    """
 
     code: ClassVar[str] = "undecided"
     steps: int = 0

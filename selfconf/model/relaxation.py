@@ -1,6 +1,6 @@
 """Repairs: changes to an ecology or a template, each of which makes a refused task possible.
 
-A repair is a fact; it words itself as a request to whoever can do it. `code` is stable, for programs.
+A relaxation is a fact; it words itself as a request. `code` is stable, for programs.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class AskForFewer:
 
 @dataclass(frozen=True, slots=True)
 class AskForOne:
-    """A role that asks for nobody, though others need what it issues, makes the task possible by asking for one."""
+    """A role that asks for no component, though others need its output, makes the task possible by asking for one."""
 
     code: ClassVar[str] = "ask-for-one"
     role: IRI

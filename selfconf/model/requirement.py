@@ -35,7 +35,7 @@ class InputFed:
 
 @dataclass(frozen=True, slots=True)
 class OneValue:
-    """A free parameter, by name, has one value that suits everybody."""
+    """A free parameter, by name, has one value that all candidates chosen admit."""
 
     parameter: str
 

@@ -11,7 +11,13 @@ XSD_NAMESPACE = "http://www.w3.org/2001/XMLSchema#"
 
 
 class IRI(str):
-    """An absolute IRI, without the angle brackets."""
+    """An absolute IRI, without the angle brackets.
+
+    >>> IRI("https://example.org/my-home#clock")
+    <https://example.org/my-home#clock>
+    >>> IRI("https://example.org/my-home#clock").short
+    'clock'
+    """
 
     __slots__ = ()
 
@@ -43,7 +49,11 @@ _BARE = {
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A literal: lexical form, datatype and, for `rdf:langString`, a language tag."""
+    """A literal: lexical form, datatype and, for `rdf:langString`, a language tag.
+
+    >>> str(Literal("1.5", IRI("http://www.w3.org/2001/XMLSchema#decimal")))
+    '1.5'
+    """
 
     lexical: str
     datatype: IRI = STRING

@@ -1,11 +1,19 @@
-"""Lists in sentences."""
+"""Lists in sentences, and text that steers no terminal."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 MANY = 12
-"""More names than that are not read by anybody; the last ones become a number."""
+"""How many names are listed; the rest become a number."""
+# The controls of ASCII and Latin-1 but for tab and line feed, and those that change the direction of writing.
+_STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+
+
+def plain(text: str) -> str:
+    """The text with `\\x1b` and the like spelt out."""
+    return _STEERING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
 def listed(names: Iterable[str]) -> str:

@@ -1,4 +1,4 @@
-"""A SPARQL query in a process of its own, which can be ended: whoever asks may ask for more than there is time for.
+"""A SPARQL query in a process of its own, which can be ended: a question may ask for more than there is time for.
 
 `python -m selfconf.query` is the process: a line of JSON with the question and the dataset as N-Quads come in on
 stdin, the answer goes out on stdout. Time, rows and memory are limited; a query that brings the engine down (Oxigraph

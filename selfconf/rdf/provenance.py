@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from datetime import datetime, timezone
 from types import MappingProxyType
 
@@ -21,10 +22,12 @@ def moment(seconds: float) -> Literal:
 
 def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
     """A name for a deployed configuration: what it is and when."""
-    digest = hashlib.blake2s(repr((configuration, epoch)).encode(), digest_size=8).hexdigest()
+    plain = replace(configuration, bindings=dict(configuration.bindings))  # whatever kind of mapping it holds
+    digest = hashlib.blake2s(repr((plain, epoch)).encode(), digest_size=8).hexdigest()
     return IRI(f"urn:selfconf:configuration:{digest}")
 
 
+# complexity: one line for each thing that is stated, in the order in which it is read
 def configuration_triples(
     configuration: Configuration,
     name: IRI,

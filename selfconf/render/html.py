@@ -1,6 +1,6 @@
 """Answers as HTML for notebooks: tables, and a configuration as a diagram that needs no script.
 
-Everything that is shown was written by somebody else, so every text is escaped.
+What is shown may come from the network, so every text is escaped.
 """
 
 from __future__ import annotations

@@ -58,9 +58,9 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
     if optimum.missing:
         terms = "1 term is" if optimum.unknown == 1 else f"{optimum.unknown} terms are"
         lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")
-    nobody = set(unknown)
-    lines += [f"    nobody in the ecology has a number for {name(one)}" for one in sorted(nobody)]
-    told = dict.fromkeys(pair for pair in optimum.missing if pair[1] not in nobody)
+    unstated = set(unknown)
+    lines += [f"    nobody in the ecology has a number for {name(one)}" for one in sorted(unstated)]
+    told = dict.fromkeys(pair for pair in optimum.missing if pair[1] not in unstated)
     lines += [f"    {name(component)} has no number for {name(wanted)}" for component, wanted in told]
     return "\n".join(lines)
 

@@ -66,12 +66,8 @@ def draw_wiring(wiring: Wiring) -> Element:
 def arrange(wiring: Wiring) -> tuple[list[Box], list[list[Point]]]:
     """Return the boxes of a configuration, and its links as the points of Bezier curves, each with its end last."""
     boxes = [_sized(part) for part in wiring.parts]
-    graph = _laid_out(wiring, boxes)
-    for _, column in groupby(sorted(boxes, key=lambda box: box.x + box.width / 2), lambda box: box.x + box.width / 2):
-        members = list(column)
-        for box in members:
-            box.width = max(member.width for member in members)
-    # Once more, with boxes of one column equally wide.
+    _laid_out(wiring, boxes)
+    _widen_columns(boxes)
     graph = _laid_out(wiring, boxes)
     curves = []
     for edge in graph.edges():
@@ -83,6 +79,19 @@ def arrange(wiring: Wiring) -> tuple[list[Box], list[list[Point]]]:
     for box in boxes:
         box.x, box.y = box.x + right, box.y + HEAD - top
     return boxes, [[(x + right, y + HEAD - top) for x, y in curve] for curve in curves]
+
+
+def _widen_columns(boxes: Sequence[Box]) -> None:
+    """Make the boxes of each column as wide as the widest of them."""
+    for _, column in groupby(sorted(boxes, key=_middle), _middle):
+        members = list(column)
+        widest = max(member.width for member in members)
+        for box in members:
+            box.width = widest
+
+
+def _middle(box: Box) -> float:
+    return box.x + box.width / 2
 
 
 def _sized(part: Part) -> Box:

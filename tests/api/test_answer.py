@@ -1,16 +1,21 @@
-"""`configure`: a configuration that is true and can be looked into, or a refusal that is false and explained."""
+"""An answer is a value: true or false, read by role, immutable, and prints well."""
 
 from __future__ import annotations
 
+import copy
+import pickle
+from dataclasses import FrozenInstanceError
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+import rdflib
 
+import selfconf as sc
 from selfconf import configure, read, template
 from selfconf.api.answer import Answer, Inquiry, Method
 from selfconf.composition import Strategy
-from selfconf.errors import BindingError, SelfconfError, TemplateError
+from selfconf.errors import AuthorError, BindingError, ProgrammerError, SelfconfError, TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Reasoning
 from selfconf.model.refusal import Refusal, Undecided
@@ -19,9 +24,190 @@ from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import SC
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
+TRACKER = sc.IRI("https://w3id.org/selfconf/peis-home#person-tracker")
+
+
+@pytest.fixture
+def answer(task: sc.TaskSpecification, home: sc.Ecology) -> Answer:
+    """The configuration of the paper."""
+    found = sc.configure(task, home)
+    assert isinstance(found, Answer)
+    return found
+
+
+@pytest.fixture
+def refusal(clock: sc.TaskSpecification) -> sc.Refusal:
+    """A refusal with a near miss."""
+    found = sc.configure(clock.bind(room=":cellar"), sc.read("examples/clock"))
+    assert isinstance(found, sc.Refusal)
+    return found
+
+
+def test_a_configuration_is_true_and_neither_a_refusal_nor_what_is_undecided_is(
+    answer: Answer, refusal: sc.Refusal
+) -> None:
+    undecided = sc.configure(sc.template("examples/watch.ttl"), sc.read("examples/watch"), steps=1)
+    assert isinstance(undecided, sc.Undecided)
+    assert (bool(answer), bool(refusal), bool(undecided)) == (True, False, False)
+    assert isinstance(answer, sc.Configuration)
+
+
+@pytest.mark.parametrize("role", ["position", ":position", "https://w3id.org/selfconf/peis-home#position"])
+def test_the_components_of_a_role_are_found_by_local_name_curie_and_iri(role: str, answer: Answer) -> None:
+    assert answer[role] == (TRACKER,)
+    assert role in answer
+
+
+def test_the_roles_are_listed_and_an_unknown_one_is_answered_with_them(answer: Answer) -> None:
+    assert list(answer) == ["sonar", "encoder", "position", "control", "drive"]
+    assert [role.short for role in answer.roles] == list(answer)
+    assert "pilot" not in answer
+    with pytest.raises(KeyError, match="the roles are sonar, encoder"):
+        answer["pilot"]
+
+
+def test_an_answer_can_be_compared_hashed_copied_and_pickled(
+    answer: Answer, refusal: sc.Refusal, task: sc.TaskSpecification, home: sc.Ecology
+) -> None:
+    assert answer == sc.configure(task, home)
+    assert len({answer, sc.configure(task, home)}) == 1
+    for value in (answer, refusal):
+        for twin in (copy.copy(value), copy.deepcopy(value), pickle.loads(pickle.dumps(value))):
+            assert twin == value
+            assert repr(twin) == repr(value)
+
+
+def test_an_answer_does_not_change(answer: Answer, refusal: sc.Refusal) -> None:
+    with pytest.raises(FrozenInstanceError):
+        answer.assignments = ()  # type: ignore[misc]  # that is what is tested
+    with pytest.raises(TypeError):
+        answer.bindings["robot"] = TRACKER  # type: ignore[index]  # that is what is tested
+    with pytest.raises(FrozenInstanceError):
+        refusal.reasons = ()  # type: ignore[misc]  # that is what is tested
+    with pytest.raises(FrozenInstanceError):
+        refusal.reasons[0].place = None  # type: ignore[misc]  # that is what is tested
+
+
+def test_the_turtle_of_an_answer_is_a_configuration_that_validates(answer: Answer, tmp_path: Path) -> None:
+    graph = rdflib.Graph().parse(data=answer.to_turtle(), format="turtle")
+    sc_ = rdflib.Namespace("https://w3id.org/selfconf#")
+    assert len(set(graph.subjects(rdflib.RDF.type, sc_.Connection))) == len(answer.connections)
+    (tmp_path / "answer.ttl").write_text(answer.to_turtle())
+    report = sc.validate([tmp_path, "examples/navigate.ttl", "examples/peis-home"])
+    assert report.conforms, report
+
+
+def test_reasons_near_misses_and_repairs_have_sentences_and_places(refusal: sc.Refusal) -> None:
+    (reason,), (miss,) = refusal.reasons, refusal.near_misses
+    assert (reason.code, str(reason.place)) == ("too-few-eligible", "examples/clock/tell-the-time.ttl:15")
+    assert (str(miss), str(miss.place)) == ("its place is kitchen, not cellar", "examples/clock/display.ttl:5")
+    assert {repair.code for repair in refusal.repairs} >= {"accept-near-miss", "add-components"}
+    assert all(repair.place for repair in refusal.repairs)
+
+
+def test_a_refusal_of_what_has_no_file_has_no_places(clock: sc.TaskSpecification) -> None:
+    ecology = sc.read(*(Path(f"examples/clock/{name}.ttl").read_text() for name in ("clock", "display")))
+    refusal = sc.configure(clock.bind(room=":cellar"), ecology)
+    assert isinstance(refusal, sc.Refusal)
+    assert [miss.place for miss in refusal.near_misses] == [None]
+
+
+def test_answers_print_on_one_screen(answer: Answer, refusal: sc.Refusal) -> None:
+    assert repr(answer).startswith("<configured :navigate\n  :sonar     :sonar-array\n")
+    assert repr(refusal).startswith("<no configuration for :tell-the-time\n  because no component is eligible")
+    assert "[examples/clock/display.ttl:5]" in str(refusal)
+    assert max(repr(answer).count("\n"), repr(refusal).count("\n")) < 25
+
+
+def test_a_notebook_shows_a_configuration_as_a_diagram_and_a_refusal_as_text(
+    answer: Answer, refusal: sc.Refusal
+) -> None:
+    shown = answer._repr_html_()
+    assert shown.count("<rect ") == len(answer.components)
+    assert shown.count("marker-end") == len(answer.connections)
+    assert refusal._repr_html_().startswith("<pre>no configuration")  # type: ignore[attr-defined]  # the library's own
+
+
+HOSTILE = """@prefix sc: <https://w3id.org/selfconf#> .
+@prefix : <x:> .
+<x:a&b'c> a sc:Component, :K ; sc:hasOutput [ sc:name "<script>\\u001b[2J\\u202e" ; sc:signalType :S ] ; :p "no" .
+<x:d> a sc:Component, :L ; sc:hasInput [ sc:name "a\\nb" ; sc:signalType :S ] ; :p "<b>\\u001b]0;x\\u0007" .
+"""
+TASK = """@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <x:> .
+:t a sc:Template ; sc:roles ( :r :s ) .
+:r a sc:Role ; sh:class :K ; sc:feeds :s . :s a sc:Role ; sh:class :L .
+"""
+
+
+def test_what_strangers_wrote_steers_neither_a_page_nor_a_terminal() -> None:
+    home, task = sc.read(HOSTILE), sc.template(TASK)
+    strict = sc.template(TASK.replace(":L .", ':L ; sh:property [ sh:path :p ; sh:hasValue "ok" ] .'))
+    answer, refusal = sc.configure(task, home), sc.configure(strict, home)
+    assert answer
+    assert not refusal
+    solutions = home.query("SELECT ?n ?p { ?c <x:p> ?p OPTIONAL { ?c sc:hasOutput/sc:name ?n } }")
+    for value in (home, home.components, answer, refusal, solutions, sc.partition(strict, home), task):
+        assert "\x1b" not in repr(value), value
+        assert "\u202e" not in repr(value), value
+        for line in repr(value).splitlines():
+            assert len(line) < 300
+        shown = value._repr_html_()  # type: ignore[union-attr]  # each of them has it
+        assert "<script>" not in shown
+        assert "<b>" not in shown
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"strategy": "worst"}, "there is no strategy 'worst'; choose one of 'first', 'paper', 'best'"),
+        ({"reasoning": "owl"}, "there is no reasoning 'owl'; choose one of 'syntactic', 'subclass', 'owl-rl'"),
+    ],
+)
+def test_a_word_that_is_no_option_is_answered_with_those_that_are(
+    options: dict[str, str], said: str, task: sc.TaskSpecification, home: sc.Ecology
+) -> None:
+    with pytest.raises(ProgrammerError) as error:
+        sc.configure(task, home, **options)  # type: ignore[arg-type]  # words are all that is given
+    assert str(error.value) == said
+
+
+def test_arguments_of_another_kind_are_refused_in_a_sentence(task: sc.TaskSpecification, home: sc.Ecology) -> None:
+    with pytest.raises(ProgrammerError, match=r"selfconf.template\(\) gives, not str"):
+        sc.configure("examples/navigate.ttl", home)  # type: ignore[arg-type]  # that is what is tested
+    with pytest.raises(ProgrammerError, match=r"selfconf.read\(\) or selfconf.join\(\) gives, not str"):
+        sc.configure(task, "examples/peis-home")  # type: ignore[arg-type]  # that is what is tested
+
+
+def test_what_if_and_cost_come_with_the_answer_where_they_are_asked_for(answer: Answer) -> None:
+    watch, cameras = sc.template("examples/watch.ttl"), sc.read("examples/watch")
+    best = sc.configure(watch, cameras, strategy="best", what_if=True)
+    assert isinstance(best, Answer)
+    assert best.optimum is not None
+    assert best.optimum.proved
+    assert best.what_if is not None
+    assert {one.component for one in best.what_if} == set(best.components)
+    assert "proved: nothing costs less" in str(best)
+    assert "if it failed" in str(best)
+    assert (answer.optimum, answer.what_if) == (None, None)
+
+
+def test_ontologies_are_a_path_or_several(task: sc.TaskSpecification, home: sc.Ecology) -> None:
+    peis = Path("ontology/peis-home.ttl")
+    for ontologies in (peis, str(peis), [peis], (str(peis),), "ontology"):
+        assert sc.configure(task, home, reasoning="subclass", ontologies=ontologies)
+    with pytest.raises(AuthorError, match="no file or folder nowhere"):
+        sc.configure(task, home, ontologies="nowhere.ttl")
+
+
 EVERYTHING = PREFIXES + "\n".join(ADVERTISEMENTS.values())
+
+
 COST = "sc:cost ( [ sc:term [ sc:property :price ] , [ sc:property :weight ] ] )"
+
+
 PRICED = PREFIXES + f":t a sc:Template ; {COST} ; sc:roles ( :r ) .\n:r a sc:Role ; sh:class :Lamp ."
+
+
 LAMPS = (
     PREFIXES + ":dear a sc:Component, :Lamp ; :price 9 ; sc:preference 5 . :cheap a sc:Component, :Lamp ; :price 2 ."
 )
@@ -48,16 +234,6 @@ def test_an_answer_is_a_configuration_and_true() -> None:
     assert answer.plain.components == answer.components
     assert len(answer.connections) == 4
     assert answer.settings[0].component == iri("thinking-cap")
-
-
-@pytest.mark.parametrize("role", ["position", ":position", str(iri("position"))])
-def test_the_components_of_a_role_are_found_by_any_of_its_names(role: str) -> None:
-    assert answered()[role] == (iri("person-tracker"),)
-
-
-def test_a_role_that_there_is_not_is_answered_with_those_that_there_are() -> None:
-    with pytest.raises(KeyError, match="no role 'nobody'; the roles are sonar, encoder, position, control, drive"):
-        answered()["nobody"]
 
 
 def test_an_answer_is_turtle_that_says_what_it_is_a_configuration_of() -> None:
@@ -106,9 +282,6 @@ def test_a_property_that_another_component_has_is_not_unknown_to_the_ecology() -
     assert best.optimum.missing == ((iri("cheap"), iri("weight")),)
 
 
-# Refusals.
-
-
 def test_a_refusal_is_false_and_has_reasons_near_misses_and_places(tmp_path: Path) -> None:
     ads = write_advertisements(tmp_path / "ads")
     (ads / "drive.ttl").unlink()
@@ -128,15 +301,6 @@ def test_a_refusal_that_subclasses_would_mend_says_so_unless_they_are_seen_alrea
     assert isinstance(refusal, Refusal)
     assert refusal.hint == "with --reasoning subclass there is a configuration"
     assert navigation(special, reasoning="subclass")
-
-
-def test_what_is_not_decided_is_false_too() -> None:
-    found = navigation(steps=1)
-    assert isinstance(found, Undecided)
-    assert not found
-
-
-# Methods.
 
 
 def test_a_method_is_named_by_the_words_of_the_command_line() -> None:
@@ -169,9 +333,6 @@ def test_an_inquiry_has_the_figures_of_its_answer() -> None:
     assert inquiry.seconds.keys() == {"load", "partition"}
     assert inquiry.answer()
     assert inquiry.seconds.keys() == {"load", "partition", "search"}
-
-
-# What is wrong with the task.
 
 
 def test_a_task_without_a_value_or_with_a_shape_that_is_none_is_said() -> None:

@@ -1,19 +1,88 @@
-"""An ecology: its components, and questions that are put to it in SPARQL."""
+"""An ecology shows its components, is asked in SPARQL, and prints as a table."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
 
+import selfconf as sc
 from selfconf import read
 from selfconf.api.ecology import Components, EndpointEcology, LoadedEcology, Solutions
+from selfconf.api.tables import LONGEST_TABLE
 from selfconf.errors import NetworkError, ProgrammerError, QueryError
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
 from selfconf.query import Question
+from selfconf.rdf.vocabulary import RDF, XSD
 from tests.cli.endpoints import Scripted, http
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+
+
+def test_components_are_found_by_iri_with_their_profiles(home: sc.Ecology) -> None:
+    assert len(home) == len(home.components) == 6
+    tracker = sc.IRI("https://w3id.org/selfconf/peis-home#person-tracker")
+    assert [port.name for port in home.components[tracker].outputs] == ["pose"]
+    assert "x:nowhere" not in home.components
+    assert bool(sc.read("@prefix : <x:> ."))
+
+
+def test_components_print_as_a_table(home: sc.Ecology) -> None:
+    assert repr(home) == "<ecology of 6 components from examples/peis-home>"
+    head, line, *rows = repr(home.components).splitlines()
+    assert head.split() == ["component", "types", "inputs", "outputs"]
+    assert set(line) == {"-", " "}
+    assert [row.split()[0] for row in rows] == sorted(row.split()[0] for row in rows)
+    assert home._repr_html_() == home.components._repr_html_()
+    assert "<td style='text-align:left'>localize, position, sonar</td>" in home._repr_html_()
+
+
+def test_the_solutions_of_a_query_are_terms_by_variable(home: sc.Ecology) -> None:
+    found = home.query("SELECT ?c ?place { ?c a rob:PositionSensor OPTIONAL { ?c rob:place ?place } } ORDER BY ?c")
+    assert isinstance(found, Solutions)
+    assert isinstance(found, Sequence)
+    assert found.variables == ("c", "place")
+    assert [set(row) for row in found] == [{"c"}, {"c", "place"}]
+    assert found[1]["place"].short == "living-room"
+    assert repr(found).splitlines()[-1].split() == ["person-tracker", "living-room"]
+
+
+def test_every_kind_of_term_comes_back(home: sc.Ecology) -> None:
+    (row,) = home.query('SELECT * { VALUES (?a ?b ?c ?d) { (<x:y> "text" "Wort"@de 1.5) } BIND(BNODE() AS ?e) }')
+    assert row["a"] == sc.IRI("x:y")
+    assert row["b"] == sc.Literal("text")
+    assert row["c"] == sc.Literal("Wort", RDF.langString, "de")
+    assert row["d"] == sc.Literal("1.5", XSD.decimal)
+    assert row["e"].startswith("_:")
+
+
+def test_ask_is_a_truth_value_and_construct_is_turtle(home: sc.Ecology) -> None:
+    assert home.query("ASK { ?c a rob:SonarArray }") is True
+    assert home.query("ASK { ?c a rob:Submarine }") is False
+    turtle = home.query("CONSTRUCT WHERE { ?c a rob:SonarArray }")
+    assert isinstance(turtle, str)
+    assert len(sc.read(turtle.replace("a rob:", "a sc:Component, rob:"))) == 1
+    assert home.query("SELECT * {}") is not None
+    assert repr(home.query("SELECT * {}")) == "1 solution"
+
+
+def test_more_rows_than_asked_for_are_cut_and_more_than_a_screen_are_counted(home: sc.Ecology) -> None:
+    few = home.query("SELECT * { ?s ?p ?o }", rows=2)
+    assert isinstance(few, Solutions)
+    assert (len(few), few.cut) == (2, True)
+    many = home.query("SELECT * { VALUES ?a { 1 2 3 4 5 6 7 8 9 } VALUES ?b { 1 2 3 4 5 6 7 8 9 } }")
+    assert len(many) == 81
+    assert len(repr(many).splitlines()) == LONGEST_TABLE + 3
+    assert repr(many).endswith(f"... only the first {LONGEST_TABLE} are shown")
+    assert many._repr_html_().count("<tr>") == LONGEST_TABLE + 1
+
+
+@pytest.mark.parametrize("query", ["SELEC", "DELETE WHERE { ?s ?p ?o }", "SELECT ?c WHERE {", ""])
+def test_what_is_no_query_is_refused_in_a_sentence(query: str, home: sc.Ecology) -> None:
+    with pytest.raises(QueryError):
+        home.query(query)
+
 
 EVERYTHING = PREFIXES + "\n".join(ADVERTISEMENTS.values())
 
@@ -51,9 +120,6 @@ def test_an_ecology_is_true_even_where_it_is_empty() -> None:
     assert "0 components" in repr(empty)
 
 
-# Questions.
-
-
 @pytest.mark.process
 def test_a_select_gives_solutions_with_terms_of_every_kind() -> None:
     home = read(PREFIXES + ':a a sc:Component, :T ; :p 5, "x", "y"@en, "z"^^:own, [ :q true ], :b .')
@@ -73,15 +139,6 @@ def test_a_select_gives_solutions_with_terms_of_every_kind() -> None:
 
 
 @pytest.mark.process
-def test_no_is_an_answer_and_so_is_nothing(paper: LoadedEcology) -> None:
-    assert paper.query("ASK { ?c a rob:PositionSensor }") is True
-    assert paper.query("ASK { ?c a rob:Tuner }") is False
-    nothing = paper.query("SELECT ?c ?x { ?c a rob:Tuner }")
-    assert isinstance(nothing, Solutions)
-    assert (len(nothing), nothing.variables, nothing.cut) == (0, ("c", "x"), False)
-
-
-@pytest.mark.process
 def test_triples_are_turtle(paper: LoadedEcology) -> None:
     found = paper.query("CONSTRUCT { ?c a rob:Found } WHERE { ?c a rob:MotorDrive }")
     assert isinstance(found, str)
@@ -93,13 +150,6 @@ def test_each_advertisement_is_a_graph(paper: LoadedEcology) -> None:
     found = paper.query("SELECT ?g { GRAPH ?g { ?c a rob:MotorDrive } } ORDER BY ?g")
     assert isinstance(found, Solutions)
     assert [row["g"] for row in found] == [iri("astrid-drive"), iri("pippi-drive")]
-
-
-@pytest.mark.process
-def test_rows_beyond_the_limit_are_left_out_and_said_to_be(paper: LoadedEcology) -> None:
-    found = paper.query("SELECT * { ?s ?p ?o }", rows=3)
-    assert isinstance(found, Solutions)
-    assert (len(found), found.cut) == (3, True)
 
 
 @pytest.mark.process
@@ -124,9 +174,6 @@ def test_solutions_without_a_variable_are_counted() -> None:
     assert Solutions(["x"], [{"x": iri("a")}, {}])[0] == {"x": iri("a")}
     assert "<td" in Solutions(["x"], [{"x": Literal("<b>")}, {}])._repr_html_()
     assert "<b>" not in Solutions(["x"], [{"x": Literal("<b>")}])._repr_html_()
-
-
-# Endpoints.
 
 
 def test_an_endpoint_is_never_loaded_as_a_whole() -> None:

@@ -1,16 +1,47 @@
-"""The advertisements of an endpoint as files: only from where nobody on the way could have changed them."""
+"""The advertisements of an endpoint become files for a site: what a task may want, and of endpoints to be trusted."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from selfconf import read, template
+import selfconf as sc
+from selfconf import template
 from selfconf.api.answer import Method
 from selfconf.api.ecology import EndpointEcology
 from selfconf.api.endpoint_files import endpoint_files
 from selfconf.errors import AuthorError, BindingError, NetworkError
 from tests.cli.endpoints import oxigraph
-from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
+from tests.lab import NAVIGATE
+
+
+@pytest.mark.process
+def test_what_a_task_may_want_is_in_files_while_the_block_runs(clock: sc.TaskSpecification) -> None:
+    texts = {name: Path(f"examples/clock/{name}.ttl").read_text() for name in ("clock", "display")}
+    unwanted = Path("examples/peis-home/motor-drive.ttl").read_text()
+    with oxigraph(unwanted, {f"x:{name}": text for name, text in texts.items()}) as url:
+        with endpoint_files(EndpointEcology(url), clock, Method()) as folder:
+            assert sc.validate(folder).conforms
+            local = sc.read(folder)
+            assert sorted(component.short for component in local.components) == ["clock", "display"]
+            assert sc.configure(clock, local) == sc.configure(clock, sc.read(url))
+        assert not folder.exists()
+
+
+@pytest.mark.parametrize("url", ["http://example.org/query", "http://192.0.2.1/query", "http://127.0.0.1.nip.io/query"])
+def test_an_endpoint_elsewhere_without_https_is_refused_before_it_is_asked(
+    url: str, clock: sc.TaskSpecification
+) -> None:
+    with pytest.raises(AuthorError, match="https://"), endpoint_files(EndpointEcology(url), clock, Method()):
+        pass
+
+
+def test_an_endpoint_that_is_not_there_is_said_to_be_unreachable(clock: sc.TaskSpecification) -> None:
+    ecology = EndpointEcology("http://127.0.0.1:1/query")
+    with pytest.raises(NetworkError, match="is the server running"), endpoint_files(ecology, clock, Method()):
+        pass
+
 
 TASK = template(NAVIGATE).bind(robot=":Astrid", goal="x")
 
@@ -64,17 +95,3 @@ def test_a_task_that_is_not_complete_is_said_before_anything_is_asked() -> None:
     ecology = EndpointEcology("http://127.0.0.1:9/query")
     with pytest.raises(BindingError, match="needs a value"), endpoint_files(ecology, template(NAVIGATE), Method()):
         pytest.fail("there are no files")
-
-
-@pytest.mark.process
-def test_what_the_task_may_want_lies_in_a_folder_for_as_long_as_it_is_needed() -> None:
-    lamp = ":lamp a sc:Component, :Lamp ."
-    with oxigraph(PREFIXES + "\n".join((*ADVERTISEMENTS.values(), lamp)), {}) as url:
-        ecology = EndpointEcology(f"{url}?union-default-graph")
-        with endpoint_files(ecology, TASK, Method()) as folder:
-            found = read(folder).components
-            expected = read(PREFIXES + "\n".join(ADVERTISEMENTS.values())).components
-            assert dict(found) == {component: expected[component] for component in found}
-            assert iri("thinking-cap") in found
-            assert iri("lamp") not in found
-    assert not folder.exists()

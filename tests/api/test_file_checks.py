@@ -1,4 +1,4 @@
-"""Close looks in many processes and from memory: the verdicts are those of one process without a memory."""
+"""File checks in many processes and from memory: the verdicts are those of one process without a memory."""
 
 from __future__ import annotations
 
@@ -8,12 +8,21 @@ from pathlib import Path
 
 import pytest
 
+import selfconf as sc
 from selfconf.api.file_checks import Remembered, shared
 from selfconf.api.validation import check
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
 
-pytestmark = pytest.mark.slow
+
+def test_a_remembered_report_is_the_same_and_is_kept_in_the_cache_of_the_user(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    first = sc.validate("tests/bad/bound-twice.ttl", cache=True)
+    assert list(tmp_path.rglob("validate/*.json"))
+    assert sc.validate("tests/bad/bound-twice.ttl", cache=True) == first == sc.validate("tests/bad/bound-twice.ttl")
+
 
 BAD = Path(__file__).parents[1] / "bad"
 
@@ -40,11 +49,13 @@ def files(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_processes_give_the_verdicts_of_one(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("selfconf.api.file_checks.WORTH", 2)
     assert check([str(files)], each=shared) == check([str(files)])
 
 
+@pytest.mark.slow
 def test_memory_gives_the_same_verdicts_and_looks_at_nothing_twice(files: Path, tmp_path: Path) -> None:
     plain, counting = check([str(files)]), Counting()
     for _ in range(3):
@@ -52,6 +63,7 @@ def test_memory_gives_the_same_verdicts_and_looks_at_nothing_twice(files: Path, 
     assert len(counting.names) == len(set(counting.names)) > 5
 
 
+@pytest.mark.slow
 def test_only_what_has_changed_is_looked_at_again(files: Path, tmp_path: Path) -> None:
     changed = next(path for path in files.glob("*.ttl") if path.name != "good.ttl")
     for expected in (None, []):
@@ -64,6 +76,7 @@ def test_only_what_has_changed_is_looked_at_again(files: Path, tmp_path: Path) -
     assert counting.names == [changed.name]
 
 
+@pytest.mark.slow
 def test_what_another_file_declares_counts_in_memory_too(files: Path, tmp_path: Path) -> None:
     user = files / "user.ttl"
     user.write_text(
@@ -84,6 +97,7 @@ def test_what_another_file_declares_counts_in_memory_too(files: Path, tmp_path: 
     assert codes() == ["SC-L03"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "content", ["", "no JSON", "[]", '{"versions": {}}', '{"versions": 1, "outcomes": {"x": [1]}}']
 )
@@ -95,6 +109,7 @@ def test_a_memory_that_is_broken_or_of_other_versions_is_forgotten(content: str,
     assert json.loads(kept.read_text())["outcomes"]
 
 
+@pytest.mark.slow
 def test_a_memory_that_cannot_be_written_is_done_without(files: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
     assert check([str(files)], each=Remembered(tmp_path / "file", [str(files)])) == check([str(files)])

@@ -1,4 +1,4 @@
-"""A site of one's own: a process that serves advertisements for as long as a block runs."""
+"""A site of one's own serves while a block lasts, and says why where it cannot."""
 
 from __future__ import annotations
 
@@ -8,15 +8,40 @@ from pathlib import Path
 
 import pytest
 
+import selfconf as sc
 from selfconf import sites
 from selfconf.api.local_site import SiteProcess
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
 from selfconf.termination import alive
 from tests.lab import write_advertisements
 
-pytestmark = pytest.mark.process
+
+@pytest.mark.process
+def test_a_site_of_ones_own_serves_while_the_block_lasts(ecology: str) -> None:
+    with SiteProcess(["examples/clock"], ecology) as site:
+        assert [(one.ecology, one.endpoint) for one in sc.sites()] == [(ecology, site.endpoint)]
+        assert site.running()
+        with sc.join(ecology, connect=site.endpoints) as living:
+            assert len(living.components) == 2
+    assert sc.sites() == ()
+    assert not site.running()
 
 
+@pytest.mark.process
+def test_a_site_that_cannot_run_has_said_why(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SiteMisusedError, match="has said why"), SiteProcess(["examples/clock"], "no/name"):
+        pass
+    assert "no/name" in capfd.readouterr().err
+
+
+def test_a_site_watches_files_and_nothing_else() -> None:
+    with pytest.raises(AuthorError, match="not -"):
+        SiteProcess(["-"])
+    with pytest.raises(AuthorError, match="no file or folder"):
+        SiteProcess(["no-such-folder"])
+
+
+@pytest.mark.process
 def test_a_site_listens_while_its_block_runs_and_is_gone_after_it(tmp_path: Path) -> None:
     site = SiteProcess([write_advertisements(tmp_path / "ads")])
     assert sites() == ()
@@ -32,6 +57,7 @@ def test_a_site_listens_while_its_block_runs_and_is_gone_after_it(tmp_path: Path
     assert sites() == ()
 
 
+@pytest.mark.process
 def test_a_site_ends_with_its_block_also_when_that_fails(tmp_path: Path) -> None:
     found: list[int] = []
 
@@ -45,6 +71,7 @@ def test_a_site_ends_with_its_block_also_when_that_fails(tmp_path: Path) -> None
     assert [alive(process) for process in found] == [False]
 
 
+@pytest.mark.process
 def test_a_site_that_is_killed_is_known_to_have_ended_with_its_code(tmp_path: Path) -> None:
     with SiteProcess([tmp_path]) as site:
         (found,) = sites(site.ecology)
@@ -54,25 +81,14 @@ def test_a_site_that_is_killed_is_known_to_have_ended_with_its_code(tmp_path: Pa
     assert site.exit_code_before_end == -signal.SIGKILL
 
 
+@pytest.mark.process
 def test_a_site_of_a_named_ecology_connects_to_the_others(tmp_path: Path) -> None:
     with SiteProcess([tmp_path], "home") as first, SiteProcess([tmp_path], "home", [first.endpoint]) as second:
         assert {site.site for site in sites("home")} == {first.name, second.name}
         assert second.endpoints == [second.endpoint, first.endpoint]
 
 
-def test_what_cannot_be_watched_is_said_before_a_process_is_started(tmp_path: Path) -> None:
-    with pytest.raises(AuthorError, match="give files to --ads, not -"):
-        SiteProcess(["-"])
-    with pytest.raises(AuthorError, match="no file or folder"):
-        SiteProcess([tmp_path / "nowhere"])
-
-
-def test_a_site_that_says_itself_what_is_wrong_is_misused(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SiteMisusedError), SiteProcess([tmp_path], "a/b"):
-        pytest.fail("it does not listen")
-    assert "cannot name an ecology" in capfd.readouterr().err
-
-
+@pytest.mark.process
 def test_a_site_that_does_not_listen_in_time_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("selfconf.api.local_site.SITE_STARTS", 0.0)
     with pytest.raises(NetworkError, match="does not listen after 0 s"), SiteProcess([tmp_path]):

@@ -1,4 +1,4 @@
-"""Ontologies in every format of RDF, alone or in folders, and the hierarchy that is taken from them."""
+"""A reasoning mode takes its hierarchy from the ontologies of selfconf and of the user."""
 
 from __future__ import annotations
 
@@ -14,8 +14,34 @@ from selfconf.model.hierarchy import Reasoning
 from selfconf.model.term import IRI
 from selfconf.query import Question, answer
 from selfconf.rdf.sparql import Dataset
+from selfconf.rdf.vocabulary import ROB
 from tests.cli.command import run
 from tests.lab import PREFIXES, iri
+
+OWN = (
+    "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n@prefix mine: <x:> .\nmine:lamp rdfs:subClassOf <{}> .\n"
+)
+
+
+def test_syntactic_sees_nothing_and_subclass_sees_the_users_own(tmp_path: Path) -> None:
+    (tmp_path / "own.ttl").write_text(OWN.format(ROB.Sensor))
+    lamp = type(ROB.Sensor)("x:lamp")
+    for ontologies in ([tmp_path], [tmp_path / "own.ttl"]):
+        assert ROB.Sensor not in hierarchy_of(Reasoning.SYNTACTIC, ontologies).superclasses(lamp)
+        assert ROB.Sensor in hierarchy_of(Reasoning.SUBCLASS, ontologies).superclasses(lamp)
+
+
+@pytest.mark.parametrize("reasoning", list(Reasoning))
+def test_an_ontology_that_is_not_there_is_named_in_every_mode(reasoning: Reasoning) -> None:
+    with pytest.raises(AuthorError, match="no file or folder nowhere"):
+        hierarchy_of(reasoning, [Path("nowhere.ttl")])
+
+
+def test_a_question_may_use_the_prefixes_of_an_ontology(tmp_path: Path) -> None:
+    (tmp_path / "own.ttl").write_text(OWN.format(ROB.Sensor))
+    question = Question("ASK { mine:lamp rdfs:subClassOf rob:Sensor }", "table", 10)
+    assert answer(*with_ontologies(Dataset(), question, [tmp_path])).text == "true"
+
 
 ONTOLOGY = (
     PREFIXES
@@ -27,6 +53,8 @@ ONTOLOGY = (
 :near a owl:ObjectProperty ; rdfs:label "near"@en .
 """
 )
+
+
 FORMATS = {
     "ttl": ox.RdfFormat.TURTLE,
     "rdf": ox.RdfFormat.RDF_XML,
@@ -36,7 +64,11 @@ FORMATS = {
     "nq": ox.RdfFormat.N_QUADS,
     "trig": ox.RdfFormat.TRIG,
 }
+
+
 TEMPLATE = PREFIXES + ":watch a sc:Template ; sc:roles ( :eye ) .\n:eye a sc:Role ; sh:class :Sensor .\n"
+
+
 CAMERA = PREFIXES + ":cam a sc:Component, :CeilingCamera ; :above :bed .\n"
 
 

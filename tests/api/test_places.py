@@ -1,4 +1,4 @@
-"""Refusals that point: file and line of what they speak of, and who would fit if its type were spelt alike."""
+"""Places: file and line of what a refusal names, and which types are spelt alike."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import selfconf as sc
 from selfconf.api.places import LARGEST_REREAD, Places
 from selfconf.api.reading import read
 from selfconf.model.profile import Place
@@ -14,9 +15,24 @@ from selfconf.model.term import IRI
 from tests.cli.command import Outcome, run
 from tests.lab import PREFIXES
 
+
+def test_roles_and_components_have_file_and_line_and_others_have_no_place(clock: sc.TaskSpecification) -> None:
+    places = Places(clock.document.task.template, sc.read("examples/clock").advertisements())
+    home = "https://example.org/my-home#"
+    assert str(places.of(sc.IRI(f"{home}screen"))) == "examples/clock/tell-the-time.ttl:15"
+    assert str(places.of(sc.IRI(f"{home}display"))) == "examples/clock/display.ttl:5"
+    assert places.of(sc.IRI(f"{home}kitchen")) is None
+
+
 TIME = ":time a sc:Template ; sc:roles ( :source :sink ) .\n:source a sc:Role ; sh:class :Clok ; sc:feeds :sink .\n"
+
+
 SINK = ":sink a sc:Role ; sh:class rob:Display ."
+
+
 CLOCK = ':clock a sc:Component, :Clock ; sc:hasOutput [ sc:name "time" ; sc:signalType rob:Text ] .'
+
+
 SCREEN = ':screen a sc:Component, rob:Display ; sc:hasInput [ sc:name "text" ; sc:signalType SIGNAL ] .'
 
 

@@ -1,19 +1,22 @@
-"""A run of a task: its events in order, what it ends with, and that nothing is left behind."""
+"""A run in a living ecology of real processes: its events, its end, and what it says of itself."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 
 import pytest
 
+import selfconf as sc
 from selfconf import read, template
 from selfconf.api.answer import Method
 from selfconf.api.run import Run
-from selfconf.errors import BindingError, SelfconfError
+from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import (
     ComponentLost,
+    ComponentReleased,
     EcologyAsked,
     EcologyDiscovered,
     RunEvent,
@@ -27,8 +30,121 @@ from tests.cli.processes import Home
 from tests.lab import NAVIGATE, iri
 
 pytestmark = pytest.mark.process
+
+
+def test_events_are_values_in_the_order_in_which_things_happen(served: Home, clock: sc.TaskSpecification) -> None:
+    seen: list[RunEvent] = []
+    with sc.join(served.ecology) as living, living.run(clock) as run:
+        for event in run.events():
+            seen.append(event)
+            if isinstance(event, TaskRunning):
+                assert run.configuration == event.configuration
+                assert event.configuration.components == living.configure(clock)["source"] + (
+                    sc.IRI("https://example.org/my-home#display"),
+                )
+                run.stop()
+    milestones = (EcologyAsked, EcologyDiscovered, SearchEnded, TaskRunning, TaskStopped)
+    assert [type(event) for event in seen if isinstance(event, milestones)] == list(milestones)
+    assert sum(isinstance(event, ComponentReleased) for event in seen) == 2
+    assert [event.time for event in seen] == sorted(event.time for event in seen)
+    assert all(event.act for event in seen)
+    assert run.refusal is None
+
+
+def test_another_thread_sees_the_task_and_may_stop_it(served: Home, clock: sc.TaskSpecification) -> None:
+    seen: list[tuple[str, ...]] = []
+
+    def watch(run: sc.Run) -> None:
+        with sc.join(served.ecology) as other:
+            seen.append(tuple(f"{status.configurator} {status.phase}" for status in other.tasks))
+            assert other.query("ASK { ?c a sc:Configuration }") is True
+            assert other.stop(run.name) == (run.name,)
+
+    with sc.join(served.ecology) as living, living.run(clock) as run:
+        watcher = threading.Thread(target=watch, args=(run,))
+        last = None
+        for last in run.events():
+            if isinstance(last, TaskRunning):
+                watcher.start()
+        watcher.join(20)
+        assert isinstance(last, TaskStopped)
+        assert seen == [(f"{run.name} running",)]
+
+
+def test_leaving_the_block_by_an_error_takes_everything_down(served: Home, clock: sc.TaskSpecification) -> None:
+    with sc.join(served.ecology) as living:
+        with pytest.raises(ZeroDivisionError):
+            fail_when_it_runs(living, clock)
+        assert living.tasks == ()
+        with living.run(clock) as again:  # the components are free for another one
+            assert any(isinstance(event, TaskRunning) for event in until(again, TaskRunning))
+
+
+def fail_when_it_runs(living: sc.LivingEcology, task: sc.TaskSpecification) -> None:
+    """Run a task, and leave the block by an error."""
+    with living.run(task) as run:
+        until(run, TaskRunning)
+        raise ZeroDivisionError
+
+
+def until(run: sc.Run, kind: type[RunEvent]) -> list[RunEvent]:
+    """The events up to the first of a kind."""
+    seen: list[RunEvent] = []
+    for event in run.events():
+        seen.append(event)
+        if isinstance(event, kind):
+            break
+    return seen
+
+
+def test_what_cannot_be_configured_ends_with_a_refusal_that_is_explained(
+    served: Home, clock: sc.TaskSpecification
+) -> None:
+    with sc.join(served.ecology) as living, living.run(clock.bind(room=":cellar")) as run:
+        seen = list(run.events())
+    assert isinstance(seen[-1], TaskRefused)
+    explained = run.explained()
+    assert isinstance(explained, sc.Refusal)
+    assert [str(miss) for miss in explained.near_misses] == ["its place is kitchen, not cellar"]
+    assert repr(explained).startswith("<no configuration for :tell-the-time")
+
+
+def test_a_patient_run_waits_for_the_ecology_to_change(served: Home, clock: sc.TaskSpecification) -> None:
+    with sc.join(served.ecology) as living, living.run(clock.bind(room=":cellar"), wait=True) as run:
+        waiting = until(run, TaskWaiting)[-1]
+        assert isinstance(waiting, TaskWaiting)
+        assert isinstance(waiting.refusal, sc.Refusal)
+        ads = served.folder / "cellar"
+        ads.mkdir()
+        (ads / "display.ttl").write_text(DISPLAY_IN_THE_CELLAR)
+        served.site("cellar", str(ads), connect=(served.endpoint(),))
+        after = until(run, ComponentLost)
+        assert any(isinstance(event, SearchEnded) and isinstance(event.outcome, sc.Configuration) for event in after)
+
+
+DISPLAY_IN_THE_CELLAR = """@prefix sc: <https://w3id.org/selfconf#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix : <https://example.org/my-home#> .
+:cellar-display a sc:Component, rob:Display ; rob:place :cellar ;
+    sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ] .
+"""
+
+
+def test_a_policy_that_there_is_not_and_an_ecology_that_is_not_there_are_refused(
+    served: Home, clock: sc.TaskSpecification
+) -> None:
+    with sc.join(served.ecology) as living, pytest.raises(ProgrammerError, match="'repair', 'dismantle'"):
+        living.run(clock, policy="forget")
+    with pytest.raises(NetworkError):
+        sc.join("no-such-ecology")
+
+
 TASK = template(NAVIGATE).bind(robot=":Astrid", goal="x")
+
+
 KARLSSON = template(NAVIGATE).bind(robot=":Karlsson", goal="x")
+
+
 EVERYBODY = ("sonar", "encoder", "tracker", "odometry", "control", "drive")
 
 
@@ -52,23 +168,6 @@ def kinds(events: list[RunEvent]) -> list[type[RunEvent]]:
     return [type(event) for event in events]
 
 
-def test_a_task_is_asked_for_discovered_composed_deployed_and_taken_down(house: Home) -> None:
-    events: list[RunEvent] = []
-    with run(house) as running:
-        for event in running.events():
-            events.append(event)
-            if isinstance(event, TaskRunning):
-                assert running.configuration == event.configuration
-                assert house.active(*EVERYBODY) == set(EVERYBODY) - {"odometry"}
-                running.stop()
-    order = [kinds(events).index(kind) for kind in (EcologyAsked, EcologyDiscovered, SearchEnded, TaskRunning)]
-    assert order == sorted(order)
-    assert isinstance(events[-1], TaskStopped)
-    assert [event.time for event in events] == sorted(event.time for event in events)
-    assert (running.refusal, running.lost) == (None, {})
-    assert house.active(*EVERYBODY) == set()
-
-
 def test_a_component_that_fails_is_replaced_and_named(house: Home) -> None:
     with run(house) as running:
         events = running.events()
@@ -81,18 +180,6 @@ def test_a_component_that_fails_is_replaced_and_named(house: Home) -> None:
         again = next(event for event in events if isinstance(event, TaskRunning))
         assert iri("absolute-odometry") in again.configuration.components
         assert "told to" in running.lost[iri("person-tracker")]
-    assert house.active(*EVERYBODY) == set()
-
-
-def test_a_block_that_fails_takes_everything_down(house: Home) -> None:
-    def fail() -> None:
-        with run(house) as running:
-            for event in running.events():
-                if isinstance(event, TaskRunning):
-                    raise ZeroDivisionError
-
-    with pytest.raises(ZeroDivisionError):
-        fail()
     assert house.active(*EVERYBODY) == set()
 
 
@@ -110,16 +197,6 @@ def test_a_task_that_is_refused_says_why_and_where(house: Home) -> None:
     assert place is not None
     assert place.source == str(ads / "drive.ttl")
     assert house.active(*EVERYBODY) == set()
-
-
-def test_a_task_that_may_wait_is_not_refused(house: Home) -> None:
-    with run(house, KARLSSON, wait=True) as running:
-        events = running.events()
-        waiting = next(event for event in events if isinstance(event, TaskWaiting))
-        assert isinstance(waiting.refusal, Refusal)
-        running.stop()
-        *_, last = events
-    assert isinstance(last, TaskStopped)
 
 
 def test_what_is_not_decided_is_what_the_run_ends_with(house: Home) -> None:

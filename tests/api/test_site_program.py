@@ -1,4 +1,4 @@
-"""A site as a program: it announces itself, finds its sisters, and says what it cannot do."""
+"""A site as a program refuses what it cannot serve before it opens anything."""
 
 from __future__ import annotations
 
@@ -8,14 +8,25 @@ from pathlib import Path
 
 import pytest
 
+import selfconf as sc
 from selfconf import rendezvous
 from selfconf.api.site_program import serve
 from selfconf.bus.zenoh_bus import router
-from selfconf.errors import AuthorError, SelfconfError
+from selfconf.errors import SelfconfError
 from tests.cli.command import run
 from tests.cli.processes import Home
 
-pytestmark = pytest.mark.process
+
+@pytest.mark.parametrize(
+    ("path", "ecology", "name"),
+    [("no-such-folder", "home", None), ("examples/clock", "no/name", None), ("examples/clock", "home", "no/name")],
+)
+def test_a_path_that_is_not_there_and_a_name_that_is_none_end_it(path: str, ecology: str, name: str | None) -> None:
+    said: list[str] = []
+    with pytest.raises(sc.SelfconfError):
+        serve([Path(path)], ecology, name, None, (), said.append)
+    assert said == []
+    assert sc.sites() == ()
 
 
 @pytest.fixture
@@ -26,6 +37,7 @@ def home(tmp_path: Path) -> Iterator[Home]:
     home.close()
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("ecology", "name", "listen", "connect", "words"),
     [
@@ -51,11 +63,7 @@ def test_a_site_that_cannot_be_announces_nothing(
     assert list(runtime_folder.glob("*.json")) == []
 
 
-def test_a_path_that_is_not_there_is_said_first(tmp_path: Path) -> None:
-    with pytest.raises(AuthorError, match="no file or folder"):
-        serve([tmp_path / "nowhere"], "a/b", None, None, (), print)
-
-
+@pytest.mark.process
 def test_a_site_without_a_name_gets_one_and_leaves_when_it_is_told_to(home: Home) -> None:
     site = home.selfconf("site", "ads", "--ecology", home.ecology)
     assert home.until(lambda: len(list(home.runtime.glob("*.json"))) == 1)
@@ -65,6 +73,7 @@ def test_a_site_without_a_name_gets_one_and_leaves_when_it_is_told_to(home: Home
     assert list(home.runtime.glob("*.json")) == []
 
 
+@pytest.mark.process
 def test_sites_that_start_at_the_same_moment_do_not_miss_each_other(
     home: Home, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -80,6 +89,7 @@ def test_sites_that_start_at_the_same_moment_do_not_miss_each_other(
     assert home.until(lambda: all(sites(name) == ["a", "b", "c"] for name in "abc"), 5.0)
 
 
+@pytest.mark.process
 def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(
     home: Home, monkeypatch: pytest.MonkeyPatch
 ) -> None:

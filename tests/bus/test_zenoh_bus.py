@@ -14,7 +14,7 @@ from selfconf.errors import NetworkError
 
 
 def free_endpoint() -> str:
-    """An endpoint on which nobody listens."""
+    """An endpoint on which nothing listens."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"

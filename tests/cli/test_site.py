@@ -56,6 +56,16 @@ def taken() -> ZenohBus:
     return router()
 
 
+def test_the_environment_can_name_its_ecology(home: Home) -> None:
+    nameless = home.selfconf("site", "ads")
+    assert nameless.ended() == 2
+    assert "give --ecology NAME, or set SELFCONF_ECOLOGY" in nameless.complaints
+    home.environment["SELFCONF_ECOLOGY"] = home.ecology
+    site = home.selfconf("site", "ads", "--name", "named")
+    assert home.until(lambda: (home.runtime / f"{home.ecology}@named.json").exists())
+    assert site.end(signal.SIGINT) == 0
+
+
 def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str], taken: ZenohBus) -> None:
     folder = str(tmp_path)
     for arguments, words in (

@@ -40,7 +40,7 @@ def task(text: str) -> TaskDocument:
 
 def ecology(*described: str) -> Mapping[IRI, Advertisement]:
     """Components by what they say of themselves."""
-    found, malformed = advertisements.read(turtle.parse(PREFIXES + "\n".join(described), "ads.ttl"))
+    found, malformed = advertisements.read_document(turtle.parse(PREFIXES + "\n".join(described), "ads.ttl"))
     assert not malformed
     return {one.component: one for one in found}
 

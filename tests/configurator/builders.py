@@ -66,7 +66,7 @@ class History:
         )
 
     def all_answer(self) -> list[Effect]:
-        """Everybody who is waited for does as it was told, until nobody is."""
+        """Let every component obey its pending call, until none is pending."""
         new: list[Effect] = []
         while self.state.pending:
             component, call = min(self.state.pending)

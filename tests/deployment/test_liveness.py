@@ -78,7 +78,7 @@ def test_a_component_that_is_restarted_while_it_acts_is_activated_and_set_anew(l
 
 
 def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_turned_themselves_off(lab: Lab) -> None:
-    """It hears at one moment that everybody died and lives; meanwhile nobody has supervised them."""
+    """It sees all lives end and begin at one moment; meanwhile the components have not seen their supervisor."""
     agent = lab.agent(policy=Policy.DISMANTLE)
     lab.running(agent)
     for name in TASK | {"tracker"}:

@@ -93,7 +93,7 @@ def test_each_of_many_is_judged_as_it_is_alone(shape: str, links: list[tuple[int
     assert violations(subjects, shapes, IRI("urn:x:shape"), LINKED, "a.ttl").keys() == alone
 
 
-def test_a_value_that_is_a_candidate_is_not_blamed_for_who_links_to_it() -> None:
+def test_a_value_that_is_a_candidate_is_not_blamed_for_what_links_to_it() -> None:
     graphs = [
         rdflib_terms.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples())
         for text in (

@@ -27,9 +27,8 @@ from selfconf.rdf.sparql import read_only as queries
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.validation import checking
-from selfconf.rdf.validation import file_check as scrutiny
-from selfconf.rdf.validation.checking import SourceText, validate
+from selfconf.rdf.validation import checking, file_check
+from selfconf.rdf.validation.checking import SourceText, validate_texts
 
 # An alarm that rings while the garbage collector calls back is lost there, and rings again.
 pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
@@ -75,13 +74,13 @@ def trap(tmp_path: Path) -> Iterator[tuple[str, str]]:
 
 
 def check(text: str) -> Report:
-    return validate([SourceText("a.ttl", (PREAMBLE + text).encode())], SHAPES, ONTOLOGIES)
+    return validate_texts([SourceText("a.ttl", (PREAMBLE + text).encode())], SHAPES, ONTOLOGIES)
 
 
 def judge(template: str, advertisement: str = TUNER) -> tuple[int, ...]:
     """How many components are eligible for each role."""
     task = bindings.complete(templates.read_task(turtle.parse(PREAMBLE + template, "t.ttl", "file:///")))
-    found, _ = advertisements.read(turtle.parse(PREAMBLE + advertisement, "a.ttl", "file:///"))
+    found, _ = advertisements.read_document(turtle.parse(PREAMBLE + advertisement, "a.ttl", "file:///"))
     return tuple(len(role) for role in Partitioner(task).partition(found).candidates)
 
 
@@ -134,7 +133,7 @@ def test_the_query_of_a_role_opens_nothing(query: str, trap: tuple[str, str]) ->
 @pytest.mark.parametrize("query", [*QUERIES, "LOAD <{file}>", "SELECT * FROM <{file}> WHERE {{ ?s ?p ?o }}"])
 def test_a_query_to_the_ecology_reads_nothing_else(query: str, trap: tuple[str, str]) -> None:
     dataset = Dataset()
-    dataset.add_advertisements(advertisements.read(turtle.parse(PREAMBLE + TUNER, "a.ttl"))[0])
+    dataset.add_advertisements(advertisements.read_document(turtle.parse(PREAMBLE + TUNER, "a.ttl"))[0])
     with nothing_opened():
         try:
             answer = dataset.query(query.replace("$this", "?this").format(file=trap[0], web=trap[1]))
@@ -151,7 +150,7 @@ rob:Tuner rdfs:subClassOf sc:Template ; owl:equivalentClass rob:Speaker .
 rob:Tuner sh:property [ sh:path rdf:type ; sh:maxCount 0 ] .
 rob:place rdfs:subPropertyOf rdf:type . :r sh:in () .
 """
-    found, _ = advertisements.read(turtle.parse(PREAMBLE + TUNER + smuggled, "a.ttl"))
+    found, _ = advertisements.read_document(turtle.parse(PREAMBLE + TUNER + smuggled, "a.ttl"))
     said = {(str(predicate), str(value)) for one in found for _, predicate, value in one.triples}
     assert not [pair for pair in said if any("shacl#" in part or "owl#" in part for part in pair)]
     assert not [pair for pair in said if "subClassOf" in pair[0] or "subPropertyOf" in pair[0]]
@@ -178,7 +177,7 @@ def test_a_catastrophic_pattern_ends_in_an_error(
 
 
 def test_a_file_that_takes_too_long_ends_in_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scrutiny, "FILE_SECONDS", 0.3)
+    monkeypatch.setattr(file_check, "FILE_SECONDS", 0.3)
     triples = "\n".join(f":x{n} sh:nodeKind :y{n} ." for n in range(20_000))
     report = check(triples)
     assert [found.code for found in report.diagnostics] == ["SC-S05"]
@@ -189,7 +188,7 @@ def test_a_file_with_a_problem_and_too_many_statements_is_refused_before_it_is_c
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(checking, "MOST_STATEMENTS", 50)
-    monkeypatch.setattr(scrutiny.FileCheck, "of", None)  # it is not asked
+    monkeypatch.setattr(file_check.FileCheck, "of", None)  # it is not asked
     (problem,) = check("\n".join(f":x{n} sh:nodeKind :y{n} ." for n in range(51))).diagnostics
     assert (problem.code, problem.line) == ("SC-S05", 1)
     assert "51 statements" in problem.message
@@ -227,7 +226,7 @@ def test_the_page_on_limits_names_the_limits_there_are() -> None:
     for words in (
         f"{LARGEST_FILE >> 20} MiB | SC-S05",
         f"{checking.MOST_STATEMENTS:,} | SC-S05",
-        f"{scrutiny.FILE_SECONDS:g} s | SC-S05",
+        f"{file_check.FILE_SECONDS:g} s | SC-S05",
         f"{queries.LONGEST_QUERY:,} characters, brackets {queries.DEEPEST_QUERY} deep",
         f"{values.PATTERN_SECONDS:g} s | `configure` says which pattern",
         f"{shacl.SHAPE_SECONDS:g} s | `configure` says which shape",

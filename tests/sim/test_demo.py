@@ -107,7 +107,7 @@ def test_astrid_arrives_and_pictures_are_drawn(tmp_path: Path, demo: list[Demo])
 def test_the_living_ecology_can_be_asked_while_the_demo_runs(tmp_path: Path, demo: list[Demo]) -> None:
     demo.append(Demo(tmp_path, "--speed", "0.4", "--pictures", "none"))
     running = demo[0]
-    running.until("configured, running")
+    running.until("         running")
     count = running.selfconf("query", "SELECT (COUNT(?c) AS ?n) { ?c a rob:PositionSensor }", "--format", "csv")
     assert count.split() == ["n", "2"]
     deployed = running.selfconf("query", "SELECT ?c { ?x a sc:Configuration ; sc:assignment/sc:component ?c }")

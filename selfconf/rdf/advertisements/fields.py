@@ -137,12 +137,12 @@ class Field:
         return self.least <= values and (self.most is None or values <= self.most)
 
 
-NAME = Field(SC.name, TEXT, least=1, distinct=True)
+PORT_NAME = Field(SC.name, TEXT, least=1, distinct=True)
 SIGNAL_TYPE = Field(SC.signalType, RESOURCE, least=1)
 RATE = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, HERTZ, least=1)))
-INPUT = Subject((NAME, SIGNAL_TYPE, Field(SC.rate, NODE, most=0, into=RATE)), SC.Input)
-OUTPUT = Subject((NAME, SIGNAL_TYPE, Field(SC.rate, NODE, into=RATE)), SC.Output)
-PARAMETER = Subject((NAME, Field(SC.parameterType, RESOURCE, least=1)), SC.OperationalParameter)
+INPUT = Subject((PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, most=0, into=RATE)), SC.Input)
+OUTPUT = Subject((PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, into=RATE)), SC.Output)
+PARAMETER = Subject((PORT_NAME, Field(SC.parameterType, RESOURCE, least=1)), SC.OperationalParameter)
 GROUNDING = Subject((Field(SC.command, COMMAND_LINE),), SC.Grounding)
 COMPONENT = Subject(
     (
@@ -156,7 +156,7 @@ COMPONENT = Subject(
     SC.Component,
 )
 
-PORTS = tuple(field for field in COMPONENT.fields if NAME in field.into.fields)
+PORTS = tuple(field for field in COMPONENT.fields if PORT_NAME in field.into.fields)
 """The fields of a component that lead to what has a name: inputs, outputs, operational parameters."""
 LINKS = frozenset(field.predicate for subject in COMPONENT.walk() for field in subject.fields if field.into.fields)
 """What leads from a component to what else its profile is made of."""

@@ -49,6 +49,7 @@ def inlined(
         return None
 
 
+# complexity: this loop is most of what loading costs; a call for each of its branches would add a tenth
 def _while_reading(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]] | None:
     """Inline while reading; None where what brackets say does not come just before or after them, as in lists."""
     triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)

@@ -225,6 +225,7 @@ def _written(subject: str, statements: Iterable[Statement]) -> str:
     return f"{subject} {NEXT.join(statement.text for statement in statements)}{END}"
 
 
+# complexity: the loop over all components; calls in it would cost a tenth of the load
 def read(
     text: bytes, source: str, base: str | None = None, segments: SegmentCache | None = None
 ) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
@@ -237,7 +238,7 @@ def read(
     segments = SegmentCache() if segments is None else segments
     subjects = inlined_document(text, source, base, segments)
     if subjects is None:
-        return advertisements.read(turtle.parse(text, source, base))
+        return advertisements.read_document(turtle.parse(text, source, base))
     del text  # as large as what is made of it
     origin = Origin(source)
     found: list[Advertisement | tuple[str, list[Statement]]] = []

@@ -21,12 +21,12 @@ from selfconf.rdf.advertisements.advertisement import (
     allowed,
     property_order,
 )
-from selfconf.rdf.advertisements.fields import COMPONENT, NAME, STRUCTURE, Field, Subject
+from selfconf.rdf.advertisements.fields import COMPONENT, PORT_NAME, STRUCTURE, Field, Subject
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
 
 
-def read(document: Document) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
+def read_document(document: Document) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
     """Every advertisement of a document, in the order of the text, and those that do not conform."""
     good: list[Advertisement] = []
     bad: list[MalformedAdvertisement] = []
@@ -95,16 +95,16 @@ class _Reader:
 
     def _named(self, link: Field) -> Iterator[tuple[str, IRI, Term]]:
         """Name, type and node of each port or parameter; a problem for each that lacks one or repeats a name."""
-        (kind,) = (field for field in link.into.fields if field.least and field is not NAME)
+        (kind,) = (field for field in link.into.fields if field.least and field is not PORT_NAME)
         names: set[str] = set()
         for node in self.document.values(self.component, link.predicate):
-            name, type_ = self._required(node, NAME), self._required(node, kind)
+            name, type_ = self._required(node, PORT_NAME), self._required(node, kind)
             if not isinstance(name, Literal):
-                self._problem(f"{_word(link.predicate)} needs {_one_of(NAME)}")
+                self._problem(f"{_word(link.predicate)} needs {_one_of(PORT_NAME)}")
             elif not isinstance(type_, IRI):
                 self._problem(f"{_word(link.predicate)} {name.lexical!r} needs {_one_of(kind)}")
             else:
-                if NAME.distinct and name.lexical in names:
+                if PORT_NAME.distinct and name.lexical in names:
                     self._problem(f"the name {name.lexical!r} stands for two values of {_word(link.predicate)}")
                 names.add(name.lexical)
                 yield name.lexical, type_, node

@@ -203,6 +203,7 @@ def _unlabelled(cut: list[bytes], name: bytes) -> list[bytes] | None:
     return cut
 
 
+# complexity: the loop over all segments; calls in it would double what it costs
 def _assembled(text: bytes, source: str, base: str | None, segments: SegmentCache) -> dict[str, list[Statement]] | None:
     """What a document says of each named subject, from its segments; None where that cannot be done."""
     text = text if text.endswith(b"\n") else text + b"\n"

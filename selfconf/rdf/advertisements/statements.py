@@ -6,88 +6,33 @@ triple or several. Equal texts make equal statements, so all that follows from a
 
 from __future__ import annotations
 
-import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
-from decimal import Decimal
 from operator import attrgetter
-from typing import NamedTuple
 
-from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
-from selfconf.model.term import IRI, STRING, Literal, Term
+from selfconf.model.profile import Profile
+from selfconf.model.term import IRI, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import allowed
-from selfconf.rdf.advertisements.fields import COMPONENT, GROUNDING, LINKS, NAME, NEXT, PORTS, STRUCTURE, Field
-from selfconf.rdf.vocabulary import RDF, SC, TYPE, XSD
+from selfconf.rdf.advertisements.fields import COMPONENT, LINKS, NEXT, STRUCTURE
+from selfconf.rdf.advertisements.recognition import SUBJECT, port_of, ported, property_of, setting_of
+from selfconf.rdf.vocabulary import SC, TYPE
 
 END = " .\n"
 """What Oxigraph writes after the last statement about a subject."""
 _NAME = attrgetter("name")
-_SUBJECT = IRI("urn:selfconf:component")
 _KIND = IRI("urn:selfconf:kind")
-_NOTHING = Profile(_SUBJECT)
+_NOTHING = Profile(SUBJECT)
 _NO_TYPES: frozenset[IRI] = frozenset()
 _BEYOND = f"<{SC.Component}>"
 """What a blank node may not say if it is to be inlined: that it is a component itself."""
 _STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
 _SILENT = {f"<{predicate}>" for predicate in STRUCTURE - COMPONENT.predicates}
 """What says nothing of a component itself."""
-_SIMPLE = re.compile(
-    r"<(?P<predicate>[^<>]*)> (?:"
-    r"<(?P<iri>[^<>]*)>"
-    r'|"(?P<lexical>[^"\\]*)"(?:\^\^<(?P<datatype>[^<>]*)>|@(?P<language>[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*))?'
-    r"|(?P<integer>[+-]?[0-9]+)"
-    r"|(?P<decimal>[+-]?[0-9]*\.[0-9]+)"
-    r")"
-)
 _LINK = {f"<{predicate}>" for predicate in LINKS}
 _LINKS = re.compile(r"<[^<>]*>(?: , <[^<>]*>)*")
-_KINDS = r"a <[^<>]*>(?: , <[^<>]*>)*"
-_VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)?|[+-]?[0-9]+|[+-]?[0-9]*\.[0-9]+)'
-
-
-class _PortPattern(NamedTuple):
-    """What is recognised of the ports, or operational parameters, that one predicate links to."""
-
-    once: tuple[str, ...]
-    """How the fields begin in Turtle that have exactly one value."""
-    bounded: tuple[tuple[str, int, float], ...]
-    """How the other fields begin, and how often they may be there."""
-    pattern: re.Pattern[str]
-    groups: tuple[int, int, int]
-    """Which groups of the pattern are the name, the type, and the number of the rate."""
-
-    @classmethod
-    def of(cls, link: Field) -> _PortPattern:
-        """The pattern from the table."""
-        fields = link.into.fields
-        allowed = [field.turtle for field in fields if field.most != 0]
-        if not any(field.into.fields for field in fields if field.most != 0):
-            allowed.append(f"(?P<{SC.value.short}>(?!))")  # there is no rate: a group that matches nothing
-        statement = f"(?:{_KINDS}|{'|'.join(allowed)}|<[^<>]*> {_VALUE})"
-        pattern = re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]")
-        (kind,) = (field.predicate for field in fields if field.least and field is not NAME)
-        name, type_, rate = (pattern.groupindex[predicate.short] for predicate in (SC.name, kind, SC.value))
-        return cls(
-            tuple([f"<{f.predicate}> " for f in fields if (f.least, f.most) == (1, 1)]),
-            tuple(
-                [
-                    (f"<{f.predicate}> ", f.least, math.inf if f.most is None else f.most)
-                    for f in fields
-                    if (f.least, f.most) != (1, 1)
-                ]
-            ),
-            pattern,
-            (name, type_, rate),
-        )
-
-
-_RATED = f"<{SC.rate}> "
-_PORTS = {f"<{link.predicate}>": _PortPattern.of(link) for link in PORTS}
-_PREFERENCE = re.compile(COMPONENT[SC.preference].turtle)
-_COMMAND = re.compile(rf"<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?{GROUNDING[SC.command].turtle} \]")
 _TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
 
 
@@ -123,21 +68,21 @@ class Statement(ABC):
     @property
     def properties(self) -> tuple[tuple[IRI, Term], ...]:
         """The properties that it states."""
-        simple = _property(self.text)
+        simple = property_of(self.text)
         return self.read().properties if simple is None else (simple,)
 
     def read(self) -> Profile:
         """What it adds to a profile."""
         if self.part is None:
             port = port_of(self.predicate, self.text)
-            self.part = _ported(self.predicate, *port) if port else self.carefully()[0]
+            self.part = ported(self.predicate, *port) if port else self.carefully()[0]
         return self.part
 
     def carefully(self) -> tuple[Profile, bool]:
         """What it adds to a profile by the careful reader, and whether that finds a problem in it."""
-        text = f"<{_SUBJECT}> a <{SC.Component}> , <{_KIND}>{NEXT}{self.text}{END}"
+        text = f"<{SUBJECT}> a <{SC.Component}> , <{_KIND}>{NEXT}{self.text}{END}"
         ((_, profile, problems),) = advertisements.profiles(turtle.parse(text, ""))
-        return profile or Profile(_SUBJECT), bool(problems)
+        return profile or Profile(SUBJECT), bool(problems)
 
 
 def bracketed(predicate: str, said: Iterable[str]) -> str:
@@ -149,66 +94,6 @@ def links(predicate: str, text: str) -> Sequence[str]:
     """The names of ports, or of a grounding, to which a statement links, if it does nothing else."""
     said = text[len(predicate) + 1 :]
     return list(dict.fromkeys(said.split(" , "))) if predicate in _LINK and _LINKS.fullmatch(said) else ()
-
-
-def port_of(link: str, text: str) -> tuple[str, str, str | None] | None:
-    """Name, type and number of the rate of the port in a statement, if it has one port in order and of a common form.
-
-    Each field has to be there as often as the table says, and its value has to be recognised. To count the predicates
-    in the text is enough: one in a string or in brackets would count too, and the statement would be read carefully.
-    """
-    known = _PORTS.get(link)
-    if known is None:
-        return None
-    once, bounded, pattern, groups = known
-    for mark in once:
-        if text.count(mark) != 1:
-            return None
-    for mark, least, most in bounded:
-        if not least <= text.count(mark) <= most:
-            return None
-    found = pattern.fullmatch(text)
-    if found is None:
-        return None
-    name, type_, rate = found.group(*groups)
-    return None if name is None or type_ is None or (rate is None and _RATED in text) else (name, type_, rate)
-
-
-def _ported(link: str, name: str, kind: str, rate: str | None) -> Profile:
-    """The part of a statement with one port."""
-    type_ = IRI(kind)
-    if link == f"<{SC.hasInput}>":
-        return Profile(_SUBJECT, ports=Ports(inputs=(Input(name, type_),)))
-    if link == f"<{SC.hasOutput}>":
-        return Profile(_SUBJECT, ports=Ports(outputs=(Output(name, type_, None if rate is None else float(rate)),)))
-    return Profile(_SUBJECT, parameters=(OperationalParameter(name, type_),))
-
-
-def setting_of(text: str) -> Profile | None:
-    """The part of a statement with a preference or a command, in order and of a common form."""
-    command = _COMMAND.fullmatch(text)
-    if command is not None:
-        return Profile(_SUBJECT, command=command["command"])
-    preference = _PREFERENCE.fullmatch(text)
-    return None if preference is None else Profile(_SUBJECT, preference=Decimal(preference["preference"]))
-
-
-def _property(text: str) -> tuple[IRI, Term] | None:
-    """The property that a statement with one object of a common form states."""
-    found = _SIMPLE.fullmatch(text)
-    if found is None:
-        return None
-    predicate, iri, lexical, datatype, language, integer, decimal = found.groups()
-    value: Term
-    if iri is not None:
-        value = turtle.resource(iri)
-    elif lexical is None:
-        value = Literal(integer, XSD.integer) if integer else Literal(decimal, XSD.decimal)
-    elif language:
-        value = Literal(lexical, RDF.langString, language)
-    else:
-        value = Literal(lexical, IRI(datatype) if datatype else STRING)
-    return IRI(predicate), value
 
 
 class WrittenStatement(Statement):
@@ -247,7 +132,7 @@ class StatementTable(dict[str, Statement]):
             self._structure(statement, predicate)
         else:
             if predicate not in self._allowed:
-                self._allowed[predicate] = allowed(IRI(predicate[1:-1]), _SUBJECT)
+                self._allowed[predicate] = allowed(IRI(predicate[1:-1]), SUBJECT)
             if not self._allowed[predicate]:
                 self.suspects.add(statement)
         return statement
@@ -263,7 +148,7 @@ class StatementTable(dict[str, Statement]):
         if _TYPES.fullmatch(statement.text) and turtle.SKOLEM not in statement.text:
             types: set[Term] = {IRI(type_) for type_ in statement.text[len("a <") : -1].split("> , <")}
         else:
-            types = set(turtle.parse(f"<{_SUBJECT}> {statement.text}{END}", "").values(_SUBJECT, TYPE))
+            types = set(turtle.parse(f"<{SUBJECT}> {statement.text}{END}", "").values(SUBJECT, TYPE))
         statement.slot, statement.part = TYPE, _NOTHING
         statement.types = frozenset([type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_)])
         if len(statement.types) < len(types):

@@ -19,7 +19,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from selfconf.rdf.advertisements.fields import RATE
-from selfconf.rdf.advertisements.statements import Statement, StatementTable, port_of
+from selfconf.rdf.advertisements.recognition import port_of
+from selfconf.rdf.advertisements.statements import Statement, StatementTable
 from selfconf.rdf.vocabulary import SC
 
 OCCURRENCES = 4

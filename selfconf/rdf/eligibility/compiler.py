@@ -16,6 +16,8 @@ judges the survivors by the whole shape. That both ways give one partition is a 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import chain
 
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, Literal, Term
@@ -98,6 +100,9 @@ def bound_shape(document: Document, bindings: Mapping[IRI, Term]) -> list[Triple
     return triples
 
 
+_INNER = _SHAPES | _SHAPES_OF_A_LIST
+
+
 def local(document: Document, shape: Term, at_value: bool = False, above: frozenset[Term] = frozenset()) -> bool:
     """Whether a shape looks at nothing but statements about the node it is asked about."""
     if shape in above:
@@ -106,17 +111,43 @@ def local(document: Document, shape: Term, at_value: bool = False, above: frozen
     if paths and (at_value or not all(isinstance(path, IRI) for path in paths)):
         return False
     at_value = at_value or bool(paths)
-    for predicate, value in document.about(shape):
-        if predicate in _SHAPES_OF_A_LIST | _SHAPES:
-            inner = document.items(value) if predicate in _SHAPES_OF_A_LIST else [value]
-            if not all(local(document, one, at_value, above | {shape}) for one in inner):
-                return False
-        elif predicate in _OWN_STATEMENTS:
-            if at_value:
-                return False
-        elif predicate in SH and predicate not in _SILENT | _OWN_VALUES:
+    said = document.about(shape)
+    inner = chain.from_iterable(
+        document.items(value) if predicate in _SHAPES_OF_A_LIST else [value]
+        for predicate, value in said
+        if predicate in _INNER
+    )
+    known = _INNER | _SILENT | _OWN_VALUES | (frozenset() if at_value else _OWN_STATEMENTS)
+    return all(predicate in known or predicate not in SH for predicate, _ in said) and all(
+        local(document, one, at_value, above | {shape}) for one in inner
+    )
+
+
+@dataclass(slots=True)
+class _PropertyParts:
+    """What a property shape asks for, as far as it has been read."""
+
+    minimum: int = 0
+    maximum: int | None = None
+    allowed: list[frozenset[Term]] = field(default_factory=list)
+    required: list[Term] = field(default_factory=list)
+    free_in: list[tuple[IRI, frozenset[Term]]] = field(default_factory=list)
+    free_required: list[IRI] = field(default_factory=list)
+    others: dict[IRI, list[Term]] = field(default_factory=dict)
+    """The values of all other constraints."""
+
+    def takes(self, predicate: IRI, value: Term) -> bool:
+        """Take a constraint of how many values, or which, if it is one."""
+        number = int(value.lexical) if isinstance(value, Literal) and value.lexical.isdecimal() else None
+        if predicate == SH.hasValue:
+            self.required.append(value)
+        elif predicate == SH.minCount and number is not None:
+            self.minimum = max(self.minimum, number)
+        elif predicate == SH.maxCount and number is not None:
+            self.maximum = number if self.maximum is None else min(self.maximum, number)
+        else:
             return False
-    return True
+        return True
 
 
 class _Compiler:
@@ -140,20 +171,24 @@ class _Compiler:
         self._above.append(shape)
         self.rest = self.rest or self._repeats(shape)
         for predicate, raw in self.document.about(shape):
-            value = self._bound(raw)
-            if predicate == SH["class"] and isinstance(value, IRI) and value not in self.free:
-                yield ClassTest(value)
-            elif predicate == SH.hasValue and value not in self.free:
-                yield SelfTest(frozenset((value,)))
-            elif predicate == SH["in"] and not self._mentions(raw):
-                yield SelfTest(frozenset(map(self._bound, self.document.items(raw))))
-            elif predicate == SH.property:
-                yield from self._property(raw)
-            elif predicate in _LOGIC:
-                yield from self._logic(predicate, raw)
-            elif predicate in SH and predicate not in _SILENT:
-                self.rest = True
+            yield from self._constraint(predicate, raw)
         self._above.pop()
+
+    def _constraint(self, predicate: IRI, raw: Term) -> Iterator[RoleTest]:
+        """One constraint of a node shape."""
+        value = self._bound(raw)
+        if predicate == SH["class"] and isinstance(value, IRI) and value not in self.free:
+            yield ClassTest(value)
+        elif predicate == SH.hasValue and value not in self.free:
+            yield SelfTest(frozenset((value,)))
+        elif predicate == SH["in"] and not self._mentions(raw):
+            yield SelfTest(frozenset(map(self._bound, self.document.items(raw))))
+        elif predicate == SH.property:
+            yield from self._property(raw)
+        elif predicate in _LOGIC:
+            yield from self._logic(predicate, raw)
+        elif predicate in SH and predicate not in _SILENT:
+            self.rest = True
 
     def _logic(self, predicate: IRI, raw: Term) -> Iterator[RoleTest]:
         """A constraint over other shapes: how many of them the component conforms to."""
@@ -176,50 +211,55 @@ class _Compiler:
 
     def _property(self, shape: Term) -> Iterator[PropertyTest]:
         """One property shape; `rest` where its path or any of its constraints is beyond the subset."""
-        paths = [self._bound(path) for path in self.document.values(shape, SH.path)]
-        path = paths[0] if len(paths) == 1 else shape
         if self._true(shape, SH.deactivated):
             return
-        if not isinstance(path, IRI) or not paths or path in self.free or path in STRUCTURE or path in SC:
+        path = self._path(shape)
+        if path is None:
             self.rest = True
             return
-        minimum, maximum = 0, None
-        allowed: list[frozenset[Term]] = []
-        required: list[Term] = []
-        free_in: list[tuple[IRI, frozenset[Term]]] = []
-        free_required: list[IRI] = []
-        others: dict[IRI, list[Term]] = {}
+        parts = _PropertyParts()
         for predicate, raw in dict.fromkeys(self.document.about(shape)):
             value = self._bound(raw)
-            if predicate == SH.minCount and isinstance(value, Literal) and value.lexical.isdecimal():
-                minimum = max(minimum, int(value.lexical))
-            elif predicate == SH.maxCount and isinstance(value, Literal) and value.lexical.isdecimal():
-                most = int(value.lexical)
-                maximum = most if maximum is None else min(maximum, most)
+            if predicate == SH["in"]:
+                self._among(raw, parts)
             elif predicate == SH.hasValue and value in self.free and isinstance(value, IRI):
-                free_required.append(value)
-            elif predicate == SH.hasValue:
-                required.append(value)
-            elif predicate == SH["in"]:
-                members = [self._bound(member) for member in self.document.items(raw)]
-                variables = [m for m in dict.fromkeys(members) if isinstance(m, IRI) and m in self.free]
-                constants = frozenset(m for m in members if m not in variables)
-                if not variables:
-                    allowed.append(constants)
-                elif len(variables) == 1:
-                    free_in.append((variables[0], constants))
-                else:
-                    self.rest = True
-            elif predicate in SH and predicate not in _SILENT:
+                parts.free_required.append(value)
+            elif predicate in SH and predicate not in _SILENT and not parts.takes(predicate, value):
                 if self._mentions(raw):
                     self.rest = True
                 else:
-                    others.setdefault(predicate, []).append(value)
-        each, covered = compiled(others)
-        self.rest = self.rest or not others.keys() <= covered or self._repeats(shape)
+                    parts.others.setdefault(predicate, []).append(value)
+        each, covered = compiled(parts.others)
+        self.rest = self.rest or not parts.others.keys() <= covered or self._repeats(shape)
         yield PropertyTest(
-            path, minimum, maximum, tuple(allowed), tuple(required), tuple(free_in), tuple(free_required), tuple(each)
+            path,
+            parts.minimum,
+            parts.maximum,
+            tuple(parts.allowed),
+            tuple(parts.required),
+            tuple(parts.free_in),
+            tuple(parts.free_required),
+            tuple(each),
         )
+
+    def _path(self, shape: Term) -> IRI | None:
+        """The path of a property shape, if it is one property that a component states of itself."""
+        paths = [self._bound(path) for path in self.document.values(shape, SH.path)]
+        if len(paths) != 1 or not isinstance(paths[0], IRI):
+            return None
+        return None if paths[0] in self.free or paths[0] in STRUCTURE or paths[0] in SC else paths[0]
+
+    def _among(self, head: Term, parts: _PropertyParts) -> None:
+        """A list of values: all known, or all but one free parameter, which may be any other value."""
+        members = [self._bound(member) for member in self.document.items(head)]
+        variables = [m for m in dict.fromkeys(members) if isinstance(m, IRI) and m in self.free]
+        constants = frozenset(m for m in members if m not in variables)
+        if not variables:
+            parts.allowed.append(constants)
+        elif len(variables) == 1:
+            parts.free_in.append((variables[0], constants))
+        else:
+            self.rest = True
 
     def _repeats(self, shape: Term) -> bool:
         """Whether something is stated twice that a shape may state once; pySHACL then says so."""

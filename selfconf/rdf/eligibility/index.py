@@ -32,7 +32,7 @@ class AdvertisementIndex(Mapping[IRI, Advertisement]):
         for advertisement in self._by_component.values():
             type_sets[advertisement.types].append(advertisement)
         self.type_sets: Mapping[TypeSet, Sequence[Advertisement]] = dict(type_sets)
-        self._grouped: dict[TypeSet, list[tuple[Signature, Collection[Sequence[Advertisement]]]]] = {}
+        self._grouped: dict[TypeSet, list[tuple[AdvertisementSignature, Collection[Sequence[Advertisement]]]]] = {}
 
     @staticmethod
     def of(advertisements: Mapping[IRI, Advertisement] | Iterable[Advertisement]) -> AdvertisementIndex:
@@ -43,7 +43,7 @@ class AdvertisementIndex(Mapping[IRI, Advertisement]):
             return AdvertisementIndex(advertisements)
         return AdvertisementIndex({advertisement.component: advertisement for advertisement in advertisements})
 
-    def alike(self, types: TypeSet, signature: Signature) -> Collection[Sequence[Advertisement]]:
+    def alike(self, types: TypeSet, signature: AdvertisementSignature) -> Collection[Sequence[Advertisement]]:
         """The components of a kind, those together that have the same signature."""
         known = self._grouped.setdefault(types, [])
         for other, groups in known:
@@ -96,7 +96,7 @@ class RelevantPredicates(dict[str, bool]):
         return found
 
 
-class Signature:
+class AdvertisementSignature:
     """What some tests look at in an advertisement: of one kind, equal signatures pass the same tests."""
 
     def __init__(self, tests: Iterable[RoleTest], hierarchy: Hierarchy) -> None:
@@ -117,7 +117,7 @@ class Signature:
         pairs = tuple([pair for pair in profile.properties if looked[f"<{pair[0]}>"]])
         return pairs, profile.parameters if looked[f"<{SC.hasParameter}>"] else None, itself
 
-    def agrees(self, other: Signature) -> bool:
+    def agrees(self, other: AdvertisementSignature) -> bool:
         """Whether this one looks at just what another one has looked at so far."""
         return self is other or (
             self._itself == other._itself

@@ -6,11 +6,11 @@ be violated, or that it leaves no value for a free parameter. Without that it ma
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from selfconf.model.obstacle import NoCommonValue, Obstacle
+from selfconf.model.obstacle import NoCommonValue, Obstacle, ShapeViolated
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
@@ -119,8 +119,7 @@ def _judged(
 ) -> Iterator[NearMiss]:
     """The components that pySHACL finds to be kept out by one thing, for some value of the free parameter."""
     obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
-    by_name = sorted(obstacles, key=_component)
-    focus = [a for a in by_name if not obstacles[a]][:JUDGED] + [a for a in by_name if obstacles[a]][:JUDGED]
+    focus = _focus(obstacles)
     tests = {a: _failed(partitioner, role, a) for a in focus}
     everything = list(ecology.values())
     subjects = partitioner.subjects(role, focus, everything)
@@ -130,17 +129,25 @@ def _judged(
         values = {} if parameter is None else {parameter: value}
         judged = partitioner.violations(role, focus, everything, values, subjects)
         for a in focus:
-            violated = list(judged.get(a.component, ()))
-            told = next(
-                (one for one in violated if one.path in tests[a]), None
-            )  # by the test that failed, in its words
-            reasons[a][value] = [*obstacles[a], *(one for one in violated if one is not told)]
+            reasons[a][value] = [*obstacles[a], *_besides(judged.get(a.component, ()), tests[a])]
     for a, by_value in reasons.items():
         near = {value: some[0] for value, some in by_value.items() if len(some) == 1}
         if near and all(by_value.values()):
-            constrained = parameter is not None and ANOTHER not in near
-            allows = {parameter: frozenset(near)} if parameter is not None and constrained else {}
+            allows = {} if parameter is None or ANOTHER in near else {parameter: frozenset(near)}
             yield NearMiss(role.iri, a.component, next(iter(near.values())), allows)
+
+
+def _focus(obstacles: Mapping[Advertisement, Sequence[Obstacle]]) -> list[Advertisement]:
+    """The first by name of the advertisements that no test keeps out, and then of the others."""
+    by_name = sorted(obstacles, key=_component)
+    return [a for a in by_name if not obstacles[a]][:JUDGED] + [a for a in by_name if obstacles[a]][:JUDGED]
+
+
+def _besides(violated: Iterable[ShapeViolated], failed: set[IRI | None]) -> list[ShapeViolated]:
+    """Violations but the first that a failed test tells already, in its words."""
+    violations = list(violated)
+    told = next((one for one in violations if one.path in failed), None)
+    return [one for one in violations if one is not told]
 
 
 def _values(

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from selfconf.errors import TemplateError
@@ -22,7 +23,7 @@ from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_parameters as free_values
 from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
-from selfconf.rdf.eligibility.index import AdvertisementIndex, ClassClosure, Signature, TypeSet
+from selfconf.rdf.eligibility.index import AdvertisementIndex, AdvertisementSignature, ClassClosure, TypeSet
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Triple
@@ -102,7 +103,7 @@ class Partitioner:
 
     def tested(self, role: CompiledRole, ecology: AdvertisementIndex, type_sets: Iterable[TypeSet]) -> Iterator[Tested]:
         """What the tests of a role say of the components of some kinds; of those that are alike they say one thing."""
-        signature = Signature(role.tests, self.hierarchy)
+        signature = AdvertisementSignature(role.tests, self.hierarchy)
         for kind in type_sets:
             for alike in ecology.alike(kind, signature):
                 profile = alike[0].profile
@@ -115,14 +116,11 @@ class Partitioner:
         found: list[list[EligibleComponent]] = []
         by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
         for number, role in enumerate(self.roles):
-            tested = self.tested(role, ecology, self.akin(role, ecology))
-            passed = [(alike, verdict.allows) for _, alike, verdict in tested if not verdict.obstacles]
+            passed = self._passed(role, ecology)
+            survivors = [a for a, _ in passed]
             if role.complete:
-                found.append(
-                    [EligibleComponent(a.profile, allows, _NOTHING) for alike, allows in passed for a in alike]
-                )
+                found.append([EligibleComponent(a.profile, outcome.allows, _NOTHING) for a, outcome in passed])
                 continue
-            survivors = [a for alike, _ in passed for a in alike]
             if parameter := self.mentioned(role):
                 by_value[number] = parameter, survivors
                 found.append([])
@@ -133,8 +131,22 @@ class Partitioner:
                 )
         if not self.free:
             return found
+        return self._suited(found, by_value, everything)
+
+    def _passed(self, role: CompiledRole, ecology: AdvertisementIndex) -> list[tuple[Advertisement, TestOutcome]]:
+        """The advertisements that pass all tests of a role, with what the tests say."""
+        tested = self.tested(role, ecology, self.akin(role, ecology))
+        return [(a, outcome) for _, alike, outcome in tested if not outcome.obstacles for a in alike]
+
+    def _suited(
+        self,
+        found: list[list[EligibleComponent]],
+        by_value: Mapping[int, tuple[IRI, list[Advertisement]]],
+        everything: list[Advertisement],
+    ) -> list[list[EligibleComponent]]:
+        """The eligible components that leave values to the free parameters, with the values that suit these."""
         stated: dict[IRI, set[Term]] = {parameter: set() for parameter in self.free}
-        for one in (one for some in found for one in some):
+        for one in chain.from_iterable(found):
             for parameter, values in one.allows.items():
                 stated[parameter] |= values
         for number, (parameter, survivors) in by_value.items():

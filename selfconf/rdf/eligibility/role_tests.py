@@ -76,21 +76,19 @@ class PropertyTest:
         faults = tuple(self._faults(frozenset(self.values(profile, hierarchy))))
         return PropertyUnmet(self.path, faults) if faults else None
 
+    # complexity: one case for each field of the test, in the order in which faults are told
     def _faults(self, values: frozenset[Term]) -> Iterator[Fault]:
         """All that is wrong with some values: one property is one obstacle, with all that it takes to remove it."""
         if not values and (self.minimum or self.required or self.free_required):
             yield Missing()
             return
-        if len(values) < self.minimum:
-            yield WrongCount(len(values), too_many=False)
-        if self.maximum is not None and len(values) > self.maximum:
-            yield WrongCount(len(values), too_many=True)
+        too_many = self.maximum is not None and len(values) > self.maximum
+        if too_many or len(values) < self.minimum:
+            yield WrongCount(len(values), too_many)
         for members in self.allowed:
             if not values <= members:
                 yield NotAmong(values - members, members)
-        for value in self.required:
-            if value not in values:
-                yield NotAmong(values, frozenset((value,)))
+        yield from (NotAmong(values, frozenset((value,))) for value in self.required if value not in values)
         for test in self.each:
             wrong = frozenset([value for value in values if not test.passes(value)])
             if wrong:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import NamedTuple
 
 import pyoxigraph as ox
 
@@ -59,22 +58,15 @@ def unfit(predicate: IRI) -> str:
     return f"The value of sh:{predicate.short} has to be {wanted}." if wanted else ILL_FORMED
 
 
-class Misfit(NamedTuple):
-    """A statement whose value cannot stand where it does, and a sentence about it."""
-
-    statement: Triple
-    sentence: str
-
-
-def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[Term]) -> Misfit | None:
-    """The first statement whose value cannot stand where it does; `variables` may stand anywhere."""
+def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[Term]) -> tuple[Triple, str] | None:
+    """The first statement whose value cannot stand where it does, and a sentence; `variables` may stand anywhere."""
     for triple in triples:
         _, predicate, value = triple
         if predicate not in WANTED or value in variables:
             continue
         query = _refused(document, value) if predicate == SH.sparql else None
         if query is not None or not _fits(document, predicate, value):
-            return Misfit(query or triple, unfit(predicate).rstrip("."))
+            return query or triple, unfit(predicate).rstrip(".")
     return None
 
 

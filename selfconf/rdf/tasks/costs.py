@@ -8,15 +8,20 @@ from fractions import Fraction
 from selfconf.model.cost import CostLevel, CostTerm
 from selfconf.model.number import fraction
 from selfconf.model.term import IRI, Term
-from selfconf.rdf.tasks.mistakes import DocumentReader, show
+from selfconf.rdf.tasks.mistakes import DocumentReader, worded
+from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
 
 
-class CostReader(DocumentReader):
+def cost_of(document: Document, template: IRI, roles: frozenset[IRI]) -> tuple[CostLevel, ...]:
+    """The levels of the cost of a template with some roles. Raises TemplateError."""
+    return tuple(_CostReader(document).levels(template, roles))
+
+
+class _CostReader(DocumentReader):
     """Reads the levels of a cost; every method raises TemplateError with a sentence for the author."""
 
     def levels(self, template: IRI, roles: frozenset[IRI]) -> Iterator[CostLevel]:
-        """The levels of the cost of a template with some roles."""
         heads = self.document.values(template, SC.cost)
         levels = self.document.items(heads[0]) if heads else []
         if len(heads) > 1 or (heads and not levels):
@@ -37,7 +42,7 @@ class CostReader(DocumentReader):
             problem = "a term of sc:cost has at most one sc:ofRole; write a term for each role"
             raise self.mistake(problem, term, SC.ofRole, roles[1])
         if role is not None and (role not in known or not isinstance(role, IRI)):
-            problem = f"a term of sc:cost counts {show(role)}, which is no role of the template"
+            problem = f"a term of sc:cost counts {worded(role)}, which is no role of the template"
             raise self.mistake(problem, term, SC.ofRole, role)
         return CostTerm(counted, Fraction(1) if weight is None else weight, otherwise, role)
 

@@ -6,16 +6,20 @@ from collections.abc import Iterator
 
 from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI, Literal
-from selfconf.rdf.tasks.mistakes import DocumentReader, show
-from selfconf.rdf.turtle import Node
+from selfconf.rdf.tasks.mistakes import DocumentReader, worded
+from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
 
 
-class InteractionReader(DocumentReader):
+def interactions_of(document: Document, roles: tuple[Role, ...]) -> tuple[Interaction, ...]:
+    """The interactions of a template with some roles, each once. Raises TemplateError."""
+    return _InteractionReader(document).interactions(roles)
+
+
+class _InteractionReader(DocumentReader):
     """Reads the interactions of a template; every method raises TemplateError with a sentence for the author."""
 
     def interactions(self, roles: tuple[Role, ...]) -> tuple[Interaction, ...]:
-        """The interactions of a template with some roles, each once."""
         known = frozenset(role.iri for role in roles)
         return tuple(dict.fromkeys((*self._short(roles, known), *self._long(known))))
 
@@ -23,7 +27,7 @@ class InteractionReader(DocumentReader):
         for role in roles:
             for sink in self.document.values(role.iri, SC.feeds):
                 if sink not in known or not isinstance(sink, IRI):
-                    problem = f"the role {show(role.iri)} feeds {show(sink)}, which is no role of the template"
+                    problem = f"the role {worded(role.iri)} feeds {worded(sink)}, which is no role of the template"
                     raise self.mistake(problem, role.iri, SC.feeds, sink)
                 yield Interaction(role.iri, sink)
 
@@ -40,7 +44,7 @@ class InteractionReader(DocumentReader):
             if len(unknown) == 2 and source in every_role and sink in every_role:
                 continue  # it belongs to another template of the same file
             if unknown or not isinstance(source, IRI) or not isinstance(sink, IRI):
-                problem = f"an interaction speaks of {show(unknown[0][0])}, which is no role of the template"
+                problem = f"an interaction speaks of {worded(unknown[0][0])}, which is no role of the template"
                 raise self.mistake(problem, node, unknown[0][1], unknown[0][0])
             yield Interaction(source, sink, self._port(node, SC.output), self._port(node, SC.input))
 

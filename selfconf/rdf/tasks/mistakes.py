@@ -74,7 +74,7 @@ def _roots(document: Document) -> list[Node]:
     return [node for node in document.statements if isinstance(node, BlankNode) and node not in values]
 
 
-def show(term: Term) -> str:
+def worded(term: Term) -> str:
     """A term as a message names it."""
     if isinstance(term, IRI):
         return repr(term)

@@ -16,10 +16,10 @@ from selfconf.model.profile import Place
 from selfconf.model.template import Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.shacl import ONLY_WITH_A_PATH, misfit
-from selfconf.rdf.tasks.costs import CostReader
-from selfconf.rdf.tasks.interactions import InteractionReader
-from selfconf.rdf.tasks.mistakes import DocumentReader, show
-from selfconf.rdf.tasks.parameters import ParameterReader
+from selfconf.rdf.tasks.costs import cost_of
+from selfconf.rdf.tasks.interactions import interactions_of
+from selfconf.rdf.tasks.mistakes import DocumentReader, worded
+from selfconf.rdf.tasks.parameters import parameters_of
 from selfconf.rdf.tasks.role_shapes import shape_triples
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, SH, TYPE, XSD
@@ -67,7 +67,7 @@ class _Reader(DocumentReader):
     def task(self, task: Node) -> Task:
         template_iri = self.only(task, SC.template, "a task names exactly one template by sc:template")
         if template_iri not in self.document.instances(SC.Template):
-            problem = f"the template {show(template_iri)} of the task is not in this file"
+            problem = f"the template {worded(template_iri)} of the task is not in this file"
             raise self.mistake(problem, task, SC.template, template_iri)
         template = self.template(template_iri)
         known = {parameter.iri for parameter in template.parameters}
@@ -76,10 +76,10 @@ class _Reader(DocumentReader):
             parameter = self.only(binding, SC.parameter, "a binding names exactly one sc:parameter")
             value = self.only(binding, SC.value, "a binding has exactly one sc:value")
             if parameter not in known or not isinstance(parameter, IRI):
-                problem = f"the task binds {show(parameter)}, which is no parameter of its template"
+                problem = f"the task binds {worded(parameter)}, which is no parameter of its template"
                 raise self.mistake(problem, binding, SC.parameter, parameter)
             if parameter in bindings:
-                problem = f"the task binds the parameter {show(parameter)} twice"
+                problem = f"the task binds the parameter {worded(parameter)} twice"
                 raise self.mistake(problem, binding, SC.parameter, parameter)
             bindings[parameter] = value
         return Task(template, bindings, task if isinstance(task, IRI) else None)
@@ -94,10 +94,10 @@ class _Reader(DocumentReader):
         return Template(
             iri=template,
             roles=roles,
-            interactions=InteractionReader(self.document).interactions(roles),
-            parameters=ParameterReader(self.document).parameters(template, roles),
+            interactions=interactions_of(self.document, roles),
+            parameters=parameters_of(self.document, template, roles),
             label=self._label(template),
-            cost=tuple(CostReader(self.document).levels(template, frozenset(role.iri for role in roles))),
+            cost=cost_of(self.document, template, frozenset(role.iri for role in roles)),
         )
 
     def _listed(self, template: IRI) -> list[Term]:
@@ -115,7 +115,7 @@ class _Reader(DocumentReader):
             raise self.mistake(problem, template, SC.roles, head)
         for name, times in Counter(names).items():
             if times > 1:
-                problem = f"the role {show(name)} stands {times} times in sc:roles"
+                problem = f"the role {worded(name)} stands {times} times in sc:roles"
                 again = names.index(name, names.index(name) + 1)
                 raise self.mistake(problem, self.cell(head, again), FIRST, name)
         return names
@@ -126,20 +126,20 @@ class _Reader(DocumentReader):
             for predicate, kind in _SAID_OF.items():
                 if (TYPE, kind) not in statements and any(said == predicate for said, _ in statements):
                     what = f"has sc:{predicate.short}, but is not described as a sc:{kind.short}"
-                    raise self.mistake(f"{show(subject)} {what}", subject)
+                    raise self.mistake(f"{worded(subject)} {what}", subject)
 
     def _role(self, name: Term, cell: Term) -> Role:
         if not isinstance(name, IRI):
             raise self.mistake("every role needs an IRI", cell, FIRST, name)
         if SC.Role not in self.document.values(name, TYPE):
-            problem = f"{show(name)} stands in sc:roles, but is not described as a sc:Role"
+            problem = f"{worded(name)} stands in sc:roles, but is not described as a sc:Role"
             raise self.mistake(problem, cell, FIRST, name)
         self._shape(name)
         minimum, maximum = self._count(name, SC.minCount), self._count(name, SC.maxCount)
         least = 1 if minimum is None else minimum
         most = 1 if minimum is None and maximum is None else maximum
         if most is not None and least > most:
-            problem = f"the role {show(name)} asks for at least {least} and at most {most} components"
+            problem = f"the role {worded(name)} asks for at least {least} and at most {most} components"
             raise self.mistake(problem, name, SC.minCount, *self.document.values(name, SC.minCount))
         types = tuple(value for value in self.document.values(name, SH["class"]) if isinstance(value, IRI))
         return Role(name, least, most, self._settings(name), types, Place(self.document.source))
@@ -148,12 +148,12 @@ class _Reader(DocumentReader):
         """What a role sets, each once; two values for one type of parameter are a mistake."""
         nodes: dict[Setting, Term] = {}
         for node in self.document.values(role, SC.sets):
-            kind = self.iri(node, SC.parameterType, f"what {show(role)} sets needs one sc:parameterType, an IRI")
-            value = self.only(node, SC.value, f"what {show(role)} sets needs exactly one sc:value")
+            kind = self.iri(node, SC.parameterType, f"what {worded(role)} sets needs one sc:parameterType, an IRI")
+            value = self.only(node, SC.value, f"what {worded(role)} sets needs exactly one sc:value")
             nodes.setdefault(Setting(kind, value), node)
         for kind, times in Counter(setting.type for setting in nodes).items():
             if times > 1:
-                problem = f"the role {show(role)} sets {show(kind)} to {times} different values"
+                problem = f"the role {worded(role)} sets {worded(kind)} to {times} different values"
                 again = [node for setting, node in nodes.items() if setting.type == kind][1]
                 raise self.mistake(problem, role, SC.sets, again)
         return tuple(nodes)
@@ -163,11 +163,11 @@ class _Reader(DocumentReader):
         for predicate, value in self.document.about(role):
             if predicate in ONLY_WITH_A_PATH:
                 place = "which belongs into sh:property [ sh:path ... ]"
-                raise self.mistake(f"the role {show(role)} has sh:{predicate.short}, {place}", role, predicate, value)
+                raise self.mistake(f"the role {worded(role)} has sh:{predicate.short}, {place}", role, predicate, value)
         wrong = misfit(self.document, shape_triples(self.document, role), self._variables)
         if wrong is not None:
-            problem = f"the shape of the role {show(role)} is not well-formed: {wrong.sentence}"
-            raise self.mistake(problem, *wrong.statement)
+            problem = f"the shape of the role {worded(role)} is not well-formed: {wrong[1]}"
+            raise self.mistake(problem, *wrong[0])
 
     def _count(self, role: IRI, predicate: IRI) -> int | None:
         values = self.document.values(role, predicate)
@@ -176,7 +176,7 @@ class _Reader(DocumentReader):
         value = values[0]
         whole = isinstance(value, Literal) and value.datatype in WHOLE and _COUNT.fullmatch(value.lexical)
         if len(values) > 1 or not isinstance(value, Literal) or not whole:
-            what = f"sc:{predicate.short} of the role {show(role)}"
+            what = f"sc:{predicate.short} of the role {worded(role)}"
             problem = f"{what} is one whole number from 0 on, of at most 18 digits"
             raise self.mistake(problem, role, predicate, values[-1])
         return int(value.lexical)

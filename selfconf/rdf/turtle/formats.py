@@ -36,13 +36,13 @@ class RdfFormat:
     rdfpipe: str
 
 
-TURTLE = RdfFormat("Turtle", ox.RdfFormat.TURTLE, ("ttl", "turtle"), "turtle")
+_TURTLE = RdfFormat("Turtle", ox.RdfFormat.TURTLE, ("ttl", "turtle"), "turtle")
 N_TRIPLES = RdfFormat("N-Triples", ox.RdfFormat.N_TRIPLES, ("nt",), "nt")
 RDF_XML = RdfFormat("RDF/XML", ox.RdfFormat.RDF_XML, ("rdf", "xml"), "xml")
 JSON_LD = RdfFormat("JSON-LD", ox.RdfFormat.JSON_LD, ("jsonld", "json"), "json-ld")
 TRIG = RdfFormat("TriG", ox.RdfFormat.TRIG, ("trig",), "trig")
 N_QUADS = RdfFormat("N-Quads", ox.RdfFormat.N_QUADS, ("nq",), "nquads")
-FORMATS = (TURTLE, N_TRIPLES, RDF_XML, JSON_LD, TRIG, N_QUADS)
+FORMATS = (_TURTLE, N_TRIPLES, RDF_XML, JSON_LD, TRIG, N_QUADS)
 _BY_ENDING = {ending: each for each in FORMATS for ending in each.endings}
 _NODE = rb"(?:<[^<>\s]*>|_:\S+)"
 _LOOKS = (
@@ -66,8 +66,8 @@ def format_of(name: str, octets: bytes) -> RdfFormat:
 def other_format(name: str, octets: bytes) -> RdfFormat | None:
     """Which format a text is probably in that is not Turtle; its content counts for more than its name."""
     found = _by_content(octets)
-    found = _BY_ENDING.get(_ending(name), TURTLE) if found is TURTLE else found
-    return None if found in (TURTLE, N_TRIPLES) else found  # N-Triples is Turtle too
+    found = _BY_ENDING.get(_ending(name), _TURTLE) if found is _TURTLE else found
+    return None if found in (_TURTLE, N_TRIPLES) else found  # N-Triples is Turtle too
 
 
 def conversion(name: str, found: RdfFormat) -> str:
@@ -131,4 +131,4 @@ def _ending(name: str) -> str:
 
 def _by_content(octets: bytes) -> RdfFormat:
     head = octets[:_HEAD].removeprefix(_BYTE_ORDER_MARK).lstrip()
-    return next((found for pattern, found in _LOOKS if pattern.match(head)), TURTLE)
+    return next((found for pattern, found in _LOOKS if pattern.match(head)), _TURTLE)

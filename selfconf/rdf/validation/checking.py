@@ -91,7 +91,7 @@ CheckEach = Callable[[FileChecker, Sequence[UnclearedFile]], Iterable[list[Diagn
 """Calls a file checker for each uncleared file, in any order and process, or remembers; `map` is one."""
 
 
-def validate(
+def validate_texts(
     sources: Iterable[SourceText], shapes: Iterable[SourceText], ontologies: Iterable[SourceText], each: CheckEach = map
 ) -> Report:
     """Every problem of every source; raises TurtleError if an ontology is not Turtle."""
@@ -100,31 +100,25 @@ def validate(
     seen: dict[str, Prefiltered] = {}
     index = index_of(_loaded(source) for source in ontologies)
     for source in files:
-        problems = list(_encoding(source))
-        if not problems:
-            screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
-            problems = list(_syntax(source, screened))
-            if not problems:
-                seen[source.name] = screened
-                index.learn(screened)
+        problems, screened = _read(source)
         diagnostics += problems
-    elsewhere = described_twice(seen)
-    suspects = [
-        UnclearedFile(source, elsewhere.get(source.name, {}))
-        for source in files
-        if source.name in seen
-        and (source.name in elsewhere or not (seen[source.name].clear and index.clear(seen[source.name])))
-    ]
-    for suspect in [one for one in suspects if seen[one.source.name].size > MOST_STATEMENTS]:
-        suspects.remove(suspect)
-        diagnostics.append(_too_large(suspect.source, seen[suspect.source.name].size))
-    for problems in each(FileChecker(tuple(shapes), index), suspects):
+        if screened is not None:
+            seen[source.name] = screened
+            index.learn(screened)
+    uncleared = list(_uncleared(files, seen, index))
+    sizes = [seen[one.source.name].size for one in uncleared]
+    diagnostics += [_too_large(u.source, n) for u, n in zip(uncleared, sizes, strict=True) if n > MOST_STATEMENTS]
+    checked = [one for one, size in zip(uncleared, sizes, strict=True) if size <= MOST_STATEMENTS]
+    for problems in each(FileChecker(tuple(shapes), index), checked):
         diagnostics += problems
-    concerned = {found.file for found in diagnostics}
-    for name, screened in seen.items():
-        if not screened.relevant and name not in concerned:
-            diagnostics.append(Diagnostic(name, 1, 1, "SC-S04", _NOTHING, Severity.WARNING))
+    diagnostics += _irrelevant(seen, {found.file for found in diagnostics})
     return report((source.name for source in files), diagnostics)
+
+
+def _irrelevant(seen: dict[str, Prefiltered], concerned: set[str]) -> list[Diagnostic]:
+    """A warning for each file that says nothing that is validated, and of which nothing else is said."""
+    names = [name for name, screened in seen.items() if not screened.relevant and name not in concerned]
+    return [Diagnostic(name, 1, 1, "SC-S04", _NOTHING, Severity.WARNING) for name in names]
 
 
 def described_twice(seen: dict[str, Prefiltered]) -> dict[str, dict[str, str]]:
@@ -155,6 +149,25 @@ def _loaded(source: SourceText) -> Prefiltered:
     if found.problems:
         turtle.read_ontology(octets, source.name, source.base)  # which raises, and words it
     return found
+
+
+def _uncleared(files: Iterable[SourceText], seen: dict[str, Prefiltered], index: TermIndex) -> Iterator[UnclearedFile]:
+    """The files that the prefilter does not clear, or that describe what another file describes."""
+    elsewhere = described_twice(seen)
+    for source in files:
+        found = seen.get(source.name)
+        if found is not None and (source.name in elsewhere or not (found.clear and index.clear(found))):
+            yield UnclearedFile(source, elsewhere.get(source.name, {}))
+
+
+def _read(source: SourceText) -> tuple[list[Diagnostic], Prefiltered | None]:
+    """What the prefilter tells of a file, or why it is no Turtle."""
+    problems = list(_encoding(source))
+    if problems:
+        return problems, None
+    screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
+    problems = list(_syntax(source, screened))
+    return problems, None if problems else screened
 
 
 def _too_large(source: SourceText, size: int) -> Diagnostic:

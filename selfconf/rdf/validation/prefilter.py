@@ -9,7 +9,7 @@ bad one; that is a property test.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -142,6 +142,7 @@ def _problem(error: SyntaxError) -> SyntaxProblem:
     return SyntaxProblem(line, column, max(width, 1), tail if head.startswith("Parser error") else error.msg)
 
 
+# complexity: a few branches for each of the things to note, in one pass over the statements
 def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     """Note which terms a subject uses, and whether it declares one."""
     for predicate, values in properties.items():
@@ -158,13 +159,7 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     types = properties.get(TYPE, {})
     if not _PLACING.isdisjoint(properties):
         found.placed.add(subject)
-        found.above.update(
-            pair
-            for predicate in (RDFS.subClassOf, OWL.equivalentClass)
-            for value in properties.get(predicate, ())
-            if isinstance(value, str)
-            for pair in ((subject, value), *([(value, subject)] if predicate == OWL.equivalentClass else ()))
-        )
+        found.above.update(_above(subject, properties))
     if not _SCHEMA.isdisjoint(types):
         found.terms.add(subject)
         if OWL.ObjectProperty in types:
@@ -173,6 +168,16 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
         found.components.append(subject)
     found.signals.update(value for value in properties.get(SC.signalType, ()) if isinstance(value, str))
     found.relevant = found.relevant or any(_validated(term) for term in (*properties, *types))
+
+
+def _above(subject: str, properties: Properties) -> Iterator[tuple[str, str]]:
+    """A class with each class right above it; equal ones are above each other."""
+    for predicate in (RDFS.subClassOf, OWL.equivalentClass):
+        for value in properties.get(predicate, ()):
+            if isinstance(value, str):
+                yield subject, value
+                if predicate == OWL.equivalentClass:
+                    yield value, subject
 
 
 def _validated(term: FileTerm) -> bool:

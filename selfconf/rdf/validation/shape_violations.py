@@ -23,16 +23,16 @@ from selfconf.rdf.advertisements import COMPONENT
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.validation.diagnostics import at
 
-SC = Namespace("https://w3id.org/selfconf#")
-SH = Namespace("http://www.w3.org/ns/shacl#")
-SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
+_SC = Namespace("https://w3id.org/selfconf#")
+_SH = Namespace("http://www.w3.org/ns/shacl#")
+_SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
 
 _MADE_DISTINCT_BY: dict[Node, URIRef] = {
-    SHAPES.PortNamesDistinct: SC.name,
-    SHAPES.OperationalNamesDistinct: SC.name,
-    SHAPES.ParameterNamesDistinct: SC.name,
-    SHAPES.BindingsDistinct: SC.parameter,
-    SHAPES.ComponentPlaysOnce: SC.component,
+    _SHAPES.PortNamesDistinct: _SC.name,
+    _SHAPES.OperationalNamesDistinct: _SC.name,
+    _SHAPES.ParameterNamesDistinct: _SC.name,
+    _SHAPES.BindingsDistinct: _SC.parameter,
+    _SHAPES.ComponentPlaysOnce: _SC.component,
 }
 """Shapes that want values to differ, and the property in which they have to."""
 
@@ -53,12 +53,12 @@ class ReportedViolation:
     @property
     def too_many(self) -> bool:
         """Whether there are more values than allowed, so that no one value is to blame."""
-        return self.constraint == SH.MaxCountConstraintComponent
+        return self.constraint == _SH.MaxCountConstraintComponent
 
 
-_NAMING = (SHAPES.PortNamesDistinct, SHAPES.OperationalNamesDistinct)
+_NAMING = (_SHAPES.PortNamesDistinct, _SHAPES.OperationalNamesDistinct)
 """Shapes whose queries only find what `_names_repeat` sees first."""
-_LISTING = (SHAPES.RolesList, SHAPES.RolesDistinct, SHAPES.FedRoleListed)
+_LISTING = (_SHAPES.RolesList, _SHAPES.RolesDistinct, _SHAPES.FedRoleListed)
 """Shapes whose queries only find what `_lists_stray` sees first; rdflib goes down a list by recursion."""
 
 
@@ -99,10 +99,10 @@ def _names_repeat(graph: Graph) -> bool:
 
 def _lists_stray(graph: Graph) -> bool:
     """Whether a list of roles has no end or two, repeats a role, or holds one that feeds what is not in it."""
-    for template in set(graph.subjects(SC.roles)):
+    for template in set(graph.subjects(_SC.roles)):
         roles: list[Node] = []
         passed: set[Node] = set()
-        cells = list(graph.objects(template, SC.roles))
+        cells = list(graph.objects(template, _SC.roles))
         while len(cells) == 1 and cells[0] != RDF.nil and cells[0] not in passed:
             passed.add(cells[0])
             roles += graph.objects(cells[0], RDF.first)
@@ -110,7 +110,7 @@ def _lists_stray(graph: Graph) -> bool:
         known = set(roles)
         if cells != [RDF.nil] or len(known) != len(roles):
             return True
-        if any(fed not in known for role in known for fed in graph.objects(role, SC.feeds)):
+        if any(fed not in known for role in known for fed in graph.objects(role, _SC.feeds)):
             return True
     return False
 
@@ -120,22 +120,22 @@ def reported_violations(graph: Graph, shapes: Graph) -> Iterator[ReportedViolati
     _, report, text = pyshacl.validate(graph, shacl_graph=shapes, inference="none")
     if isinstance(report, ValidationFailure) or not isinstance(report, Graph):
         raise ReportableRuntimeError(f"pySHACL cannot judge this file: {text}")
-    for result in report.objects(predicate=SH.result):
-        shape = report.value(result, SH.sourceShape)
-        focus = report.value(result, SH.focusNode)
-        path = report.value(result, SH.resultPath)
+    for result in report.objects(predicate=_SH.result):
+        shape = report.value(result, _SH.sourceShape)
+        focus = report.value(result, _SH.focusNode)
+        path = report.value(result, _SH.resultPath)
         if not isinstance(shape, URIRef) or focus is None:
             continue
         if isinstance(focus, Literal) and path is not None:
             continue  # that it is a literal at all is the finding of another shape
         yield ReportedViolation(
             shape,
-            str(report.value(result, SH.resultMessage)),
-            Severity.WARNING if report.value(result, SH.resultSeverity) == SH.Warning else Severity.ERROR,
+            str(report.value(result, _SH.resultMessage)),
+            Severity.WARNING if report.value(result, _SH.resultSeverity) == _SH.Warning else Severity.ERROR,
             focus,
             path,
-            report.value(result, SH.value),
-            report.value(result, SH.sourceConstraintComponent),
+            report.value(result, _SH.value),
+            report.value(result, _SH.sourceConstraintComponent),
         )
 
 
@@ -147,7 +147,7 @@ def shape_violations(graph: Graph, positions: Positions, shapes: Shapes) -> list
         at(
             positions,
             offset,
-            BY_SHAPE[violation.shape.removeprefix(SHAPES)].code,
+            BY_SHAPE[violation.shape.removeprefix(_SHAPES)].code,
             violation.message,
             violation.severity,
             shape=str(violation.shape),
@@ -202,12 +202,12 @@ class _Places:
         """The predicates that the path of a violation goes along."""
         if isinstance(violation.path, URIRef):
             return frozenset((violation.path,))
-        path = self.shapes.value(violation.shape, SH.path) if violation.path is not None else None
+        path = self.shapes.value(violation.shape, _SH.path) if violation.path is not None else None
         return frozenset() if path is None else _iris(path, self.shapes)
 
     def _links(self, shape: Node) -> frozenset[Node]:
         """The predicates whose objects a shape is about."""
-        return frozenset(self.shapes.objects(shape, SH.targetObjectsOf))
+        return frozenset(self.shapes.objects(shape, _SH.targetObjectsOf))
 
 
 def _iris(path: Node, shapes: Graph) -> frozenset[Node]:

@@ -12,7 +12,7 @@ beforehand.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
 
@@ -69,7 +69,13 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     faults += [fault for look in (_patterns, _queries) for fault in look(graph, positions)]
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
-    for role in () if faults or _trial(shapes, *roles) is None else roles:
+    if not faults and _trial(shapes, *roles) is not None:
+        yield from _trials(shapes, roles, positions)
+
+
+def _trials(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterator[Diagnostic]:
+    """The roles that cannot be evaluated, each tried by itself."""
+    for role in roles:
         reason = _trial(shapes, role)
         if reason:
             message = f"The shape of this role cannot be evaluated: {reason}"

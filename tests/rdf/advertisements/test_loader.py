@@ -10,9 +10,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
-from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import loader, statements
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.advertisements import statements as clauses
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.advertisements.segments import SegmentCache
 from selfconf.rdf.turtle import document as turtle
@@ -103,42 +102,42 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
 @example(PREFIXES + f":c1 {GOOD} ; :size [ :of [ :unit 'm' ] ; :by 'hand' ] , [] , [ :by 'eye' ] .")
 @example(PREFIXES + f":c1 {GOOD} . [] {GOOD} . :c1 rob:support :c2 . :c2 {GOOD} ; sc:hasInput :shared-port .")
 @example(PREFIXES + f":c1 {GOOD} ; :place :kitchen . :c2 {GOOD} ; :place :kitchen . :kitchen :size [ :value 3 ] .")
-def test_streaming_makes_of_a_document_what_the_careful_reader_makes_of_it(text: str) -> None:
-    careful = advertisements.read(turtle.parse(text, "a.ttl", "file:///a.ttl"))
-    assert told(stream.read(text.encode(), "a.ttl", "file:///a.ttl")) == told(careful)
+def test_the_fast_loader_reads_what_the_careful_reader_reads(text: str) -> None:
+    careful = advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl"))
+    assert told(loader.read(text.encode(), "a.ttl", "file:///a.ttl")) == told(careful)
 
 
-def test_a_document_longer_than_a_piece_is_read_as_one() -> None:
+def test_a_document_longer_than_a_window_is_read_as_one() -> None:
     text = PREFIXES + "\n".join(f":c{k} {GOOD} ; rob:support :robot{k % 7} ." for k in range(500))
-    good, bad = stream.read(text.encode(), "a.ttl")
+    good, bad = loader.read(text.encode(), "a.ttl")
     assert (len(good), bad) == (500, [])
-    assert told((good, bad)) == told(advertisements.read(turtle.parse(text, "a.ttl")))
+    assert told((good, bad)) == told(advertisements.read_document(turtle.parse(text, "a.ttl")))
 
 
-def test_documents_may_share_their_pieces() -> None:
+def test_documents_may_share_their_segments() -> None:
     shared = SegmentCache()
-    found = [stream.read((PREFIXES + text).encode(), name, None, shared)[0][0] for name, text in ADVERTISEMENTS.items()]
+    found = [loader.read((PREFIXES + text).encode(), name, None, shared)[0][0] for name, text in ADVERTISEMENTS.items()]
     assert [a.profile.place and a.profile.place.source for a in found] == list(ADVERTISEMENTS)
     assert found[2].profile.preference == 10
 
 
 def test_blank_nodes_of_two_advertisements_are_never_the_same() -> None:
     text = PREFIXES + f":c1 {GOOD} ; :size [ :value 3 ] . :c2 {GOOD} ; :size [ :value 3 ] ."
-    (one, other), _ = stream.read(text.encode(), "a.ttl")
+    (one, other), _ = loader.read(text.encode(), "a.ttl")
     assert one.profile.values(iri("size")) != other.profile.values(iri("size"))
     assert one != other
 
 
 def test_what_is_no_turtle_is_blamed_by_line_and_column() -> None:
     with pytest.raises(TurtleError, match=r"a\.ttl:2:5: not Turtle"):
-        stream.read(b"<urn:a> <urn:b> <urn:c> .\n<x> ; .", "a.ttl", "file:///")
+        loader.read(b"<urn:a> <urn:b> <urn:c> .\n<x> ; .", "a.ttl", "file:///")
 
 
 @pytest.mark.parametrize("form", [':c1 rdfs:label "{}" .', ":c1 a sc:Component, :A ; rdfs:label '''{}''' ."])
 def test_a_literal_that_is_too_long_for_the_parser_is_blamed_on_its_file(form: str) -> None:
     text = (PREFIXES + form.format("a" * (17 << 20))).encode()
     with pytest.raises(TurtleError, match=r"big\.ttl: a literal in it is over 16 MiB"):
-        stream.read(text, "big.ttl")
+        loader.read(text, "big.ttl")
     with pytest.raises(TurtleError, match="over 16 MiB"):
         turtle.parse(text, "big.ttl")
 
@@ -146,25 +145,28 @@ def test_a_literal_that_is_too_long_for_the_parser_is_blamed_on_its_file(form: s
 def test_ports_with_names_take_time_as_there_are_ports(monkeypatch: pytest.MonkeyPatch) -> None:
     port = "sc:name 'in' ; sc:signalType :S"
     text = PREFIXES + "".join(f":c{k} {GOOD} ; sc:hasInput :in{k} . :in{k} {port} .\n" for k in range(50))
-    careful = told(advertisements.read(turtle.parse(text, "a.ttl")))
+    careful = told(advertisements.read_document(turtle.parse(text, "a.ttl")))
     monkeypatch.setattr(advertisements, "profiles", None)  # nobody looks at one by one
-    found = stream.read(text.encode(), "a.ttl")
+    found = loader.read(text.encode(), "a.ttl")
     assert told(found) == careful
     assert iri("in7") in {value for _, _, value in found[0][7].triples}
 
 
 def test_blank_nodes_with_labels_are_the_same_in_one_document_and_others_in_another() -> None:
     text = PREFIXES + f":c1 {GOOD} ; :near _:x . :c2 {GOOD} ; :near _:x . _:x :near _:y ; rdfs:label 'x' ."
-    one, other = stream.read(text.encode(), "a.ttl")[0]
-    again, _ = stream.read(text.encode(), "a.ttl")[0]
+    one, other = loader.read(text.encode(), "a.ttl")[0]
+    again, _ = loader.read(text.encode(), "a.ttl")[0]
     assert one.profile.values(iri("near")) == other.profile.values(iri("near")) != again.profile.values(iri("near"))
     assert one.profile.values(iri("near"))[0] in {subject for subject, _, _ in one.triples}
 
 
-def test_oxigraph_writes_a_subject_as_streaming_expects_it() -> None:
+def test_oxigraph_writes_a_subject_as_the_fast_loader_expects_it() -> None:
     text = "<s:a> a <s:T> , <s:U> ; <s:p> 'x\ty ;\\n\\t' , [ <s:q> 1 ; <s:r> [ <s:q> 2 ] ] ."
     parser = ox.parse(text, format=ox.RdfFormat.TURTLE)
     written = (ox.serialize(parser, format=ox.RdfFormat.TURTLE) or b"").decode()
-    lines = [block.partition(" ")[2].split(clauses.NEXT) for block in written[: -len(clauses.END)].split(clauses.END)]
+    lines = [
+        block.partition(" ")[2].split(statements.NEXT)
+        for block in written[: -len(statements.END)].split(statements.END)
+    ]
     assert lines[0] == ["a <s:T> , <s:U>", '<s:p> "x\\ty ;\\n\\t"']
     assert [line[0].partition(" ")[0] for line in lines[1:]] == ["<s:q>", "<s:q>", "<s:r>", "<s:p>"]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from selfconf.model.profile import Input, OperationalParameter, Output, candidate_order
 from selfconf.model.term import IRI, Literal
-from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import loader
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.turtle import document as turtle
@@ -27,7 +27,7 @@ Read = tuple[list[Advertisement], list[MalformedAdvertisement]]
 
 def read(text: str) -> Read:
     """The advertisements of a text."""
-    return advertisements.read(turtle.parse(PREFIXES + text, "ads.ttl"))
+    return advertisements.read_document(turtle.parse(PREFIXES + text, "ads.ttl"))
 
 
 def one(text: str) -> Advertisement:
@@ -181,7 +181,7 @@ def broken(path: Path) -> bool:
 @pytest.mark.parametrize("path", sorted(filter(broken, BAD.glob("*.ttl"))), ids=lambda path: path.stem)
 def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
     text = path.read_bytes()
-    careful, streamed = advertisements.read(turtle.parse(text, path.name)), stream.read(text, path.name)
+    careful, streamed = advertisements.read_document(turtle.parse(text, path.name)), loader.read(text, path.name)
     if path.stem in UNDECLARED:
         assert careful == streamed == ([], [])
     else:
@@ -192,4 +192,4 @@ def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
 def test_what_a_grounding_with_a_name_says_is_read() -> None:
     text = ':a a sc:Component, :L ; sc:grounding :g . :g sc:command "go" . :b a sc:Component, :L ; sc:grounding :g .'
     assert [a.profile.command for a in read(text)[0]] == ["go", "go"]
-    assert [a.profile.command for a in stream.read((PREFIXES + text).encode(), "ads.ttl")[0]] == ["go", "go"]
+    assert [a.profile.command for a in loader.read((PREFIXES + text).encode(), "ads.ttl")[0]] == ["go", "go"]

@@ -7,7 +7,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
-from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import loader
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.loader import LoadedAdvertisement
 from selfconf.rdf.advertisements.segments import SegmentCache, inlined_document
@@ -105,14 +105,14 @@ def each(said: str) -> str:
 @example(each("sc:hasInput _:in{d} . _:in{d} sc:name 'in' ; sc:signalType _:s"))
 def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None:
     try:
-        careful = told(advertisements.read(turtle.parse(text, "a.ttl", "file:///a.ttl")))
+        careful = told(advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl")))
     except TurtleError:
         with pytest.raises(TurtleError):
-            stream.read(text.encode(), "a.ttl", "file:///a.ttl")
+            loader.read(text.encode(), "a.ttl", "file:///a.ttl")
         return
     known = SegmentCache()
     for _ in range(2):  # what was learnt the first time is used the second
-        found = stream.read(text.encode(), "a.ttl", "file:///a.ttl", known)
+        found = loader.read(text.encode(), "a.ttl", "file:///a.ttl", known)
         assert told(found) == careful
         for clause in (c for one in found[0] if isinstance(one, LoadedAdvertisement) for c in one.statements):
             assert clause.predicate == clause.text.partition(" ")[0]
@@ -126,7 +126,7 @@ def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None
         'sc:grounding [ sc:command "drive {d}" ]', 'sc:hasInput [ sc:name "/robot{d}/odom" ; sc:signalType :S{d} ]',
     ],
 )  # fmt: skip
-def test_pieces_that_differ_in_strings_and_digits_are_read_once(said: str) -> None:
+def test_segments_that_differ_in_strings_and_digits_are_read_once(said: str) -> None:
     known = SegmentCache()
     inlined_document(each(said).encode(), "a.ttl", None, known)
     assert known.new <= GOOD.count(";") + 1
@@ -135,7 +135,7 @@ def test_pieces_that_differ_in_strings_and_digits_are_read_once(said: str) -> No
 @pytest.mark.parametrize(
     "piece", [b" :p 'a1' ;", b' :p "a\\q" ;', b" p1:p 1 ;", b" :p <a%201> ;", b' :p "x"@en-1 ;', b" :p <http://a:1/> ;"]
 )
-def test_shapes_in_which_digits_do_not_mean_themselves_have_no_form(piece: bytes) -> None:
+def test_patterns_in_which_digits_do_not_mean_themselves_have_no_template(piece: bytes) -> None:
     assert not TokenTemplates().wanted(patterns_of([piece] * OCCURRENCES))
 
 
@@ -144,8 +144,8 @@ def test_shapes_in_which_digits_do_not_mean_themselves_have_no_form(piece: bytes
     [":room :polygon ( 1 2 3 ) .", ":room :near _:x .", ':room rdfs:comment "node_:x" .', ":c1 :near [] , [] .",
      "_:room a _:Kind ; :near _:room .", ":room :shape ( ( 1 2 ) [ :x ( ) ] ) ."],
 )  # fmt: skip
-def test_one_odd_statement_leaves_the_rest_to_the_pieces(odd: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_odd_statement_leaves_the_rest_to_the_segments(odd: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text = f"{each(':serial {d}')}\n{odd}"
-    careful = told(advertisements.read(turtle.parse(text, "a.ttl")))
-    monkeypatch.setattr(advertisements, "read", None)
-    assert told(stream.read(text.encode(), "a.ttl")) == careful
+    careful = told(advertisements.read_document(turtle.parse(text, "a.ttl")))
+    monkeypatch.setattr(advertisements, "read_document", None)
+    assert told(loader.read(text.encode(), "a.ttl")) == careful

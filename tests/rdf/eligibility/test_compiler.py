@@ -107,7 +107,7 @@ def ecology(components: list[tuple[str, list[tuple[str, str]], bool]]) -> list[A
         said = "".join(f" ; {path} {value}" for path, value in properties)
         gossip = " ; :near :x , :c1 . :x a :Place . :c1 :p 1 ." if talkative else " ."
         text = f"{PREFIXES} :c{number} a sc:Component, {kind}{said}{gossip}"
-        good, bad = advertisements.read(turtle.parse(text, f"{number}.ttl"))
+        good, bad = advertisements.read_document(turtle.parse(text, f"{number}.ttl"))
         assert not bad
         found += good
     return found

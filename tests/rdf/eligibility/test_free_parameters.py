@@ -110,14 +110,14 @@ def test_a_role_that_must_not_have_the_value_of_another_is_not_played_by_its_lik
     assert [component.short for component in found.components] == ["c2", "c1"]
 
 
-def test_a_role_that_nobody_has_to_play_may_set_what_has_no_value() -> None:
+def test_a_role_that_may_stay_empty_may_set_what_has_no_value() -> None:
     text = (
         f"{PARAMETER} . :r a sc:Role ; sc:minCount 0 ; sh:property [ sh:path :p ; sh:in ( :v ) ] ;"
         " sc:sets [ sc:parameterType :T ; sc:value :v ] ."
     )
     task = bindings.complete(document(text))
     component = f"{PREFIXES} :c a sc:Component, :A ; sc:hasParameter [ sc:name 'q' ; sc:parameterType :T ] ."
-    partition = Partitioner(task).partition(advertisements.read(turtle.parse(component, "a.ttl"))[0])
+    partition = Partitioner(task).partition(advertisements.read_document(turtle.parse(component, "a.ttl"))[0])
     assert len(partition.candidates[0]) == 1
     found = solve.search(Problem(task.task, partition))
     assert isinstance(found, Configuration)
@@ -125,11 +125,11 @@ def test_a_role_that_nobody_has_to_play_may_set_what_has_no_value() -> None:
 
 
 @pytest.mark.parametrize("shape", ["{}", "sh:and ( [ {} ] )"])
-def test_a_parameter_that_lists_its_values_has_them_though_nobody_states_any(shape: str) -> None:
+def test_a_parameter_that_lists_its_values_has_them_though_no_component_states_any(shape: str) -> None:
     looked_at = shape.format("sh:property [ sh:path :p ; sh:in ( :v ) ]")
     task = bindings.complete(document(f"{PARAMETER} ; sh:in ( :y :x ) . :r a sc:Role ; {looked_at} {SETS} ."))
     text = f'{PREFIXES} :a a sc:Component, :A ; sc:hasParameter [ sc:name "k" ; sc:parameterType :T ] .'
-    ads = advertisements.read(turtle.parse(text, "a.ttl"))[0]
+    ads = advertisements.read_document(turtle.parse(text, "a.ttl"))[0]
     found = solve.search(Problem(task.task, Partitioner(task).partition(ads)))
     assert isinstance(found, Configuration)
     assert [setting.value for setting in found.settings] == list(found.bindings.values()) == [iri("x")]

@@ -44,7 +44,7 @@ def test_near_misses_are_those_of_the_class_whom_one_thing_keeps_out() -> None:
 
 
 @given(SHAPES, COMPONENTS, st.sampled_from(HIERARCHIES))
-def test_tests_and_pyshacl_agree_on_who_is_a_near_miss(
+def test_tests_and_pyshacl_agree_on_the_near_misses(
     shape: str, components: list[tuple[str, list[tuple[str, str]], bool]], hierarchy: Hierarchy
 ) -> None:
     assume("lessThan" not in shape and "NaN" not in str(components))  # of what has no order pySHACL says no more
@@ -96,7 +96,7 @@ def test_what_looks_alike_is_told_apart() -> None:
     ]
 
 
-def test_who_is_let_in_brings_along_the_values_that_it_allows() -> None:
+def test_a_near_miss_brings_along_the_values_that_it_allows() -> None:
     power = "sh:property [ sh:path :power ; sh:minInclusive 5 ] ;"
     on = "sh:property [ sh:path :support ; sh:in ( :robot ) ]"
     text = f"{ROBOT} sh:nodeKind sh:IRI . :t sc:roles ( :a :b ) . :a a sc:Role ; sh:class :A ; {power} {on} . "
@@ -111,7 +111,7 @@ def test_who_is_let_in_brings_along_the_values_that_it_allows() -> None:
     assert len(repairs(judged, weak, f"{other} :X .")) == 1
 
 
-def test_who_leaves_no_value_for_a_parameter_is_kept_out_by_that_too() -> None:
+def test_a_component_that_leaves_no_value_for_a_parameter_is_kept_out_by_that_too() -> None:
     text = f"{ROBOT} sh:in ( :Astrid ) . :t sc:roles ( :r ) . :r a sc:Role ; sh:class :A ;"
     text += " sh:property [ sh:path :power ; sh:in ( 5 ) ] ; sh:property [ sh:path :support ; sh:in ( :robot ) ] ."
     assert near(text, ":a a sc:Component, :A ; :power 3 ; :support :Pippi .") == []

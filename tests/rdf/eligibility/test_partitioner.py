@@ -30,7 +30,7 @@ PARAMETER = iri("par")
 
 def read(texts: Iterable[str]) -> list[Advertisement]:
     """The advertisements that some texts are."""
-    return [one for text in texts for one in advertisements.read(turtle.parse(PREFIXES + text, "ads.ttl"))[0]]
+    return [one for text in texts for one in advertisements.read_document(turtle.parse(PREFIXES + text, "ads.ttl"))[0]]
 
 
 def partitioner(
@@ -239,14 +239,14 @@ def conforming(texts: list[str], role: str, value: str = ":par") -> set[str]:
 
 @settings(max_examples=examples(100), suppress_health_check=[HealthCheck.too_slow])
 @given(components(), roles())
-def test_a_compiled_role_takes_whom_pyshacl_takes(texts: list[str], role: str) -> None:
+def test_a_compiled_role_takes_the_components_that_pyshacl_takes(texts: list[str], role: str) -> None:
     (eligible,) = names(partitioner(f":t a sc:Template ; sc:roles ( :r ) . :r {role} .").partition(read(texts)))
     assert set(eligible) == conforming(texts, role)
 
 
 @settings(max_examples=examples(60), suppress_health_check=[HealthCheck.too_slow])
 @given(components(), roles(free=True), st.sampled_from((*VALUES, ":somebody")))
-def test_a_role_with_a_free_parameter_takes_whom_pyshacl_takes_for_each_value(
+def test_a_role_with_a_free_parameter_takes_the_components_that_pyshacl_takes_for_each_value(
     texts: list[str], role: str, value: str
 ) -> None:
     text = f':t a sc:Template ; sc:roles ( :r ) ; sc:parameter :par . :par a sc:Parameter ; sc:name "par" . :r {role} .'

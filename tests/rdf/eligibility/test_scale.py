@@ -12,7 +12,7 @@ from benchmarks.scale import worlds as scale
 from selfconf.api.reading import collector_at_rest
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Profile
-from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import loader
 from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.nearly_eligible import near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
@@ -39,7 +39,7 @@ def text() -> bytes:
 
 def read(text: bytes) -> list[Advertisement]:
     """All of them; none is malformed."""
-    good, bad = stream.read(text, "many.ttl", "file:///many.ttl")
+    good, bad = loader.read(text, "many.ttl", "file:///many.ttl")
     assert not bad
     return good
 

@@ -17,7 +17,7 @@ def dataset() -> Dataset:
     """The paper's ecology."""
     dataset = Dataset()
     document = turtle.parse(PREFIXES + " ".join(ADVERTISEMENTS.values()), "ads")
-    dataset.add_advertisements(advertisements.read(document)[0])
+    dataset.add_advertisements(advertisements.read_document(document)[0])
     return dataset
 
 

@@ -23,7 +23,7 @@ from selfconf.rdf.turtle.formats import (
     format_of,
     read_ontology,
 )
-from selfconf.rdf.validation import SourceText, validate
+from selfconf.rdf.validation import SourceText, validate_texts
 from selfconf.rdf.vocabulary import RDFS
 from tests.lab import PREFIXES
 
@@ -95,7 +95,7 @@ def test_an_advertisement_in_another_format_is_refused_with_the_command_that_con
         assert f"rdfpipe -i {found.rdfpipe} -o turtle 'my lamps.{found.endings[0]}' > 'my lamps.ttl'" in str(
             caught.value
         )
-    (problem,) = validate([SourceText(name, written(found))], [], []).diagnostics
+    (problem,) = validate_texts([SourceText(name, written(found))], [], []).diagnostics
     assert (problem.code, problem.line) == ("SC-S01", 1)
     assert problem.message == f"This is {found.name}, and what is validated is Turtle."
     assert problem.hint == f"Convert it: {conversion(name, found)}"
@@ -122,8 +122,8 @@ def test_terms_of_an_ontology_in_another_format_are_known_to_validation() -> Non
     lamp = PREFIXES.replace("peis-home", "home") + ":l a sc:Component, :Lamp ."
     known = [SourceText(path.name, path.read_bytes()) for path in library.ontologies()]
     known.append(SourceText("lamps.rdf", written(RDF_XML)))
-    assert not validate([SourceText("l.ttl", lamp.encode())], [], known).diagnostics
+    assert not validate_texts([SourceText("l.ttl", lamp.encode())], [], known).diagnostics
     misspelt = SourceText("l.ttl", lamp.replace(":Lamp", ":Lmap").encode())
-    assert [found.message for found in validate([misspelt], [], known).diagnostics] == [
+    assert [found.message for found in validate_texts([misspelt], [], known).diagnostics] == [
         "No loaded ontology declares :Lmap."
     ]

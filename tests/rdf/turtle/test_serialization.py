@@ -15,8 +15,8 @@ from tests.protocol.strategies import literals
 
 def test_an_advertisement_on_the_wire_is_read_as_it_was() -> None:
     for name, text in ADVERTISEMENTS.items():
-        (sent,), _ = advertisements.read(turtle.parse(PREFIXES + text, name))
-        (received,), _ = advertisements.read(turtle.parse(write.ntriples(sent.triples), name))
+        (sent,), _ = advertisements.read_document(turtle.parse(PREFIXES + text, name))
+        (received,), _ = advertisements.read_document(turtle.parse(write.ntriples(sent.triples), name))
         assert received.profile == sent.profile
 
 

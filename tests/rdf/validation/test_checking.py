@@ -12,7 +12,7 @@ from selfconf import library
 from selfconf.errors import TurtleError
 from selfconf.model.codes import CODES, PREAMBLE, Code
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
-from selfconf.rdf.validation.checking import SourceText, validate
+from selfconf.rdf.validation.checking import SourceText, validate_texts
 from tests.bad_files import BAD, checked, promised
 
 ADVERTISEMENT = ":tuner a sc:Component, rob:Tuner .\n"
@@ -29,7 +29,7 @@ ONTOLOGIES = [load(path) for path in library.ontologies()]
 def check(*texts: str, ontologies: Iterable[SourceText] = ()) -> Report:
     """Validate texts, which get the names 0.ttl, 1.ttl and so on and the usual prefixes."""
     sources = [SourceText(f"{number}.ttl", (PREAMBLE + text).encode()) for number, text in enumerate(texts)]
-    return validate(sources, SHAPES, [*ONTOLOGIES, *ontologies])
+    return validate_texts(sources, SHAPES, [*ONTOLOGIES, *ontologies])
 
 
 def found(report: Report) -> list[str]:
@@ -53,7 +53,7 @@ def test_the_bad_example_of_a_code_earns_it_and_the_good_one_nothing(code: Code)
 
 @pytest.mark.parametrize("path", [*library.ontologies(), *library.shapes()], ids=lambda path: path.stem)
 def test_what_selfconf_brings_along_conforms(path: Path) -> None:
-    assert not validate([load(path)], SHAPES, ONTOLOGIES).diagnostics
+    assert not validate_texts([load(path)], SHAPES, ONTOLOGIES).diagnostics
 
 
 def test_all_problems_are_reported_in_the_order_of_the_text() -> None:
@@ -73,13 +73,15 @@ def test_every_syntax_error_of_a_file_is_reported() -> None:
 
 
 def test_bytes_that_are_not_utf_8_are_placed() -> None:
-    (problem,) = validate([SourceText("a.ttl", "# ä\n:a :b ".encode() + b"\xe4 .")], SHAPES, ONTOLOGIES).diagnostics
+    (problem,) = validate_texts(
+        [SourceText("a.ttl", "# ä\n:a :b ".encode() + b"\xe4 .")], SHAPES, ONTOLOGIES
+    ).diagnostics
     assert (problem.line, problem.column, problem.code) == (2, 7, "SC-S02")
 
 
 def test_a_byte_order_mark_is_allowed() -> None:
     source = SourceText("a.ttl", b"\xef\xbb\xbf" + (PREAMBLE + ADVERTISEMENT).encode())
-    assert not validate([source], SHAPES, ONTOLOGIES).diagnostics
+    assert not validate_texts([source], SHAPES, ONTOLOGIES).diagnostics
 
 
 def test_a_file_cannot_bring_shapes_that_judge_another() -> None:
@@ -206,7 +208,7 @@ def test_two_diagnostics_are_equal_whatever_line_they_show() -> None:
 
 def test_a_file_with_a_nul_is_no_turtle_at_the_place_of_the_nul() -> None:
     text = b'# a note\n<urn:x:a> <urn:x:p> "a\x00b" .\n'
-    report = validate([SourceText("nul.ttl", text)], SHAPES, ONTOLOGIES)
+    report = validate_texts([SourceText("nul.ttl", text)], SHAPES, ONTOLOGIES)
     assert [(found.line, found.column, found.code) for found in report.diagnostics] == [(2, 23, "SC-S01")]
     assert report.unreadable == {"nul.ttl"}
 
@@ -217,4 +219,4 @@ def test_a_chain_of_two_thousand_roles_conforms() -> None:
     chain = "".join(f"{one} sc:feeds {after} .\n" for one, after in pairwise(names))
     roles = "".join(f"{one} a sc:Role ; sh:class rob:Tuner .\n" for one in names)
     text = f"{PREAMBLE}:t a sc:Template ; sc:roles ( {' '.join(names)} ) .\n{chain}{roles}"
-    assert not validate([SourceText("t.ttl", text.encode())], SHAPES, ONTOLOGIES).diagnostics
+    assert not validate_texts([SourceText("t.ttl", text.encode())], SHAPES, ONTOLOGIES).diagnostics

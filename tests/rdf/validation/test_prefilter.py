@@ -90,7 +90,7 @@ def test_no_bad_file_is_cleared_and_no_query_is_missed(text: str) -> None:
     assert found == set(reported_violations(graph, SHAPES.needed(graph)))
 
 
-def test_a_good_advertisement_is_cleared_at_first_sight() -> None:
+def test_a_good_advertisement_is_cleared() -> None:
     screened = prefilter((HEAD + GOOD).encode())
     assert screened.clear
     assert screened.components == ["https://example.org/home#cap"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.rdf.validation.checking import SourceText, validate
+from selfconf.rdf.validation.checking import SourceText, validate_texts
 from selfconf.rdf.validation.syntax import USUAL
 
 HEAD = "".join(f"@prefix {prefix}: <{namespace.base}> .\n" for prefix, namespace in USUAL.items() if prefix != "unit")
@@ -19,7 +19,7 @@ GOOD = """@prefix : <https://example.org/home#> .
 def said(text: str) -> list[tuple[int, str, str | None]]:
     """Line below the prefixes, message and hint of each problem."""
     head = HEAD.count("\n")
-    report = validate([SourceText("a.ttl", (HEAD + text).encode())], [], [])
+    report = validate_texts([SourceText("a.ttl", (HEAD + text).encode())], [], [])
     return [(each.line - head, each.message, each.hint) for each in report.diagnostics if each.code == "SC-S01"]
 
 

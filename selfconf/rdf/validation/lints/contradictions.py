@@ -99,6 +99,7 @@ def _own(normal: NormalForm) -> Iterator[ShapeContradiction]:
             yield from (ShapeContradiction(one, needed) for needed in _of_properties(normal))
 
 
+# complexity: one rule for each way in which the values of a path can be impossible
 def _values(normal: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContradiction]:
     """Of the values of a path: their number, those that have to be there, and what holds of each."""
     needed = values.needed()
@@ -162,6 +163,7 @@ def _kinds(statement: ShapeStatement) -> frozenset[type]:
     return _KINDS_OF.get(predicate, _ANY)
 
 
+# complexity: one rule for each pair of constraints, the cheap ones first
 def _exclude(one: ShapeStatement, other: ShapeStatement) -> bool:
     """Whether no value satisfies both of two statements, neither of which names values."""
     if _kinds(one).isdisjoint(_kinds(other)):
@@ -223,6 +225,7 @@ def _entailed(normal: NormalForm, shape: Node) -> ShapeStatement | None:
     return basis[-1] if _covers(normal, NormalForm(normal.source, (shape,)), basis) and basis else None
 
 
+# complexity: one rule for each part of a normal form; each needs what the one before it has found
 def _covers(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> bool:
     """Whether whatever satisfies `more` satisfies `less`; what shows it is added to `basis`."""
     if not less.whole or less.closed or less.nots or less.choices or not _all_in(more, less, basis):

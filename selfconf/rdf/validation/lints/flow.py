@@ -10,7 +10,7 @@ asked of the other; whether signals match is seen in the widest sense, that of t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from rdflib import RDF, SH, Literal, URIRef
@@ -48,12 +48,7 @@ class Ask(NamedTuple):
 def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
     """Loops of roles that feed only each other, with no actuator among them."""
     for roles, links in _templates(file):
-        feeds: dict[Node, set[Node]] = {}
-        for link in links:
-            feeds.setdefault(link.source, set()).add(link.sink)
-        after = {role: _reached(role, feeds) for role in roles}
-        loops = {frozenset(two for two in after[one] if one in after[two]) for one in roles if one in after[one]}
-        for loop in loops:
+        for loop in _loops(roles, links):
             inside = [link for link in links if link.source in loop]
             if all(link.sink in loop for link in inside) and not any(_acts(file, role) for role in loop):
                 names = listed([file.short(str(role)) for role in roles if role in loop])
@@ -66,6 +61,15 @@ def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
                 message = f"{who}, without an actuator: nothing comes of this loop."
                 hint = "Let it feed a role outside, or a kind of rob:Actuator."
                 yield at(file.positions, max(closing), "SC-L12", message, hint=hint)
+
+
+def _loops(roles: Sequence[Node], links: Iterable[RoleLink]) -> set[frozenset[Node]]:
+    """The roles that feed each other in a circle, as many of them together as do."""
+    feeds: dict[Node, set[Node]] = {}
+    for link in links:
+        feeds.setdefault(link.source, set()).add(link.sink)
+    after = {role: _reached(role, feeds) for role in roles}
+    return {frozenset(two for two in after[one] if one in after[two]) for one in roles if one in after[one]}
 
 
 def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:

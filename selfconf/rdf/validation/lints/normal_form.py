@@ -118,6 +118,7 @@ class NormalForm:
             return
         self.require(shape)
 
+    # complexity: one case for each constraint of SHACL that is understood
     def require(self, shape: Node) -> None:
         """Ask of the node what a node shape asks for, or a property shape of each of its values."""
         self.shapes.append(shape)

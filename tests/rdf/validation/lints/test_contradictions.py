@@ -72,7 +72,7 @@ ROLES = st.lists(PARTS, min_size=2, max_size=5, unique=True).map(" ; ".join)
 @example(
     "sh:property [ sh:path :p ; sh:hasValue 1 , 2 ] , [ sh:path :p ; sh:maxCount 1 ]", [(":A", [(":p", "1")], False)]
 )
-def test_nobody_conforms_to_what_is_called_impossible(
+def test_no_component_conforms_to_what_is_called_impossible(
     shape: str, components: list[tuple[str, list[tuple[str, str]], bool]]
 ) -> None:
     if not impossible(shape):
@@ -144,7 +144,7 @@ def test_a_contradiction_is_found_wherever_its_two_sides_stand(shape: str) -> No
         "sh:node :role ; sh:property [ sh:path :p ; sh:node :role ; sh:minCount 1 ]",
     ],
 )
-def test_what_somebody_could_keep_to_is_left_alone(shape: str) -> None:
+def test_what_a_component_could_conform_to_is_left_alone(shape: str) -> None:
     assert not impossible(shape)
 
 

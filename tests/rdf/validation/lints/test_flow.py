@@ -49,7 +49,7 @@ def codes(text: str) -> list[str]:
         (":two sh:class :Oracle ; sc:feeds :one .", []),  # who knows what an oracle does
     ],
 )
-def test_a_loop_has_to_act_on_the_world_or_to_feed_somebody(more: str, found: list[str]) -> None:
+def test_a_loop_has_to_act_on_the_world_or_to_feed_a_role(more: str, found: list[str]) -> None:
     assert codes(LOOP + more) == found
 
 

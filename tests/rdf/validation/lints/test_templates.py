@@ -77,6 +77,6 @@ def test_a_closed_role_that_does_not_let_a_component_have_a_type_is_told_how_to(
     assert "sh:ignoredProperties" in found.hint
 
 
-def test_a_contradiction_in_a_shape_that_is_no_role_is_nobodys_business() -> None:
+def test_a_contradiction_in_a_shape_that_is_no_role_is_not_reported() -> None:
     shape = ":s a sh:NodeShape ; sh:property [ sh:path rob:place ; sh:minCount 2 ; sh:maxCount 1 ] ."
     assert not lints(TEMPLATE + shape)

@@ -7,7 +7,7 @@ import pytest
 from selfconf import library
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Diagnostic, Severity
-from selfconf.rdf.validation.checking import SourceText, validate
+from selfconf.rdf.validation.checking import SourceText, validate_texts
 
 HEAD = PREAMBLE.count("\n")
 SHAPES = [SourceText(path.name, path.read_bytes()) for path in library.shapes()]
@@ -16,7 +16,7 @@ TEMPLATE = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class rob:Lam
 
 
 def lints(text: str, head: str = PREAMBLE) -> list[Diagnostic]:
-    return list(validate([SourceText("a.ttl", (head + text).encode())], SHAPES, ONTOLOGIES).diagnostics)
+    return list(validate_texts([SourceText("a.ttl", (head + text).encode())], SHAPES, ONTOLOGIES).diagnostics)
 
 
 def only(text: str, head: str = PREAMBLE) -> Diagnostic:

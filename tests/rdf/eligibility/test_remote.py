@@ -1,0 +1,33 @@
+"""What an endpoint is asked so that it hands out the components that roles could want."""
+
+from __future__ import annotations
+
+import pyoxigraph as ox
+
+from selfconf.model.term import IRI
+from selfconf.rdf.eligibility.remote import ANYBODY, TYPES, prefaced, statements
+from tests.lab import PREFIXES, iri
+
+STORE = ox.Store()
+STORE.load(
+    (PREFIXES + ":a a sc:Component, :A ; :size [ :of [ :unit :m ] ] . :b a sc:Component, :B .").encode(),
+    format=ox.RdfFormat.TURTLE,
+)
+
+
+def test_the_statements_of_components_of_some_types_are_asked_for_through_blank_nodes() -> None:
+    found = {triple.predicate.value for triple in STORE.query(statements([iri("A")]))}
+    assert {iri("size"), iri("of"), iri("unit")} <= {IRI(predicate) for predicate in found}
+    subjects = {triple.subject for triple in STORE.query(statements([iri("B")]))}
+    assert subjects == {ox.NamedNode(iri("b"))}
+
+
+def test_an_endpoint_tells_whether_it_has_components_and_of_which_types() -> None:
+    assert STORE.query(ANYBODY)
+    assert {str(row[0].value) for row in STORE.query(TYPES)} >= {iri("A"), iri("B")}
+
+
+def test_a_query_gets_the_prefixes_that_it_uses_and_does_not_declare() -> None:
+    assert prefaced("SELECT * { ?c a sc:Component }").startswith("PREFIX sc: <https://w3id.org/selfconf#> SELECT")
+    own = "PREFIX sc: <urn:x#> SELECT * { ?c a sc:Component }"
+    assert prefaced(own) == own

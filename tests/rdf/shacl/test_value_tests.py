@@ -1,0 +1,43 @@
+"""Constraints on single values, compiled."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.shacl.value_tests import ValueTest, compiled
+from selfconf.rdf.vocabulary import SH, XSD
+
+
+def number(text: str) -> Literal:
+    """A whole number."""
+    return Literal(text, XSD.integer)
+
+
+@pytest.mark.parametrize(
+    ("constraint", "wanted", "passing", "failing"),
+    [
+        (SH.nodeKind, SH.IRI, IRI("urn:a"), Literal("a")),
+        (SH.datatype, XSD.integer, number("5"), number("five")),
+        (SH.minInclusive, number("5"), Literal("5.0", XSD.decimal), number("4")),
+        (SH.maxExclusive, number("5"), number("4"), Literal("4")),
+        (SH.minLength, number("2"), Literal("ab"), Literal("a")),
+        (SH.maxLength, number("2"), Literal("ab"), BlankNode("_:a")),
+        (SH.pattern, Literal("^a+$"), Literal("aa"), Literal("ab")),
+    ],
+)
+def test_a_value_passes_or_fails(constraint: IRI, wanted: Term, passing: Term, failing: Term) -> None:
+    test = ValueTest(constraint, wanted)
+    assert test.passes(passing)
+    assert not test.passes(failing)
+
+
+def test_what_is_no_constraint_on_one_value_is_not_compiled() -> None:
+    tests, covered = compiled({SH.datatype: [XSD.integer], SH.uniqueLang: [Literal("true", XSD.boolean)]})
+    assert tests == [ValueTest(SH.datatype, XSD.integer)]
+    assert covered == {SH.datatype}
+
+
+def test_a_pattern_that_is_none_and_two_datatypes_are_not_compiled() -> None:
+    assert compiled({SH.pattern: [Literal("(")]}) == ([], set())
+    assert compiled({SH.datatype: [XSD.integer, XSD.string]}) == ([], set())

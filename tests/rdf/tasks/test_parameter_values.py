@@ -1,0 +1,31 @@
+"""Which values a parameter can have."""
+
+from __future__ import annotations
+
+from selfconf.model.template import Parameter
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.tasks.parameter_values import misfits, suitable
+from selfconf.rdf.turtle import parse
+from selfconf.rdf.vocabulary import XSD
+from tests.lab import PREFIXES, iri
+
+LEVEL = Parameter(iri("level"), "level")
+TEXT = PREFIXES + ":level a sc:Parameter ; sc:name 'level' ; sh:datatype xsd:integer ; sh:maxInclusive 5 ."
+
+
+def test_compiled_constraints_tell_which_values_suit() -> None:
+    good, high, text = Literal("5", XSD.integer), Literal("6", XSD.integer), Literal("5")
+    document = parse(TEXT, "t.ttl")
+    assert suitable(LEVEL, frozenset((good, high, text)), document) == {good}
+    assert misfits(LEVEL, (good, high, text), document).keys() == {high, text}
+
+
+def test_what_is_not_compiled_is_judged_by_pyshacl() -> None:
+    document = parse(TEXT.replace("sh:maxInclusive 5", "sh:in ( 1 2 )"), "t.ttl")
+    one, three = Literal("1", XSD.integer), Literal("3", XSD.integer)
+    assert suitable(LEVEL, frozenset((one, three)), document) == {one}
+
+
+def test_a_parameter_that_asks_for_nothing_takes_anything() -> None:
+    document = parse(PREFIXES + ":level a sc:Parameter ; sc:name 'level' .", "t.ttl")
+    assert misfits(LEVEL, (IRI("urn:a"), Literal("a")), document) == {}
