@@ -38,7 +38,7 @@ def template(tmp_path: Path) -> Path:
 def test_the_choices_are_those_of_the_library() -> None:
     assert set(options.STRATEGIES) == {strategy.value for strategy in Strategy}
     assert set(options.REASONING) == {mode.value for mode in Reasoning}
-    assert query.RESULT_FORMATS == RESULT_FORMATS
+    assert query.ANSWER_FORMATS == RESULT_FORMATS
     assert (query.SECONDS, query.ROWS) == (ANSWER_SECONDS, MOST_ROWS)
     assert tuple(RENDERERS) == validate.REPORT_FORMATS
 
