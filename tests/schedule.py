@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 INHABITED = {
-    "tests/cli/test_budget.py",
     "tests/cli/test_discover.py",
-    "tests/cli/test_query_sources.py",
+    "tests/cli/test_query.py",
     "tests/cli/test_run.py",
     "tests/cli/test_run_trouble.py",
     "tests/cli/test_status.py",
+    "tests/cli/test_stop.py",
 }
 """Modules with tests that use the fixture `inhabited`, which starts a site and seven components: once is enough."""
 BAD_FILES = ("test_a_bad_file_", "test_the_log_of_every_bad_file_")

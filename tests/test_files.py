@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import files
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, TurtleError
 from selfconf.site import Shelf
 
 CLOCK = "@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:x:> . :clock a sc:Component, :Clock ."
@@ -52,3 +52,41 @@ def test_a_site_says_once_what_it_cannot_read_and_serves_the_rest(ads: Path) -> 
     (sentence,) = said
     assert sentence.startswith("left out: cannot read the folder")
     assert list(shelf.advertisements) == ["urn:x:clock"]
+
+
+def test_an_ontology_may_be_in_any_format_of_rdf(tmp_path: Path) -> None:
+    for name in ("a.ttl", "b.rdf", "c.owl", "d.nt", "e.nq", "f.trig", "g.jsonld", "h.txt", "i.TTL"):
+        (tmp_path / name).touch()
+    assert [path.name for path in files.within(tmp_path, endings=files.ONTOLOGY)] == [
+        "a.ttl",
+        "b.rdf",
+        "c.owl",
+        "d.nt",
+        "e.nq",
+        "f.trig",
+        "g.jsonld",
+    ]
+    assert [path.name for path in files.within(tmp_path)] == ["a.ttl"]
+
+
+def test_a_file_means_one_thing_with_and_without_a_mark_and_by_any_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "deep").mkdir()
+    path = tmp_path / "deep" / "lamp.ttl"
+    path.write_bytes(files.BYTE_ORDER_MARK + b"<lamp> a <https://w3id.org/selfconf#Component> , <urn:Lamp> .")
+    (tmp_path / "link.ttl").symlink_to(path)
+    monkeypatch.chdir(tmp_path)
+    found = {files.advertisements(each)[0][0].component for each in (path, Path("deep/lamp.ttl"), Path("link.ttl"))}
+    assert found == {(tmp_path / "deep").resolve().as_uri() + "/lamp"}
+
+
+def test_what_cannot_be_read_as_turtle_is_said(tmp_path: Path) -> None:
+    (tmp_path / "binary.ttl").write_bytes(b"<urn:a>\0")
+    for path, kind, words in (
+        (tmp_path, AuthorError, "is a folder; a file is needed here"),
+        (tmp_path / "nowhere.ttl", AuthorError, "no file or folder"),
+        (tmp_path / "binary.ttl", TurtleError, "binary file"),
+    ):
+        with pytest.raises(kind, match=words):
+            files.advertisements(path)

@@ -1,4 +1,4 @@
-"""When a program ends: which processes count as gone."""
+"""When a program ends: by a signal, or because the one that started it is gone."""
 
 from __future__ import annotations
 
@@ -6,8 +6,20 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 
-from selfconf.termination import alive, start_time
+import pytest
+
+from selfconf.bus.memory import Network
+from selfconf.termination import (
+    PARENT_CHECK,
+    Termination,
+    alive,
+    end_as_by_ctrl_c,
+    orphaned,
+    parent_environment,
+    start_time,
+)
 
 
 def test_a_process_lives_until_it_has_ended_even_if_its_parent_has_not_waited_for_it() -> None:
@@ -25,6 +37,65 @@ def test_a_process_lives_until_it_has_ended_even_if_its_parent_has_not_waited_fo
 def test_a_process_of_another_user_may_live() -> None:
     assert alive(os.getpid())
     assert alive(1)
+
+
+@pytest.fixture
+def handlers() -> Iterator[None]:
+    """Afterwards signals are handled as they were."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.usefixtures("handlers")
+def test_a_signal_ends_the_program_once_however_often_it_comes(number: signal.Signals) -> None:
+    network, said = Network(0), list[str]()
+    ended = Termination(network.node(), lambda: said.append("ending"))
+    assert not ended()
+    for _ in range(3):
+        signal.raise_signal(number)
+    assert network.run(ended, 1.0)
+    network.run(lambda: False, 1.0)
+    assert said == ["ending"]
+
+
+@pytest.mark.usefixtures("handlers")
+def test_a_program_ends_when_the_one_that_started_it_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    network = Network(0)
+    monkeypatch.setenv("SELFCONF_PARENT", str(os.getppid()))
+    ended = Termination(network.node())
+    assert not network.run(ended, 10 * PARENT_CHECK)
+    monkeypatch.setattr(os, "getppid", lambda: 1)
+    assert network.run(ended, 10 * PARENT_CHECK)
+
+
+@pytest.mark.usefixtures("handlers")
+def test_before_that_sigterm_ends_a_program_as_ctrl_c_does() -> None:
+    end_as_by_ctrl_c()
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGTERM)
+
+
+def test_a_program_that_another_one_started_is_an_orphan_once_that_one_is_gone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    parent = os.getppid()
+    assert not orphaned(parent)
+    monkeypatch.setenv("SELFCONF_PARENT", "no number")
+    assert not orphaned(1)
+    monkeypatch.setenv("SELFCONF_PARENT", str(parent))
+    assert not orphaned(parent)
+    assert orphaned(parent + 1)
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    monkeypatch.setenv("SELFCONF_PARENT", str(gone.pid))
+    assert orphaned(parent)
+
+
+def test_a_program_tells_those_that_it_starts_who_it_is() -> None:
+    assert parent_environment() == {"SELFCONF_PARENT": str(os.getpid())}
 
 
 def test_a_process_began_at_one_time_and_a_dead_one_at_none() -> None:

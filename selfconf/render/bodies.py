@@ -17,6 +17,10 @@ from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal, Term
 
+_BOOLEAN = XSD_NAMESPACE + "boolean"
+_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+"""The lexical forms of a truth value (XSD 1.1 part 2, section 3.3.2.2)."""
+
 
 def configuration_body(configuration: Configuration) -> dict[str, Any]:
     """A configuration: its roles, connections, bindings and parameters."""
@@ -97,7 +101,7 @@ def value_body(value: Term) -> Any:
     """A term: IRIs and strings as text, numbers and truth values as such; JSON has no INF and no NaN."""
     if not isinstance(value, Literal):
         return str(value)
-    if value.datatype == XSD_NAMESPACE + "boolean":
-        return value.lexical in ("true", "1")
-    found = plain_number(value)
-    return value.lexical if found is None else found
+    if value.datatype == _BOOLEAN:
+        return _TRUTH.get(value.lexical, value.lexical)
+    number = plain_number(value)
+    return value.lexical if number is None else number

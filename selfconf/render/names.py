@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from selfconf.model.term import IRI, Literal, Term
 
-_LOCAL = re.compile(r"[A-Za-z0-9_][\w.-]*")
+_LOCAL = re.compile(r"[A-Za-z0-9_](?:[\w.-]*[\w-])?")  # a dot at the end would end the statement
 
 
 class Names:

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 
 import selfconf as sc
-from selfconf.api.ecology import Solutions
+from selfconf import read
+from selfconf.api.ecology import Components, EndpointEcology, LoadedEcology, Solutions
 from selfconf.api.tables import LONGEST_TABLE
-from selfconf.errors import QueryError
+from selfconf.errors import NetworkError, ProgrammerError, QueryError
+from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
+from selfconf.query import Question
 from selfconf.rdf.vocabulary import RDF, XSD
+from tests.cli.endpoints import Scripted, http
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 
 def test_components_are_found_by_iri_with_their_profiles(home: sc.Ecology) -> None:
@@ -75,3 +82,125 @@ def test_more_rows_than_asked_for_are_cut_and_more_than_a_screen_are_counted(hom
 def test_what_is_no_query_is_refused_in_a_sentence(query: str, home: sc.Ecology) -> None:
     with pytest.raises(QueryError):
         home.query(query)
+
+
+EVERYTHING = PREFIXES + "\n".join(ADVERTISEMENTS.values())
+
+
+@pytest.fixture(scope="module")
+def paper() -> LoadedEcology:
+    """The ecology of the paper."""
+    found = read(EVERYTHING)
+    assert isinstance(found, LoadedEcology)
+    return found
+
+
+def test_components_are_found_by_their_iri(paper: LoadedEcology) -> None:
+    components = paper.components
+    assert isinstance(components, Components)
+    assert len(components) == len(ADVERTISEMENTS) == len(paper)
+    assert [port.name for port in components[iri("thinking-cap")].inputs] == ["localize", "position", "sonar"]
+    assert iri("nobody") not in components
+    with pytest.raises(KeyError):
+        components[iri("nobody")]
+
+
+def test_components_are_shown_as_a_table_in_order(paper: LoadedEcology) -> None:
+    head, _, *rows = repr(paper.components).splitlines()
+    assert head.split() == ["component", "types", "inputs", "outputs"]
+    assert [row.split()[0] for row in rows] == sorted(component.short for component in paper.components)
+    assert "PositionSensor" in paper.components._repr_html_()
+    assert "sc:Component" not in repr(paper.components)
+
+
+def test_an_ecology_is_true_even_where_it_is_empty() -> None:
+    empty = read(PREFIXES)
+    assert empty
+    assert len(empty) == 0
+    assert "0 components" in repr(empty)
+
+
+@pytest.mark.process
+def test_a_select_gives_solutions_with_terms_of_every_kind() -> None:
+    home = read(PREFIXES + ':a a sc:Component, :T ; :p 5, "x", "y"@en, "z"^^:own, [ :q true ], :b .')
+    found = home.query("SELECT ?v WHERE { <https://example.org/peis-home#a> <https://example.org/peis-home#p> ?v }")
+    assert isinstance(found, Solutions)
+    assert found.variables == ("v",)
+    values = {row["v"] for row in found}
+    assert {
+        Literal("5", IRI(XSD_NAMESPACE + "integer")),
+        Literal("x"),
+        Literal("y", IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString"), "en"),
+        Literal("z", iri("own")),
+        iri("b"),
+    } < values
+    assert sum(isinstance(value, BlankNode) for value in values) == 1
+    assert repr(found).splitlines()[0].strip() == "v"
+
+
+@pytest.mark.process
+def test_triples_are_turtle(paper: LoadedEcology) -> None:
+    found = paper.query("CONSTRUCT { ?c a rob:Found } WHERE { ?c a rob:MotorDrive }")
+    assert isinstance(found, str)
+    assert len(read(found.replace("rob:Found", "rob:Found, sc:Component"))) == 2
+
+
+@pytest.mark.process
+def test_each_advertisement_is_a_graph(paper: LoadedEcology) -> None:
+    found = paper.query("SELECT ?g { GRAPH ?g { ?c a rob:MotorDrive } } ORDER BY ?g")
+    assert isinstance(found, Solutions)
+    assert [row["g"] for row in found] == [iri("astrid-drive"), iri("pippi-drive")]
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("sparql", "words"),
+    [("SELECT WHERE", "not a SPARQL query"), ("SELECT * { SERVICE <http://127.0.0.1:9/> { ?s ?p ?o } }", "SERVICE")],
+)
+def test_a_query_that_cannot_be_asked_is_an_error(paper: LoadedEcology, sparql: str, words: str) -> None:
+    with pytest.raises(QueryError, match=words):
+        paper.query(sparql)
+
+
+@pytest.mark.process
+def test_a_query_ends_in_time(paper: LoadedEcology) -> None:
+    join = " ".join(f"?a{number} ?b{number} ?c{number} ." for number in range(30))
+    with pytest.raises(QueryError, match=r"more than 0\.5 s"):
+        paper.query(f"SELECT (COUNT(*) AS ?n) {{ {join} }}", seconds=0.5)
+
+
+def test_solutions_without_a_variable_are_counted() -> None:
+    assert repr(Solutions([], [{}, {}])) == "2 solutions"
+    assert Solutions(["x"], [{"x": iri("a")}, {}])[0] == {"x": iri("a")}
+    assert "<td" in Solutions(["x"], [{"x": Literal("<b>")}, {}])._repr_html_()
+    assert "<b>" not in Solutions(["x"], [{"x": Literal("<b>")}])._repr_html_()
+
+
+def test_an_endpoint_is_never_loaded_as_a_whole() -> None:
+    ecology = EndpointEcology("http://127.0.0.1:9/query")
+    assert ecology
+    assert ecology.remote
+    with pytest.raises(ProgrammerError, match=r"ask it by query\(\)"):
+        ecology.advertisements()
+    with pytest.raises(ProgrammerError):
+        list(ecology.components)
+    with pytest.raises(TypeError, match="http://127"):
+        len(ecology)
+    assert "http://127.0.0.1:9/query" in repr(ecology)
+    assert "http://127.0.0.1:9/query" in ecology._repr_html_()
+
+
+@pytest.mark.process
+def test_an_endpoint_answers_a_query_itself() -> None:
+    body: dict[str, Any] = {
+        "head": {"vars": ["c"]},
+        "results": {"bindings": [{"c": {"type": "uri", "value": "urn:a"}}]},
+    }
+    with Scripted(http(json.dumps(body))) as server:
+        ecology = EndpointEcology(server.url)
+        found = ecology.query("SELECT ?c { GRAPH ?g { ?c a ?t } }")
+        assert "urn:a" in ecology.asked(Question("SELECT ?c { GRAPH ?g { ?c a ?t } }", "csv")).text
+    assert isinstance(found, Solutions)
+    assert [row["c"] for row in found] == [IRI("urn:a")]
+    with pytest.raises(NetworkError, match="Connection refused"):
+        EndpointEcology("http://127.0.0.1:9/query").query("ASK { ?s ?p ?o }")

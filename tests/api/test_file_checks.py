@@ -1,12 +1,18 @@
-"""What `validate` has found is remembered where that is asked for; more is tried in tests/cli/test_file_checks.py."""
+"""File checks in many processes and from memory: the verdicts are those of one process without a memory."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pytest
 
 import selfconf as sc
+from selfconf.api.file_checks import Remembered, shared
+from selfconf.api.validation import check
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
 
 
 def test_a_remembered_report_is_the_same_and_is_kept_in_the_cache_of_the_user(
@@ -16,3 +22,94 @@ def test_a_remembered_report_is_the_same_and_is_kept_in_the_cache_of_the_user(
     first = sc.validate("tests/bad/bound-twice.ttl", cache=True)
     assert list(tmp_path.rglob("validate/*.json"))
     assert sc.validate("tests/bad/bound-twice.ttl", cache=True) == first == sc.validate("tests/bad/bound-twice.ttl")
+
+
+BAD = Path(__file__).parents[1] / "bad"
+
+
+class Counting:
+    """Looks at each suspect, and notes whom it has looked at."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    def __call__(self, judge: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterable[list[Diagnostic]]:
+        self.names += [Path(suspect.source.name).name for suspect in suspects]
+        return map(judge, suspects)
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> Path:
+    """Some bad files and a good one, in a folder of their own."""
+    folder = tmp_path / "files"
+    folder.mkdir()
+    for path in sorted(BAD.glob("*.ttl"))[::40]:
+        (folder / path.name).write_bytes(path.read_bytes())
+    (folder / "good.ttl").write_text("<urn:a> a <https://w3id.org/selfconf#Component> , <urn:Kind> .")
+    return folder
+
+
+@pytest.mark.slow
+def test_processes_give_the_verdicts_of_one(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("selfconf.api.file_checks.WORTH", 2)
+    assert check([str(files)], each=shared) == check([str(files)])
+
+
+@pytest.mark.slow
+def test_memory_gives_the_same_verdicts_and_looks_at_nothing_twice(files: Path, tmp_path: Path) -> None:
+    plain, counting = check([str(files)]), Counting()
+    for _ in range(3):
+        assert check([str(files)], each=Remembered(tmp_path, [str(files)], counting)) == plain
+    assert len(counting.names) == len(set(counting.names)) > 5
+
+
+@pytest.mark.slow
+def test_only_what_has_changed_is_looked_at_again(files: Path, tmp_path: Path) -> None:
+    changed = next(path for path in files.glob("*.ttl") if path.name != "good.ttl")
+    for expected in (None, []):
+        counting = Counting()
+        check([str(files)], each=Remembered(tmp_path, [str(files)], counting))
+        assert expected is None or counting.names == expected
+    changed.write_text(changed.read_text() + "\n# changed\n")
+    counting = Counting()
+    check([str(files)], each=Remembered(tmp_path, [str(files)], counting))
+    assert counting.names == [changed.name]
+
+
+@pytest.mark.slow
+def test_what_another_file_declares_counts_in_memory_too(files: Path, tmp_path: Path) -> None:
+    user = files / "user.ttl"
+    user.write_text(
+        "@prefix sc: <https://w3id.org/selfconf#> . <urn:u> a sc:Component, <urn:Kind> ;"
+        ' sc:hasOutput [ sc:name "x" ; sc:signalType <urn:Noise> ] .'
+    )
+
+    def codes() -> list[str]:
+        found = check([str(files)], each=Remembered(tmp_path, [str(files)]))
+        return [each.code for each in found.diagnostics if each.file == str(user)]
+
+    assert codes() == ["SC-L03"]
+    (files / "words.ttl").write_text(
+        "<urn:Noise> a <http://www.w3.org/2002/07/owl#Class> ; <http://www.w3.org/2000/01/rdf-schema#label> 'noise' ."
+    )
+    assert codes() == []
+    (files / "words.ttl").unlink()
+    assert codes() == ["SC-L03"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "content", ["", "no JSON", "[]", '{"versions": {}}', '{"versions": 1, "outcomes": {"x": [1]}}']
+)
+def test_a_memory_that_is_broken_or_of_other_versions_is_forgotten(content: str, files: Path, tmp_path: Path) -> None:
+    plain = check([str(files)], each=Remembered(tmp_path, [str(files)]))
+    (kept,) = (tmp_path / "validate").iterdir()
+    kept.write_text(content)
+    assert check([str(files)], each=Remembered(tmp_path, [str(files)])) == plain
+    assert json.loads(kept.read_text())["outcomes"]
+
+
+@pytest.mark.slow
+def test_a_memory_that_cannot_be_written_is_done_without(files: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("no folder")
+    assert check([str(files)], each=Remembered(tmp_path / "file", [str(files)])) == check([str(files)])

@@ -5,7 +5,11 @@ from __future__ import annotations
 import pytest
 
 import selfconf as sc
-from selfconf.model.obstacle import WrongType
+from selfconf import partition, read, template
+from selfconf.api.partition_table import PartitionTable
+from selfconf.errors import BindingError, TemplateError
+from selfconf.model.obstacle import PropertyUnmet, WrongType
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 
 def short(components: tuple[sc.IRI, ...]) -> list[str]:
@@ -46,3 +50,52 @@ def test_a_partition_prints_as_a_table_and_so_does_a_role(clock: sc.TaskSpecific
     assert repr(found["screen"]) == "<role screen: no component>"
     assert found._repr_html_().count("<tr>") == 3
     assert found["source"]._repr_html_().count("<tr>") == 3
+
+
+EVERYTHING = PREFIXES + "\n".join(ADVERTISEMENTS.values())
+
+
+def table(ads: str = EVERYTHING) -> PartitionTable:
+    """The partition of the paper's task."""
+    return partition(template(NAVIGATE).bind(robot=":Astrid", goal="x"), read(ads))
+
+
+def test_the_eligible_components_are_in_the_order_of_trying() -> None:
+    assert table()["position"].eligible == (iri("person-tracker"), iri("absolute-odometry"))
+    assert [candidate.profile.preference for candidate in table()["position"].candidates] == [10, 0]
+
+
+def test_what_keeps_a_component_out_is_a_value() -> None:
+    drive = table()["drive"]
+    (obstacle,) = drive.obstacles(iri("pippi-drive"))
+    assert isinstance(obstacle, PropertyUnmet)
+    assert str(obstacle) == "support is Pippi, not Astrid"
+    assert isinstance(drive.obstacles(iri("wheels"))[0], WrongType)
+    assert drive.obstacles(iri("astrid-drive")) == ()
+    assert drive.excluded[0].component == iri("pippi-drive")
+    assert len(drive.excluded) == len(ADVERTISEMENTS) - 1
+
+
+def test_a_partition_suffices_where_every_role_has_as_many_as_it_asks_for() -> None:
+    assert table().sufficient
+    poor = table(EVERYTHING.replace("rob:Encoder", "rob:Lamp"))
+    assert not poor.sufficient
+    assert poor["encoder"].eligible == ()
+    assert "no component" in repr(poor["encoder"])
+
+
+def test_a_partition_prints_as_a_table() -> None:
+    text = repr(table())
+    head, _, *rows = text.splitlines()
+    assert head.startswith("role")
+    assert len(rows) == 6
+    assert [":position", "1", ":person-tracker"] in [row.split() for row in rows]
+    assert ":person-tracker" in table()._repr_html_()
+
+
+def test_what_cannot_be_partitioned_is_said() -> None:
+    with pytest.raises(BindingError, match="needs a value"):
+        partition(template(NAVIGATE), read(EVERYTHING))
+    bad = PREFIXES + ':t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:pattern "(" .'
+    with pytest.raises(TemplateError, match="not well-formed"):
+        partition(template(bad), read(EVERYTHING))

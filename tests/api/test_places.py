@@ -1,9 +1,19 @@
-"""Places are looked up for what a refusal names; the lookup of lines is tried in tests/cli/test_places.py."""
+"""Places: file and line of what a refusal names, and which types are spelt alike."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
 import selfconf as sc
-from selfconf.api.places import Places
+from selfconf.api.places import LARGEST_REREAD, Places
+from selfconf.api.reading import read
+from selfconf.model.profile import Place
+from selfconf.model.template import Role, Template
+from selfconf.model.term import IRI
+from tests.cli.command import Outcome, run
+from tests.lab import PREFIXES
 
 
 def test_roles_and_components_have_file_and_line_and_others_have_no_place(clock: sc.TaskSpecification) -> None:
@@ -12,3 +22,113 @@ def test_roles_and_components_have_file_and_line_and_others_have_no_place(clock:
     assert str(places.of(sc.IRI(f"{home}screen"))) == "examples/clock/tell-the-time.ttl:15"
     assert str(places.of(sc.IRI(f"{home}display"))) == "examples/clock/display.ttl:5"
     assert places.of(sc.IRI(f"{home}kitchen")) is None
+
+
+TIME = ":time a sc:Template ; sc:roles ( :source :sink ) .\n:source a sc:Role ; sh:class :Clok ; sc:feeds :sink .\n"
+
+
+SINK = ":sink a sc:Role ; sh:class rob:Display ."
+
+
+CLOCK = ':clock a sc:Component, :Clock ; sc:hasOutput [ sc:name "time" ; sc:signalType rob:Text ] .'
+
+
+SCREEN = ':screen a sc:Component, rob:Display ; sc:hasInput [ sc:name "text" ; sc:signalType SIGNAL ] .'
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Path:
+    """A template that asks for a clock, misspelt, and two advertisements."""
+    (tmp_path / "ads").mkdir()
+    write(tmp_path, TIME + SINK, CLOCK, SCREEN.replace("SIGNAL", "rob:Text"))
+    return tmp_path
+
+
+def write(home: Path, template: str, clock: str, screen: str) -> None:
+    """The files, the template below two more lines."""
+    (home / "time.ttl").write_text(PREFIXES + "\n# The time.\n" + template)
+    (home / "ads" / "clock.ttl").write_text(PREFIXES + clock)
+    (home / "ads" / "screen.ttl").write_text(PREFIXES + screen)
+
+
+def configure(capsys: pytest.CaptureFixture[str], home: Path, *arguments: str) -> Outcome:
+    """Run `configure` there."""
+    return run(capsys, "configure", str(home / "time.ttl"), "--ads", str(home / "ads"), *arguments)
+
+
+def line(path: Path, text: str) -> str:
+    """Where a text begins a line of a file, as people write it."""
+    return f"{path}:{[one.startswith(text) for one in path.read_text().splitlines()].index(True) + 1}"
+
+
+def test_a_misspelt_type_is_a_near_miss_and_the_first_thing_to_read(
+    capsys: pytest.CaptureFixture[str], home: Path
+) -> None:
+    body = configure(capsys, home, "--format", "json").body
+    role, clock = line(home / "time.ttl", ":source a"), line(home / "ads" / "clock.ttl", ":clock a")
+    assert [reason["place"] for reason in body["reasons"]] == [role]
+    (miss,) = body["near_misses"]
+    assert miss["place"] == clock
+    assert miss["obstacle"] == "is no Clok (did you mean Clock?)"
+    assert body["repairs"][0]["code"] == "accept-near-miss"
+    assert body["repairs"][0]["place"] == clock
+    text = configure(capsys, home).out
+    assert f"  because no component is eligible for the role source  [{role}]\n" in text
+    assert f"  source: :clock would fit, but it is no Clok (did you mean Clock?)  [{clock}]\n" in text
+    assert len(text.splitlines()) < 24
+
+
+def test_an_input_that_nobody_feeds_points_to_the_component_that_has_it(
+    capsys: pytest.CaptureFixture[str], home: Path
+) -> None:
+    write(home, TIME.replace(":Clok", ":Clock") + SINK, CLOCK, SCREEN.replace("SIGNAL", "rob:Image"))
+    (reason,) = configure(capsys, home, "--format", "json").body["reasons"]
+    assert reason["code"] == "input-unfed"
+    assert reason["place"] == line(home / "ads" / "screen.ttl", ":screen a")
+
+
+@pytest.mark.parametrize(
+    ("wanted", "offered", "words"),
+    [
+        ("rob:PositionSensor", "rob:PersonTracker", "which lies below it (see --reasoning subclass)"),
+        ("rob:PersonTracker", "rob:PositionSensor", "which lies above it"),
+        ("rob:Tuner", ":Tuner", "did you mean <https://"),
+    ],
+)
+def test_a_related_type_is_a_near_miss(
+    capsys: pytest.CaptureFixture[str], home: Path, wanted: str, offered: str, words: str
+) -> None:
+    write(home, TIME.replace(":Clok", wanted) + SINK, CLOCK.replace(":Clock", offered), SCREEN)
+    write(
+        home,
+        TIME.replace(":Clok", wanted) + SINK,
+        CLOCK.replace(":Clock", offered),
+        SCREEN.replace("SIGNAL", "rob:Text"),
+    )
+    (miss,) = configure(capsys, home, "--format", "json").body["near_misses"]
+    assert words in miss["obstacle"]
+
+
+def test_a_type_that_is_unlike_or_one_flaw_of_two_is_no_near_miss(
+    capsys: pytest.CaptureFixture[str], home: Path
+) -> None:
+    write(home, TIME.replace(":Clok", ":Oven") + SINK, CLOCK, SCREEN.replace("SIGNAL", "rob:Text"))
+    assert configure(capsys, home, "--format", "json").body["near_misses"] == []
+    demanding = TIME.replace(":Clok ;", ":Clok ; sh:property [ sh:path rob:place ; sh:minCount 1 ] ;")
+    write(home, demanding + SINK, CLOCK, SCREEN.replace("SIGNAL", "rob:Text"))
+    assert configure(capsys, home, "--format", "json").body["near_misses"] == []
+
+
+def test_what_comes_from_elsewhere_has_no_place_and_what_cannot_be_read_again_no_line(tmp_path: Path) -> None:
+    role, component = IRI("urn:r"), IRI("urn:c")
+    template = Template(IRI("urn:t"), (Role(role, place=Place("somewhere/else.ttl")),))
+    assert Places(template, {}).of(role) is None
+    assert Places(template, {}).of(component) is None
+    file = tmp_path / "ads.ttl"
+    text = PREFIXES + "<urn:c> a sc:Component, :T .\n"
+    file.write_text(text)
+    ecology = read(file).advertisements()
+    assert Places(template, ecology).of(component) == Place(str(file), text.count("\n"))
+    for later in (text + "#" * LARGEST_REREAD, "no Turtle"):
+        file.write_text(later)
+        assert Places(template, ecology).of(component) == Place(str(file))

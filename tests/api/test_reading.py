@@ -12,7 +12,10 @@ import pytest
 import rdflib
 
 import selfconf as sc
+from selfconf import read
+from selfconf.api.reading import is_endpoint, is_turtle
 from selfconf.errors import AuthorError, TurtleError
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
 
 CLOCK_TURTLE = Path(__file__).resolve().parents[2] / "examples" / "clock" / "clock.ttl"
 
@@ -111,4 +114,131 @@ def test_reading_leaves_the_garbage_of_the_program_to_the_collector() -> None:
     gc.collect()
     assert gone() is None
     assert gc.get_freeze_count() == before
+    assert gc.isenabled()
+
+
+LAMP = PREFIXES + ":lamp a sc:Component, :Lamp .\n"
+
+
+OVEN = PREFIXES + ":oven a sc:Component, :Oven .\n"
+
+
+BAD = PREFIXES + ':bell a sc:Component, :Bell ; sc:preference "loud" .\n'
+
+
+@pytest.fixture
+def ads(tmp_path: Path) -> Path:
+    """A folder with the advertisements of the paper, one of them deeper, and a file that is no Turtle by its name."""
+    folder = write_advertisements(tmp_path / "ads")
+    (folder / "deep").mkdir()
+    (folder / "drive.ttl").rename(folder / "deep" / "drive.ttl")
+    (folder / "notes.txt").write_text("not Turtle")
+    return folder
+
+
+def test_a_folder_stands_for_all_turtle_below_it(ads: Path) -> None:
+    assert len(read(ads)) == len(ADVERTISEMENTS)
+    assert iri("astrid-drive") in read(str(ads)).components
+
+
+def test_files_and_folders_may_overlap_and_each_file_is_read_once(ads: Path) -> None:
+    ecology = read(ads, ads / "deep", ads / "deep" / "drive.ttl")
+    assert (len(ecology), ecology.left_out) == (len(ADVERTISEMENTS), ())
+
+
+@pytest.mark.parametrize(
+    ("source", "turtle"),
+    [
+        (LAMP, True),
+        ("@prefix : <urn:x:> . :a :b :c .", True),
+        ("PREFIX : <urn:x:> :a :b :c .", True),
+        ("  @base <urn:x:> .", True),
+        ("<urn:a> <urn:b>\n<urn:c> .", True),
+        ("examples/clock", False),
+        ("prefixes.ttl", False),
+        ("a file with blanks.ttl", False),
+        (Path("@prefix"), False),
+    ],
+)
+def test_a_string_is_turtle_or_a_path(source: object, turtle: bool) -> None:
+    assert is_turtle(source) is turtle
+
+
+def test_a_graph_of_rdflib_is_read_too() -> None:
+    graph = rdflib.Graph().parse(data=PREFIXES + ADVERTISEMENTS["tracker"], format="turtle")
+    by_graph, by_text = read(graph).components, read(PREFIXES + ADVERTISEMENTS["tracker"]).components
+    assert dict(by_graph) == dict(by_text)
+    assert len(by_graph[iri("person-tracker")].outputs) == 1
+
+
+def test_sources_of_several_kinds_are_one_ecology(ads: Path) -> None:
+    graph = rdflib.Graph().parse(data=OVEN, format="turtle")
+    assert len(read(ads, LAMP, graph)) == len(ADVERTISEMENTS) + 2
+
+
+def test_nothing_at_all_is_an_empty_ecology() -> None:
+    assert len(read()) == 0
+    assert read()
+
+
+@pytest.mark.parametrize(
+    ("source", "endpoint"),
+    [
+        ("http://127.0.0.1:7878/query", True),
+        ("https://example.org/sparql?a=b", True),
+        ("http://127.0.0.1 x", False),
+        ("ftp://example.org/", False),
+        ("http.ttl", False),
+        (Path("http://example.org"), False),
+    ],
+)
+def test_a_url_is_an_endpoint(source: object, endpoint: bool) -> None:
+    assert is_endpoint(source) is endpoint
+
+
+def test_standard_input_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"\xef\xbb\xbf" + LAMP.encode())))
+    assert list(read("-").components) == [iri("lamp")]
+
+
+def test_of_two_advertisements_of_a_component_the_first_by_path_counts_and_the_other_is_named(tmp_path: Path) -> None:
+    for name, kind in (("b", ":Oven"), ("a", ":Lamp")):
+        (tmp_path / f"{name}.ttl").write_text(PREFIXES + f":x a sc:Component, {kind} .")
+    ecology = read(tmp_path / "b.ttl", tmp_path / "a.ttl")
+    assert iri("Lamp") in ecology.components[iri("x")].types
+    (left_out,) = ecology.left_out
+    assert (left_out.source, left_out.component) == (str(tmp_path / "b.ttl"), iri("x"))
+    assert left_out.reason == f"it is advertised in {tmp_path / 'a.ttl'} already"
+
+
+def test_an_advertisement_that_does_not_conform_is_left_out_and_the_rest_of_its_file_is_not() -> None:
+    ecology = read(BAD + ":lamp a sc:Component, :Lamp .")
+    assert list(ecology.components) == [iri("lamp")]
+    (left_out,) = ecology.left_out
+    assert left_out.component == iri("bell")
+    assert "sc:preference" in left_out.reason
+
+
+def test_what_is_not_there_or_not_turtle_is_named_with_its_place(tmp_path: Path) -> None:
+    with pytest.raises(AuthorError, match=f"no file or folder {tmp_path / 'nowhere'}"):
+        read(tmp_path / "nowhere")
+    broken = tmp_path / "broken.ttl"
+    broken.write_text(PREFIXES + ":lamp a .\n")
+    with pytest.raises(TurtleError) as wrong:
+        read(broken)
+    assert (wrong.value.file, wrong.value.line) == (str(broken), PREFIXES.count("\n") + 1)
+    broken.write_bytes(b"\0\0")
+    with pytest.raises(TurtleError, match="binary"):
+        read(broken)
+    with pytest.raises(TurtleError, match="<text>"):
+        read(PREFIXES + ":lamp a .\n")
+
+
+def test_reading_leaves_the_collector_as_it_was() -> None:
+    for collecting in (False, True):
+        (gc.enable if collecting else gc.disable)()
+        read(LAMP)
+        assert gc.isenabled() is collecting
+    with pytest.raises(TurtleError):
+        read(PREFIXES + ":lamp a .\n")
     assert gc.isenabled()

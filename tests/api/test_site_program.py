@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import selfconf as sc
+from selfconf import rendezvous
 from selfconf.api.site_program import serve
+from selfconf.bus.zenoh_bus import router
+from selfconf.errors import SelfconfError
+from tests.cli.command import run
+from tests.cli.processes import Home
 
 
 @pytest.mark.parametrize(
@@ -20,3 +27,78 @@ def test_a_path_that_is_not_there_and_a_name_that_is_none_end_it(path: str, ecol
         serve([Path(path)], ecology, name, None, (), said.append)
     assert said == []
     assert sc.sites() == ()
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Iterator[Home]:
+    """An ecology of a test's own, without any process yet."""
+    home = Home(tmp_path)
+    yield home
+    home.close()
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("ecology", "name", "listen", "connect", "words"),
+    [
+        ("a/b", None, None, (), "cannot name an ecology"),
+        ("e", "a b", None, (), "cannot name a site"),
+        ("e", "a", "here", (), "here"),
+        ("e", "a", None, ("there",), "there"),
+    ],
+)
+def test_a_site_that_cannot_be_announces_nothing(
+    ecology: str,
+    name: str | None,
+    listen: str | None,
+    connect: tuple[str, ...],
+    words: str,
+    tmp_path: Path,
+    runtime_folder: Path,
+) -> None:
+    said: list[str] = []
+    with pytest.raises(SelfconfError, match=words):
+        serve([tmp_path], ecology, name, listen, connect, said.append)
+    assert said == []
+    assert list(runtime_folder.glob("*.json")) == []
+
+
+@pytest.mark.process
+def test_a_site_without_a_name_gets_one_and_leaves_when_it_is_told_to(home: Home) -> None:
+    site = home.selfconf("site", "ads", "--ecology", home.ecology)
+    assert home.until(lambda: len(list(home.runtime.glob("*.json"))) == 1)
+    (announced,) = home.runtime.glob("*.json")
+    assert announced.name.startswith(f"{home.ecology}@s")
+    assert site.end(signal.SIGTERM) == 0
+    assert list(home.runtime.glob("*.json")) == []
+
+
+@pytest.mark.process
+def test_sites_that_start_at_the_same_moment_do_not_miss_each_other(
+    home: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, path in (("a", "ads/tracker.ttl"), ("b", "ads/drive.ttl"), ("c", "ads/pippi.ttl")):
+        home.selfconf("site", path, "--ecology", home.ecology, "--name", name)
+    assert home.until(lambda: len(list(home.runtime.glob("*.json"))) == 3)
+
+    def sites(name: str) -> list[str]:
+        arguments = "--ecology", home.ecology, "--connect", home.endpoint(name)
+        sites: list[str] = run(capsys, "discover", "--format", "json", *arguments).body["sites"]
+        return sites
+
+    assert home.until(lambda: all(sites(name) == ["a", "b", "c"] for name in "abc"), 5.0)
+
+
+@pytest.mark.process
+def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(
+    home: Home, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
+    somebody_else = router(rendezvous.usual_endpoint(home.ecology))
+    site = home.site("a", "ads")
+    assert home.endpoint() != somebody_else.endpoint
+    somebody_else.close()
+    home.site("b", "ads")
+    assert home.endpoint("b") == rendezvous.usual_endpoint(home.ecology)
+    assert site.end() == 0
+    assert site.complaints.count("\n") == 1

@@ -1,4 +1,4 @@
-"""The ecologies of real processes that the tests of the commands use."""
+"""The ecologies of real processes, and the files to be validated, that the tests of the commands use."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.diagnosed import write_diagnosed
 from tests.cli.processes import Home
 
 
@@ -26,3 +27,10 @@ def inhabited(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     home.components("sonar", "encoder", "tracker", "odometry", "control", "drive", "pippi")
     yield home
     home.close()
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, with a file that conforms, two with a problem each, and one that is not Turtle."""
+    monkeypatch.chdir(tmp_path)
+    return write_diagnosed(tmp_path)

@@ -14,10 +14,6 @@ from typing import Any
 import pytest
 
 from selfconf.bus.zenoh_bus import client
-from selfconf.model.obstacle import WrongType
-from selfconf.model.partition import Candidate, NearMiss
-from selfconf.model.profile import Profile
-from selfconf.model.relaxation import AcceptNearMiss
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
@@ -558,6 +554,9 @@ def test_a_blank_node_is_no_value_from_outside(desk: Desk) -> None:
     assert outcome.is_one_sentence("_:b is a blank node", "bind robot to an IRI")
 
 
-def test_a_repair_by_type_says_what_the_component_is_not() -> None:
-    near = NearMiss(iri("r0"), iri("c1"), WrongType(iri("A1")))
-    assert str(AcceptNearMiss(near, Candidate(Profile(iri("c1"))))) == "let c1 play r0, although it is no A1"
+def test_an_answer_that_is_not_certified_is_never_printed(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert desk.configure(*BOUND).code == 0
+    monkeypatch.setattr("selfconf.search.problem.Problem.feeders", lambda *_: iter(()))
+    monkeypatch.setattr("selfconf.search.problem.Problem.compatible", lambda *_: True)
+    for form in ("text", "json", "turtle"):
+        assert desk.configure(*BOUND, "--format", form).is_one_sentence("the search has made a mistake", "missing")

@@ -1,105 +1,135 @@
-"""`selfconf query`: its formats agree with Oxigraph's own, and whatever is asked comes to an end."""
+"""`query` over files and over the living ecology: what is asked, what may be asked, and a sentence for the rest."""
 
 from __future__ import annotations
 
-import csv
 import io
-import json
-import sys
 from pathlib import Path
 
 import pytest
 
 from selfconf.cli.main import main
-from selfconf.errors import AuthorError, ProgrammerError, QueryError
-from selfconf.model.term import IRI
-from selfconf.query import Question, answer
-from selfconf.rdf.sparql.dataset import Dataset
-from selfconf.rdf.turtle import document as turtle
+from tests.cli.command import Outcome, run
+from tests.cli.processes import Home
+from tests.lab import PREFIXES, iri, write_advertisements
 
 pytestmark = pytest.mark.process
 
-TEXT = '<urn:a> <urn:p> 1 , "x\\ty, \\"z\\""@en , "plain" , <urn:b> , [ <urn:q> 2.5 ] .'
-EVERYTHING = "SELECT ?o ?x WHERE { <urn:a> <urn:p> ?o OPTIONAL { ?o <urn:nothing> ?x } }"
+SENSORS = "SELECT ?c WHERE { ?c a rob:PositionSensor } ORDER BY ?c"
+
+
+class Desk:
+    """Advertisements on files, and the command over them."""
+
+    def __init__(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        self.folder, self.capsys = folder, capsys
+        self.ads = write_advertisements(folder / "ads")
+
+    def query(self, text: str, *arguments: str) -> Outcome:
+        """Run `query` over the files."""
+        return run(self.capsys, "query", text, "--ads", str(self.ads), *arguments)
 
 
 @pytest.fixture
-def dataset() -> Dataset:
-    found = Dataset()
-    found.add(IRI("urn:g"), turtle.parse(TEXT, "a.ttl").triples())
-    return found
+def desk(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Desk:
+    """The paper's advertisements."""
+    return Desk(tmp_path, capsys)
 
 
-def ask(dataset: Dataset, text: str, form: str = "table", rows: int = 100) -> str:
-    return answer(dataset, Question(text, form, rows, seconds=30)).text
+def test_the_position_sensors_of_the_paper_are_two(desk: Desk) -> None:
+    body = desk.query(SENSORS, "--format", "json").body
+    found = [row["c"]["value"] for row in body["results"]["bindings"]]
+    assert found == [iri("absolute-odometry"), iri("person-tracker")]
 
 
-def test_json_is_that_of_sparql(dataset: Dataset) -> None:
-    body = json.loads(ask(dataset, EVERYTHING, "json"))
-    assert body["head"]["vars"] == ["o", "x"]
-    found = {(term["type"], term["value"]) for row in body["results"]["bindings"] for term in row.values()}
-    assert {("uri", "urn:b"), ("literal", "plain"), ("literal", "1"), ("literal", 'x\ty, "z"')} < found
-    assert {"type": "literal", "value": 'x\ty, "z"', "xml:lang": "en"} in [
-        row["o"] for row in body["results"]["bindings"]
-    ]
+def test_each_advertisement_is_a_graph_that_its_component_names(desk: Desk) -> None:
+    outcome = desk.query("SELECT ?g WHERE { GRAPH ?g { ?c a rob:MotorDrive } } ORDER BY ?g", "--format", "csv")
+    assert outcome.out.split() == ["g", iri("astrid-drive"), iri("pippi-drive")]
 
 
-def test_csv_and_tsv_are_those_of_sparql(dataset: Dataset) -> None:
-    rows = list(csv.reader(io.StringIO(ask(dataset, EVERYTHING, "csv"))))
-    assert rows[0] == ["o", "x"]
-    assert ['x\ty, "z"', ""] in rows
-    lines = ask(dataset, EVERYTHING, "tsv").split("\n")
-    assert lines[0] == "?o\t?x"
-    assert '"x\\ty, \\"z\\""@en\t' in lines
+def test_a_query_may_join_what_several_advertisements_say(desk: Desk) -> None:
+    text = "SELECT (COUNT(*) AS ?n) WHERE { ?a rob:support ?r . ?b rob:support ?r FILTER (?a != ?b) }"
+    assert desk.query(text, "--format", "csv").out.split() == ["n", "6"]
 
 
-@pytest.mark.parametrize(("form", "word"), [("turtle", "<urn:b>"), ("json", '"@id":"urn:b"')])
-def test_triples_are_turtle_or_json_ld(dataset: Dataset, form: str, word: str) -> None:
-    assert word in ask(dataset, "CONSTRUCT WHERE { ?s ?p ?o }", form)
+def test_no_is_an_answer_and_so_is_nothing(desk: Desk) -> None:
+    outcome = desk.query("ASK { ?c a rob:Tuner }")
+    assert (outcome.code, outcome.out.strip()) == (0, "false")
+    outcome = desk.query("SELECT ?c WHERE { ?c a rob:Tuner }", "--format", "csv")
+    assert (outcome.code, outcome.out.strip()) == (0, "c")
 
 
-def test_a_format_that_does_not_fit_the_query_is_refused(dataset: Dataset) -> None:
-    for text, form in ((EVERYTHING, "turtle"), ("CONSTRUCT WHERE { ?s ?p ?o }", "csv")):
-        with pytest.raises(AuthorError, match="--format"):
-            ask(dataset, text, form)
+def test_a_query_may_lie_in_a_file_or_come_from_stdin(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = desk.folder / "sensors.rq"
+    path.write_text(SENSORS)
+    expected = desk.query(SENSORS).out
+    assert desk.query(str(path)).out == expected
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(SENSORS.encode())))
+    assert desk.query("-").out == expected
 
 
-@pytest.mark.parametrize("text", [EVERYTHING, "CONSTRUCT WHERE { ?s ?p ?o }"])
-def test_rows_beyond_the_limit_are_left_out_and_said_to_be(dataset: Dataset, text: str) -> None:
-    assert answer(dataset, Question(text, "json", 2)).cut
-    assert not answer(dataset, Question(text, "json", 100)).cut
-    assert len(json.loads(ask(dataset, EVERYTHING, "json", 2))["results"]["bindings"]) == 2
+def test_an_ontology_can_be_asked_along(desk: Desk) -> None:
+    own = desk.folder / "own.ttl"
+    own.write_text(PREFIXES + "rob:MotorDrive rdfs:subClassOf :Actuator .")
+    text = "SELECT ?c WHERE { ?c a/rdfs:subClassOf <https://example.org/peis-home#Actuator> } ORDER BY ?c"
+    outcome = desk.query(text, "--ontology", str(own), "--format", "csv")
+    assert outcome.out.split()[1:] == [iri("astrid-drive"), iri("pippi-drive")]
 
 
-JOIN = " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(30))
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("SELECT WHERE", "not a SPARQL query"),
+        ("DELETE WHERE { ?s ?p ?o }", "not a SPARQL query"),
+        ("SELECT ?x WHERE { SERVICE <http://127.0.0.1:9/> { ?x ?y ?z } }", "SERVICE"),
+        ("nothing.rq", "no file or folder nothing.rq"),
+    ],
+)
+def test_a_query_that_cannot_be_read_or_is_not_allowed_is_one_sentence(desk: Desk, text: str, words: str) -> None:
+    assert desk.query(text).is_one_sentence(words)
 
 
-def test_a_query_without_end_is_ended(dataset: Dataset) -> None:
-    with pytest.raises(QueryError, match=r"more than 0\.5 s"):
-        answer(dataset, Question(f"SELECT (COUNT(*) AS ?n) WHERE {{ {JOIN} }}", seconds=0.5))
+def test_no_file_of_this_machine_is_read(desk: Desk) -> None:
+    secret = desk.folder / "secret.ttl"
+    secret.write_text(PREFIXES + ":secret a :Secret .")
+    for text in (
+        f"SELECT ?s FROM <{secret.as_uri()}> WHERE {{ ?s a <https://example.org/peis-home#Secret> }}",
+        f"SELECT ?s FROM NAMED <{secret.as_uri()}> WHERE {{ GRAPH ?g {{ ?s ?p ?o }} }}",
+    ):
+        outcome = desk.query(text, "--format", "csv")
+        assert (outcome.code, outcome.out.split()) == (0, ["s"])
 
 
-def test_a_process_for_queries_that_breaks_is_not_said_to_lack_memory(
-    dataset: Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    broken = tmp_path / "python"
-    broken.write_text("#!/bin/sh\ncat > /dev/null; echo 'KeyError: 1' >&2; exit 1\n")
-    broken.chmod(0o755)
-    monkeypatch.setattr(sys, "executable", str(broken))
-    with pytest.raises(ProgrammerError, match="KeyError: 1"):
-        answer(dataset, Question("ASK { ?s ?p ?o }"))
+def test_bytes_that_are_no_text_are_one_sentence(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"SELECT \xff"), encoding="utf-8"))
+    assert desk.query("-").is_one_sentence("stdin")
+    path = desk.folder / "bytes.rq"
+    path.write_bytes(b"\xff\xfe")
+    assert desk.query(str(path)).is_one_sentence("bytes.rq")
 
 
-def test_a_query_that_takes_all_memory_is_ended(dataset: Dataset) -> None:
-    text = f"SELECT * WHERE {{ {JOIN} }} ORDER BY ?a1"
-    with pytest.raises(QueryError, match="GiB of memory"):
-        answer(dataset, Question(text, memory=400 << 20))
+def test_the_living_ecology_is_asked_without_files(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    text = "SELECT (COUNT(?c) AS ?n) WHERE { ?c a rob:PositionSensor }"
+    outcome = run(capsys, "query", text, "--format", "csv", *inhabited.arguments())
+    assert (outcome.code, outcome.out.split()) == (0, ["n", "2"])
 
 
-def test_a_query_that_nests_too_deeply_ends_nothing_but_itself(dataset: Dataset) -> None:
-    deep = 100_000
-    with pytest.raises(QueryError, match="nested too deeply"):
-        ask(dataset, "SELECT * WHERE " + "{" * deep + " ?s ?p ?o " + "}" * deep)
+def test_what_is_deployed_lies_in_the_dataset(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    program = inhabited.run()
+    program.act("running")
+    text = "SELECT ?c WHERE { ?x a sc:Configuration ; sc:assignment/sc:component ?c . ?c a rob:PositionSensor }"
+    outcome = run(capsys, "query", text, "--format", "csv", *inhabited.arguments())
+    assert outcome.out.split() == ["c", iri("person-tracker")]
+    assert program.end() == 0
+    outcome = run(capsys, "query", text, "--format", "csv", *inhabited.arguments())
+    assert outcome.out.split() == ["c"]
+
+
+def test_a_byte_order_mark_before_a_query_is_no_part_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.ttl").write_text("<urn:a> a <https://w3id.org/selfconf#Component> , <urn:Kind> .")
+    (tmp_path / "b.rq").write_bytes(b"\xef\xbb\xbfASK { ?s a <urn:Kind> }")
+    outcome = run(capsys, "query", str(tmp_path / "b.rq"), "--ads", str(tmp_path))
+    assert (outcome.code, outcome.out) == (0, "true\n")
+    assert run(capsys, "query", "-", "--ads", "-").is_one_sentence("- is standard input")
 
 
 @pytest.mark.parametrize("option", [["--rows", "0"], ["--seconds", "0"]])

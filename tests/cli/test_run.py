@@ -250,3 +250,11 @@ def test_when_one_of_two_sites_is_killed_the_task_goes_on_through_the_other(home
     run.act("running")
     assert home.active(*EVERYBODY) == TASK | {"tracker"}
     assert run.end(signal.SIGINT) == 0
+
+
+def test_a_run_that_is_not_decided_deploys_nothing_and_says_so(inhabited: Home) -> None:
+    run = inhabited.run("--steps", "1")
+    assert run.act("composed")["outcome"]["code"] == "undecided"
+    assert run.ended() == 2
+    assert "not decided within 1 step" in run.complaints
+    assert inhabited.active("sonar", "control", "drive") == set()

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import ZenohBus, router
 from tests.cli.command import run
 from tests.cli.processes import Home
@@ -37,21 +36,6 @@ def test_sites_of_one_ecology_on_one_machine_find_each_other(home: Home, capsys:
             iri("person-tracker"): "a",
             iri("astrid-drive"): "b",
         }
-
-
-def test_sites_that_start_at_the_same_moment_do_not_miss_each_other(
-    home: Home, capsys: pytest.CaptureFixture[str]
-) -> None:
-    for name, path in (("a", "ads/tracker.ttl"), ("b", "ads/drive.ttl"), ("c", "ads/pippi.ttl")):
-        home.selfconf("site", path, "--ecology", home.ecology, "--name", name)
-    assert home.until(lambda: len(list(home.runtime.glob("*.json"))) == 3)
-
-    def sites(name: str) -> list[str]:
-        arguments = "--ecology", home.ecology, "--connect", home.endpoint(name)
-        sites: list[str] = run(capsys, "discover", "--format", "json", *arguments).body["sites"]
-        return sites
-
-    assert home.until(lambda: all(sites(name) == ["a", "b", "c"] for name in "abc"), 5.0)
 
 
 def test_a_file_that_is_added_while_it_runs_is_served(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
@@ -95,17 +79,3 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
     ):
         assert run(capsys, "site", *arguments).is_one_sentence(words)
     taken.close()
-
-
-def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(
-    home: Home, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
-    somebody_else = router(rendezvous.usual_endpoint(home.ecology))
-    site = home.site("a", "ads")
-    assert home.endpoint() != somebody_else.endpoint
-    somebody_else.close()
-    home.site("b", "ads")
-    assert home.endpoint("b") == rendezvous.usual_endpoint(home.ecology)
-    assert site.end() == 0
-    assert site.complaints.count("\n") == 1

@@ -33,17 +33,6 @@ def test_what_is_deployed_is_shown_and_taken_down_by_stop(inhabited: Home, capsy
     assert inhabited.active(*EVERYBODY) == set()
 
 
-def test_stop_tells_programs_what_it_took_down(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
-    where = inhabited.arguments()
-    program = inhabited.run()
-    program.act("running")
-    (status,) = run(capsys, "status", "--format", "json", *where).body
-    stopped = {"ecology": inhabited.ecology, "stopped": [status["configurator"]]}
-    assert run(capsys, "stop", "--format", "json", *where).body == stopped
-    assert program.ended() == 0
-    assert run(capsys, "stop", "--format", "json", *where).body == {**stopped, "stopped": []}
-
-
 def test_where_nothing_is_deployed_both_say_so(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
     where = inhabited.arguments()
     for command in ("status", "stop"):

@@ -146,3 +146,63 @@ def test_a_component_in_another_role_does_not_stand_by() -> None:
 def test_where_no_candidate_is_left_none_stands_by() -> None:
     composer, given = Composer(task(PLAIN)), ecology(locator("gps"), controller("cap"))
     assert composer.standby(configured(composer, given), NOBODY) == {}
+
+
+def test_with_a_budget_a_running_configuration_is_still_repaired() -> None:
+    given = ecology(*(f":c{number} a sc:Component, :Worker ." for number in range(6)))
+    pair = task(":duo a sc:Template ; sc:roles ( :a :b ) . :a a sc:Role . :b a sc:Role .")
+    composer = Composer(pair, steps=10_000)
+    running = configured(composer, given)
+    after = composer.compose(given, frozenset(running.components[:1]), running)
+    assert isinstance(after, Configuration)
+    assert running.components[1] in after.components
+    hurried = Composer(pair, steps=1).compose(given, frozenset(running.components[:1]), running)
+    assert isinstance(hurried, Undecided)
+
+
+# The strategy `paper`.
+
+SET = """
+:go a sc:Template ; sc:parameter :goal ; sc:roles ( :mind ) .
+:goal a sc:Parameter ; sc:name "goal" .
+:mind a sc:Role ; sh:class :Mind ; sc:sets [ sc:parameterType :Goal ; sc:value :goal ] .
+"""
+MIND = ':cap a sc:Component, :Mind ; sc:hasParameter [ sc:name "goal" ; sc:parameterType :Goal ] .'
+
+
+@pytest.mark.parametrize("strategy", Strategy)
+def test_a_parameter_that_is_set_and_has_no_value_is_a_reason_for_every_strategy(strategy: Strategy) -> None:
+    answer = Composer(task(SET), strategy=strategy).compose(ecology(MIND), NOBODY, None)
+    assert isinstance(answer, Refusal)
+    assert [reason.code for reason in answer.reasons] == ["value-unknown"]
+
+
+@pytest.mark.parametrize("strategy", Strategy)
+def test_a_role_that_takes_no_component_sets_nothing_by_any_strategy(strategy: Strategy) -> None:
+    optional = SET.replace("sh:class", "sc:minCount 0 ; sc:maxCount 1 ; sh:class")
+    answer = Composer(task(optional), strategy=strategy).compose(ecology(MIND), NOBODY, None)
+    assert isinstance(answer, Configuration)
+    assert (answer.components, answer.settings) == ((), ())
+
+
+def test_the_papers_algorithm_gives_the_first_configuration_and_needs_more_steps() -> None:
+    given = ecology(*(locator(f"locator{number}") for number in range(3)), controller("cap"))
+    paper = Composer(task(PLAIN), strategy=Strategy.PAPER)
+    assert configured(paper, given) == configured(Composer(task(PLAIN)), given)
+    hurried = Composer(task(PLAIN), strategy=Strategy.PAPER, steps=1).compose(given, NOBODY, None)
+    assert hurried == Undecided(1)
+
+
+def test_the_partition_is_made_again_only_when_the_ecology_has_changed() -> None:
+    composer, given = Composer(task(PLAIN)), ecology(locator("gps"), controller("cap"))
+    first = composer.partition(given)
+    assert composer.partition(dict(given)) is first
+    assert [
+        len(candidates) for candidates in composer.partition({**given, **ecology(locator("odometry"))}).candidates
+    ] == [2, 1]
+
+
+def test_components_that_were_passed_over_are_those_before_the_last_choice() -> None:
+    given = ecology(locator("gps", "Time"), locator("odometry"), locator("wheels"), controller("cap"))
+    composer = Composer(task(PLAIN))
+    assert composer.passed_over(configured(composer, given)) == {iri("position"): [iri("gps")], iri("control"): []}

@@ -36,6 +36,8 @@ Partial = tuple[int | None, ...]
 
 def algorithm_1(problem: Problem, steps: int | None = None) -> Configuration | Undecided | None:
     """Return what Algorithm 1 returns, or None where that is FAIL; a step is a partial configuration."""
+    if problem.valueless:
+        return None  # a role that has to be played would set a parameter to nothing
     slots = [position for position, role in enumerate(problem.roles) for _ in range(role.minimum)]
     queue: dict[Partial, None] = {tuple(None for _ in slots): None}
     taken = 0

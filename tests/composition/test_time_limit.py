@@ -10,7 +10,6 @@ import pytest
 from selfconf.api.reading import read
 from selfconf.composition import TimeLimit, composed
 from selfconf.composition.composer import Composer, Strategy
-from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.rdf.deadline import TimeUp
@@ -18,7 +17,6 @@ from selfconf.rdf.tasks import templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.search import explain
 from tests.cli.command import Outcome, run
-from tests.cli.processes import Home
 from tests.lab import PREFIXES
 
 ROLES = 7
@@ -73,37 +71,6 @@ def test_a_budget_that_is_enough_changes_nothing(capsys: pytest.CaptureFixture[s
     assert configure(capsys, team, "--steps", "1000000", "--seconds", "600").out == plain.out
 
 
-@pytest.mark.parametrize("wrong", [("--steps", "0"), ("--steps", "few"), ("--seconds", "-1"), ("--seconds", "nan")])
-def test_a_budget_that_is_none_is_misuse(
-    capsys: pytest.CaptureFixture[str], team: Path, wrong: tuple[str, ...]
-) -> None:
-    outcome = configure(capsys, team, *wrong)
-    assert outcome.code == 2
-    assert "above zero" in outcome.err
-
-
-def test_with_a_budget_a_running_configuration_is_still_repaired(team: Path) -> None:
-    ecology = read(team / "ads").advertisements()
-    text = PREFIXES + ":duo a sc:Template ; sc:roles ( :a :b ) . :a a sc:Role . :b a sc:Role ."
-    task = templates.read_task(turtle.parse(text, "duo"))
-    composer = Composer(task, steps=10_000)
-    running = composer.compose(ecology, frozenset(), None)
-    assert isinstance(running, Configuration)
-    after = composer.compose(ecology, frozenset(running.components[:1]), running)
-    assert isinstance(after, Configuration)
-    assert running.components[1] in after.components
-    hurried = Composer(task, steps=1).compose(ecology, frozenset(running.components[:1]), running)
-    assert isinstance(hurried, Undecided)
-
-
-def test_a_run_that_is_not_decided_deploys_nothing_and_says_so(inhabited: Home) -> None:
-    run = inhabited.run("--steps", "1")
-    assert run.act("composed")["outcome"]["code"] == "undecided"
-    assert run.ended() == 2
-    assert "not decided within 1 step" in run.complaints
-    assert inhabited.active("sonar", "control", "drive") == set()
-
-
 def test_when_the_time_is_up_the_best_answer_so_far_remains(team: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ecology = read(team / "ads").advertisements()
     cost = "sc:cost ( [ sc:term [ sc:property :p ] ] )"
@@ -135,6 +102,27 @@ def test_that_there_is_none_is_told_even_if_no_time_is_left_for_reasons(
     assert "no time was left to find out why" in outcome.out
 
 
-def test_steps_limit_what_is_tried_to_mend_a_refusal_too(capsys: pytest.CaptureFixture[str], team: Path) -> None:
-    assert configure(capsys, team, "--format", "json").body["repairs"]
-    assert not configure(capsys, team, "--format", "json", "--steps", "40").body["repairs"]
+def test_what_is_asked_without_a_limit_is_always_answered() -> None:
+    unlimited = TimeLimit(None)
+    assert [unlimited.within(lambda: "answer", "no answer") for _ in range(3)] == ["answer"] * 3
+
+
+def test_what_is_asked_later_has_less_time_and_none_once_it_is_over() -> None:
+    limit, asked = TimeLimit(0.2), list[int]()
+
+    def endless() -> str:
+        asked.append(1)
+        while True:
+            pass
+
+    assert limit.within(lambda: "answer", "no answer") == "answer"
+    began = time.monotonic()
+    assert limit.within(endless, "no answer") == "no answer"
+    assert limit.within(endless, "no answer") == "no answer"
+    assert (len(asked), limit.seconds) == (1, 0.2)
+    assert time.monotonic() - began < 5.0
+
+
+def test_an_error_of_what_is_asked_is_no_answer_of_the_limit() -> None:
+    with pytest.raises(ZeroDivisionError):
+        TimeLimit(60.0).within(lambda: 1 // 0, 0)

@@ -12,11 +12,13 @@ import pytest
 from jsonschema import Draft7Validator
 from requests_cache import SQLiteCache
 
+from selfconf.api.validation import check
 from selfconf.cli.main import main
-from selfconf.cli.reports import sarif
+from selfconf.cli.reports import RENDERERS, sarif
 from selfconf.model.codes import CODES
 from selfconf.model.diagnostic import Diagnostic, report
 from tests.bad_files import BAD, checked
+from tests.cli.diagnosed import NASTY
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 Faults = Callable[[str], list[str]]
@@ -95,3 +97,27 @@ def test_the_schema_notices_a_log_that_does_not_keep_to_it(right: str, wrong: st
     text = sarif.render(report(["a.ttl"], [Diagnostic("a.ttl", 1, 1, "SC-A01", "wrong")]))
     assert right in text
     assert faults(text.replace(right, wrong))
+
+
+def test_sarif_refers_to_rules_and_places(folder: Path) -> None:
+    content = json.loads(RENDERERS["sarif"](check(["wrong.ttl", "strange.ttl"])))
+    assert content["version"] == "2.1.0"
+    (run,) = content["runs"]
+    rules = [rule["id"] for rule in run["tool"]["driver"]["rules"]]
+    assert rules == ["SC-A03", "SC-A04", "SC-L02"]
+    for result in run["results"]:
+        assert rules[result["ruleIndex"]] == result["ruleId"]
+        assert result["level"] in ("error", "warning")
+        assert result["message"]["text"]
+        (location,) = result["locations"]
+        assert location["physicalLocation"]["artifactLocation"]["uri"] in ("wrong.ttl", "strange.ttl")
+        region = location["physicalLocation"]["region"]
+        assert 1 <= region["startColumn"] < region["endColumn"]
+
+
+def test_sarif_writes_paths_as_uris() -> None:
+    content = json.loads(RENDERERS["sarif"](report(["/a b.ttl"], [Diagnostic("/a b.ttl", 1, 1, "SC-A01", "x")])))
+    location = content["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
+    assert location["artifactLocation"]["uri"] == "file:///a%20b.ttl"
+    relative = json.loads(RENDERERS["sarif"](NASTY))["runs"][0]["results"][0]["locations"][0]["physicalLocation"]
+    assert relative["artifactLocation"]["uri"] == "a%2Cb%3Ac%25.ttl"

@@ -1,0 +1,25 @@
+"""`stop`: what is deployed is taken down, and components are turned off, not ended."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cli.command import run
+from tests.cli.processes import Home
+
+pytestmark = pytest.mark.process
+
+
+def test_stop_tells_programs_what_it_took_down(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    where = inhabited.arguments()
+    program = inhabited.run()
+    program.act("running")
+    (status,) = run(capsys, "status", "--format", "json", *where).body
+    stopped = {"ecology": inhabited.ecology, "stopped": [status["configurator"]]}
+    assert run(capsys, "stop", "--format", "json", *where).body == stopped
+    assert program.ended() == 0
+    assert run(capsys, "stop", "--format", "json", *where).body == {**stopped, "stopped": []}
+
+
+def test_without_an_ecology_it_says_what_to_start(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "stop").is_one_sentence("no site runs on this machine", "selfconf site")

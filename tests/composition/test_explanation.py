@@ -1,0 +1,83 @@
+"""What a refusal tells beyond its reasons: near misses by type, what would mend it, the reasoning that would."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from selfconf.composition import Composer, TimeLimit, explained
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.refusal import Refusal
+from selfconf.model.relaxation import AcceptNearMiss
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.advertisements import read as read_advertisements
+from selfconf.rdf.tasks import read_task
+from selfconf.rdf.turtle import parse
+from tests.lab import PREFIXES, iri
+
+UNLIMITED = TimeLimit(None)
+EYE = ":watch a sc:Template ; sc:roles ( :eye ) .\n:eye a sc:Role ; sh:class :Camera ."
+TEAM = f":team a sc:Template ; sc:roles ( {' '.join(f':r{k}' for k in range(7))} ) .\n" + "\n".join(
+    f":r{k} a sc:Role ; sh:class :Worker ." for k in range(7)
+)
+CROWD = "\n".join(f":c{k} a sc:Component, :Worker ." for k in range(6))
+"""One worker too few."""
+BELOW = Hierarchy([(iri("CeilingCamera"), iri("Camera"))])
+NOTHING = Hierarchy()
+
+
+def refused(
+    task: str, ads: str, steps: int | None = None, hierarchy: Hierarchy = NOTHING
+) -> tuple[Composer, Mapping[IRI, Advertisement], Refusal]:
+    """A task that has no configuration, with the refusal as the search gives it."""
+    composer = Composer(read_task(parse(PREFIXES + task, "t.ttl")), hierarchy, steps=steps)
+    good, bad = read_advertisements((PREFIXES + ads).encode(), "a.ttl")
+    assert not bad
+    ecology = {one.component: one for one in good}
+    refusal = composer.compose(ecology, frozenset(), None)
+    assert isinstance(refusal, Refusal)
+    return composer, ecology, refusal
+
+
+def test_a_misspelt_type_is_a_near_miss_and_to_accept_it_would_do() -> None:
+    composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :Camra .")
+    assert refusal.near_misses == ()
+    told = explained(composer, ecology, refusal, NOTHING, UNLIMITED)
+    assert [(miss.component, str(miss.obstacle)) for miss in told.near_misses] == [
+        (iri("cam"), "is no Camera (did you mean Camra?)")
+    ]
+    assert isinstance(told.repairs[0], AcceptNearMiss)
+    assert told.reasons == refusal.reasons
+
+
+def test_that_a_hierarchy_would_do_is_a_hint_where_none_was_seen() -> None:
+    composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :CeilingCamera .")
+    told = explained(composer, ecology, refusal, BELOW, UNLIMITED)
+    assert told.hint == "with --reasoning subclass there is a configuration"
+    (miss,) = told.near_misses
+    assert "which lies below it" in str(miss.obstacle)
+    assert explained(composer, ecology, refusal, NOTHING, UNLIMITED).hint is None
+
+
+def test_where_a_hierarchy_is_seen_already_there_is_no_hint() -> None:
+    composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :Oven .", hierarchy=BELOW)
+    told = explained(composer, ecology, refusal, None, UNLIMITED)
+    assert (told.hint, told.near_misses) == (None, ())
+
+
+def test_a_role_that_has_its_candidates_has_no_near_miss_by_type() -> None:
+    composer, ecology, refusal = refused(TEAM, CROWD + " :odd a sc:Component, :Workr .")
+    assert explained(composer, ecology, refusal, NOTHING, UNLIMITED).near_misses == refusal.near_misses
+
+
+def test_steps_limit_what_is_tried_to_mend_a_refusal_too() -> None:
+    composer, ecology, refusal = refused(TEAM, CROWD)
+    assert explained(composer, ecology, refusal, NOTHING, UNLIMITED).repairs
+    composer, ecology, refusal = refused(TEAM, CROWD, steps=40)
+    assert not explained(composer, ecology, refusal, NOTHING, UNLIMITED).repairs
+
+
+def test_without_time_a_refusal_stays_as_it_is() -> None:
+    composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :CeilingCamera .")
+    told = explained(composer, ecology, refusal, BELOW, TimeLimit(1e-9))
+    assert (told.reasons, told.repairs, told.hint) == (refusal.reasons, (), None)

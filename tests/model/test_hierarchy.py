@@ -1,0 +1,35 @@
+"""The hierarchy of classes and properties."""
+
+from __future__ import annotations
+
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.term import IRI
+
+
+def test_offered_matches_wanted_if_wanted_is_offered_itself_or_above_it() -> None:
+    above = Hierarchy([(IRI("urn:a"), IRI("urn:b"))])
+    assert above.matches(IRI("urn:a"), IRI("urn:b"))
+    assert not above.matches(IRI("urn:b"), IRI("urn:a"))
+    assert not NOTHING_ABOVE.matches(IRI("urn:a"), IRI("urn:b"))
+    assert NOTHING_ABOVE.matches(IRI("urn:a"), IRI("urn:a"))
+
+
+def test_what_lies_above_is_followed_to_its_end_and_a_circle_is_an_equivalence() -> None:
+    a, b, c, d = (IRI(f"urn:{name}") for name in "abcd")
+    above = Hierarchy([(a, b), (b, c), (c, b), (c, d)], [(a, c)])
+    assert above.superclasses(a) == {a, b, c, d}
+    assert above.superclasses(b) == above.superclasses(c) == {b, c, d}
+    assert above.superclasses(d) == {d}
+    assert above.superproperties(a) == {a, c}
+    assert above.superproperties(b) == {b}
+
+
+def test_a_hierarchy_of_properties_alone_is_flat() -> None:
+    assert Hierarchy(properties=[(IRI("urn:a"), IRI("urn:b"))]).flat
+    assert NOTHING_ABOVE.flat
+    assert not Hierarchy([(IRI("urn:a"), IRI("urn:b"))]).flat
+
+
+def test_a_chain_is_no_deeper_than_the_stack() -> None:
+    chain = [(IRI(f"urn:{number}"), IRI(f"urn:{number + 1}")) for number in range(20_000)]
+    assert len(Hierarchy(chain).superclasses(IRI("urn:0"))) == 20_001

@@ -1,0 +1,158 @@
+"""Obstacles word themselves: after the name of a component, and as a clause of their own."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+
+from selfconf.model.obstacle import (
+    Ambiguous,
+    ConstraintFailed,
+    Excluded,
+    Fault,
+    Missing,
+    NoAlternative,
+    NoCommonValue,
+    NotAmong,
+    Obstacle,
+    ParameterUndeclared,
+    PropertyUnmet,
+    ShapeViolated,
+    TypeRelation,
+    WrongComponent,
+    WrongCount,
+    WrongType,
+    in_words,
+)
+from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
+
+SH = "http://www.w3.org/ns/shacl#"
+CAMERA, SENSOR, PLACE, HALL, CELLAR = (
+    IRI(f"https://example.org/home#{name}") for name in ("Camera", "Sensor", "place", "hall", "cellar")
+)
+FIVE = Literal("5", IRI(XSD_NAMESPACE + "integer"))
+
+
+def unmet(*faults: Fault) -> PropertyUnmet:
+    """Something that is wrong with the place."""
+    return PropertyUnmet(PLACE, faults)
+
+
+def failed(constraint: str, wanted: IRI | Literal = FIVE) -> ConstraintFailed:
+    """The hall fails a constraint."""
+    return ConstraintFailed(frozenset((HALL,)), IRI(SH + constraint), wanted)
+
+
+WORDED: list[tuple[Obstacle, str, str]] = [
+    (WrongType(CAMERA), "is no Camera", "it is no Camera"),
+    (WrongComponent(frozenset((HALL,))), "is not hall", "it is not hall"),
+    (unmet(Missing()), "has no place", "it has no place"),
+    (unmet(WrongCount(3, True)), "has 3 of place, too many", "it has 3 of place, too many"),
+    (unmet(WrongCount(1, False)), "has 1 of place, too few", "it has 1 of place, too few"),
+    (
+        unmet(NotAmong(frozenset((HALL,)), frozenset((CELLAR,)))),
+        "place is hall, not cellar",
+        "its place is hall, not cellar",
+    ),
+    (unmet(failed("minInclusive")), "place is hall, not at least 5", "its place is hall, not at least 5"),
+    (
+        unmet(Ambiguous(IRI("urn:room"))),
+        "place has several values, so that no one room fits",
+        "its place has several values, so that no one room fits",
+    ),
+    (ParameterUndeclared(SENSOR), "declares no parameter of type Sensor", "it declares no parameter of type Sensor"),
+    (
+        NoAlternative((WrongType(CAMERA), unmet(Missing()))),
+        "is no Camera and has no place",
+        "it is no Camera and it has no place",
+    ),
+    (Excluded(), "is what it must not be", "it is what it must not be"),
+    (
+        Excluded(several=True),
+        "is several things of which it must be one",
+        "it is several things of which it must be one",
+    ),
+    (ShapeViolated("too hot"), "violates: too hot", "it violates: too hot"),
+    (
+        NoCommonValue(),
+        "leaves no value for a free parameter that its statements agree on",
+        "it leaves no value for a free parameter that its statements agree on",
+    ),
+]
+
+
+def test_every_obstacle_and_fault_is_worded() -> None:
+    assert {type(obstacle) for obstacle, _, _ in WORDED} == set(get_args(Obstacle))
+    faults = {
+        type(fault) for obstacle, _, _ in WORDED if isinstance(obstacle, PropertyUnmet) for fault in obstacle.faults
+    }
+    assert faults == set(get_args(Fault))
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "said", "clause"), WORDED, ids=lambda value: value if isinstance(value, str) else ""
+)
+def test_an_obstacle_is_a_predicate_and_a_clause(obstacle: Obstacle, said: str, clause: str) -> None:
+    assert (str(obstacle), obstacle.clause) == (said, clause)
+
+
+def test_codes_are_stable_and_different() -> None:
+    assert sorted(kind.code for kind in get_args(Obstacle)) == [
+        "excluded",
+        "no-alternative",
+        "no-common-value",
+        "parameter-undeclared",
+        "property-unmet",
+        "shape-violated",
+        "wrong-component",
+        "wrong-type",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("offered", "relation", "words"),
+    [
+        (SENSOR, TypeRelation.SIMILAR, "(did you mean Sensor?)"),
+        (IRI("urn:other#Camera"), TypeRelation.SIMILAR, "(did you mean <urn:other#Camera>?)"),
+        (SENSOR, TypeRelation.BELOW, "but a Sensor, which lies below it (see --reasoning subclass)"),
+        (SENSOR, TypeRelation.ABOVE, "but a Sensor, which lies above it"),
+    ],
+)
+def test_a_type_that_is_related_is_named(offered: IRI, relation: TypeRelation, words: str) -> None:
+    assert str(WrongType(CAMERA, offered, relation)) == f"is no Camera {words}"
+
+
+@pytest.mark.parametrize(
+    ("constraint", "words"),
+    [
+        ("minInclusive", "at least 5"),
+        ("minExclusive", "more than 5"),
+        ("maxInclusive", "at most 5"),
+        ("maxExclusive", "less than 5"),
+        ("minLength", "at least 5 characters long"),
+        ("maxLength", "at most 5 characters long"),
+        ("pattern", "like /5/"),
+        ("datatype", "a 5"),
+    ],
+)
+def test_a_constraint_says_what_is_wanted(constraint: str, words: str) -> None:
+    assert failed(constraint).said("place") == f"place is hall, not {words}"
+    assert failed("class", CAMERA).said("place") == "place is hall, not a Camera"
+
+
+def test_several_faults_of_a_property_are_one_obstacle() -> None:
+    several = unmet(Missing(), failed("maxInclusive"))
+    assert str(several) == "has no place; place is hall, not at most 5"
+    assert several.clause == "it has no place; place is hall, not at most 5"
+
+
+def test_alternatives_that_lack_the_same_say_it_once() -> None:
+    assert str(NoAlternative((WrongType(CAMERA), WrongType(CAMERA)))) == "is no Camera"
+
+
+def test_values_are_sorted_and_told_from_others_that_look_alike() -> None:
+    assert in_words({HALL, CELLAR, FIVE}) == "5 or cellar or hall"
+    assert in_words([Literal("5"), FIVE]) == '"5" or 5'
+    assert in_words([BlankNode("_:b")]) == "_:b"
+    assert in_words([]) == "nothing"

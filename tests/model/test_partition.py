@@ -1,0 +1,40 @@
+"""Partitions: candidates in order, and what the free parameters may be."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable, ordered
+from selfconf.model.profile import Profile, candidate_order
+from selfconf.model.term import IRI
+
+
+def test_candidates_are_tried_by_preference_and_then_by_iri() -> None:
+    wishes = ("b", 0), ("a", 0), ("z", 10), ("y", -1)
+    profiles = [Profile(IRI(f"urn:{name}"), preference=Decimal(wish)) for name, wish in wishes]
+    in_order = [candidate.profile.component for candidate in ordered([Candidate(profile) for profile in profiles])]
+    assert in_order == ["urn:z", "urn:a", "urn:b", "urn:y"]
+    assert candidate_order(profiles[2]) < candidate_order(profiles[0])
+
+
+def test_a_partition_without_the_lost_keeps_everybody_else_in_order() -> None:
+    a, b, c = (Candidate(Profile(IRI(f"urn:{name}")), (1,)) for name in "abc")
+    partition = Partition(((a, b), (b, c)), (Variable(IRI("urn:p"), (IRI("urn:x"),)),))
+    assert partition.without(frozenset({IRI("urn:b")})) == Partition(((a,), (c,)), partition.variables)
+
+
+def test_values_that_only_the_lost_stated_are_lost_with_them() -> None:
+    profiles = [Profile(IRI(f"urn:{name}")) for name in "abc"]
+    masks = ((0b001, 1), (~0b010, -1), (0b110, -1))
+    candidates = tuple(Candidate(profile, mask) for profile, mask in zip(profiles, masks, strict=True))
+    x, y, z = (IRI(f"urn:{name}") for name in "xyz")
+    partition = Partition((candidates,), (Variable(IRI("urn:p"), (x, y, z)), Variable(IRI("urn:q"), (x,))))
+    assert partition.without(frozenset({IRI("urn:a")})) == Partition(
+        ((Candidate(profiles[1], (~0b01,)), Candidate(profiles[2], (0b11,))),), (Variable(IRI("urn:p"), (y, z)),)
+    )
+
+
+def test_a_variable_takes_the_first_value_that_a_mask_allows() -> None:
+    variable = Variable(IRI("urn:p"), (IRI("urn:a"), IRI("urn:b"), IRI("urn:c")))
+    assert variable.first(0b110) == IRI("urn:b")
+    assert variable.first(ANY_VALUE) is None

@@ -1,0 +1,121 @@
+"""Refusals: each reason words itself, stands on requirements, and is false as an answer."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+
+from selfconf.model.refusal import (
+    Conflict,
+    Contradiction,
+    DerivationStep,
+    InputUnfed,
+    Reason,
+    Refusal,
+    TooFewDistinct,
+    TooFewEligible,
+    Undecided,
+    ValueUnknown,
+)
+from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, RolePlayed
+from selfconf.model.term import IRI
+
+EYE, MIND, CAP, IMAGE = (IRI(f"urn:{name}") for name in ("eye", "mind", "cap", "Image"))
+UNFED = InputUnfed(MIND, CAP, "picture", IMAGE, (EYE,))
+WORDED: list[tuple[Reason, str]] = [
+    (
+        Contradiction(EYE, 3, 2),
+        "the role eye asks for no fewer than 3 and no more than 2 components; nothing can satisfy both",
+    ),
+    (
+        ValueUnknown(EYE, "room"),
+        "the role eye sets a parameter to room, which is not bound, and no candidate says what it could be; bind room",
+    ),
+    (TooFewEligible(EYE, 1, 0), "no component is eligible for the role eye"),
+    (TooFewEligible(EYE, 2, 1), "the role eye asks for 2 components, and only one is eligible"),
+    (TooFewEligible(EYE, 3, 2), "the role eye asks for 3 components, and only 2 are eligible"),
+    (
+        TooFewDistinct((EYE, MIND), 2, 1),
+        "the roles eye and mind together ask for 2 different components, and only one is eligible",
+    ),
+    (
+        UNFED,
+        "the input 'picture' (Image) of cap cannot be fed: no candidate of eye issues a Image for it",
+    ),
+    (
+        InputUnfed(MIND, CAP, "picture", IMAGE, ()),
+        "the input 'picture' (Image) of cap cannot be fed: no interaction feeds it in the role mind",
+    ),
+    (
+        InputUnfed(MIND, CAP, "picture", IMAGE, (EYE,), optional=(EYE,)),
+        "the input 'picture' (Image) of cap cannot be fed: the role eye asks for nobody (sc:minCount 0)",
+    ),
+    (Conflict((EYE,), ("room",)), "the role eye cannot be played with one room for all"),
+    (
+        Conflict((EYE, MIND), requirements=(OneRoleEach(), InputFed(MIND, IMAGE))),
+        (
+            "the roles eye and mind cannot all be played with a different component for each so that mind gets the "
+            "Image that it needs"
+        ),
+    ),
+]
+
+
+def test_every_reason_is_worded() -> None:
+    assert {type(reason) for reason, _ in WORDED} == set(get_args(Reason))
+
+
+@pytest.mark.parametrize(("reason", "said"), WORDED)
+def test_a_reason_is_one_sentence(reason: Reason, said: str) -> None:
+    assert str(reason) == said
+
+
+def test_codes_are_stable_and_different() -> None:
+    assert sorted(kind.code for kind in get_args(Reason)) == [
+        "conflict",
+        "contradictory-count",
+        "input-unfed",
+        "too-few-distinct",
+        "too-few-eligible",
+        "value-unknown",
+    ]
+
+
+def test_a_reason_stands_on_requirements() -> None:
+    assert Contradiction(EYE, 3, 2).requirements == TooFewEligible(EYE, 1, 0).requirements == (RolePlayed(EYE),)
+    assert ValueUnknown(EYE, "room").requirements == (OneValue("room"),)
+    assert TooFewDistinct((EYE, MIND), 2, 1).requirements == (RolePlayed(EYE), RolePlayed(MIND), OneRoleEach())
+
+
+def test_a_reason_about_several_roles_belongs_to_the_first() -> None:
+    assert TooFewDistinct((EYE, MIND), 2, 1).role == Conflict((EYE, MIND)).role == EYE
+
+
+@pytest.mark.parametrize(("more", "who"), [(0, "cap"), (1, "cap and one other"), (5, "cap and 5 others")])
+def test_what_follows_is_told_with_how_many_leave_for_it(more: int, who: str) -> None:
+    step = DerivationStep(MIND, CAP, more, "picture", IMAGE, (EYE,))
+    assert str(step) == f"{who} cannot play the role mind, as nobody left in eye issues a Image"
+    told = InputUnfed(MIND, CAP, "picture", IMAGE, (EYE,), consequences=(step, step))
+    assert str(told).split("; so ") == [str(UNFED), str(step), str(step)]
+
+
+def test_no_answer_is_true() -> None:
+    assert not Refusal(EYE, ())
+    assert not Undecided()
+
+
+@pytest.mark.parametrize(
+    ("undecided", "said"),
+    [
+        (Undecided(1), "not decided within 1 step; allow more by --steps"),
+        (Undecided(9), "not decided within 9 steps; allow more by --steps"),
+        (
+            Undecided(9, unaided=True),
+            "not decided within 9 steps; allow more by --steps, or install the extra `solvers`",
+        ),
+        (Undecided(9, seconds=0.5), "not decided within 0.5 s; allow more by --seconds"),
+    ],
+)
+def test_what_is_not_decided_says_what_to_allow(undecided: Undecided, said: str) -> None:
+    assert str(undecided) == said

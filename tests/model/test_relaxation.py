@@ -1,0 +1,65 @@
+"""Relaxations word themselves as requests."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+
+from selfconf.model.obstacle import WrongType
+from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.profile import Output, Profile
+from selfconf.model.relaxation import (
+    AcceptNearMiss,
+    AddComponents,
+    AddInteraction,
+    Addition,
+    AskForFewer,
+    AskForOne,
+    Relaxation,
+)
+from tests.lab import iri
+
+
+def test_a_repair_by_type_says_what_the_component_is_not() -> None:
+    near = NearMiss(iri("r0"), iri("c1"), WrongType(iri("A1")))
+    assert str(AcceptNearMiss(near, Candidate(Profile(iri("c1"))))) == "let c1 play r0, although it is no A1"
+
+
+EYE, MIND = iri("eye"), iri("mind")
+IMAGE = Output("image", iri("Image"))
+WORDED: list[tuple[Relaxation, str]] = [
+    (AddComponents((Addition(EYE, 1),)), "add one more component for the role eye"),
+    (
+        AddComponents((Addition(EYE, 2, (IMAGE, IMAGE)), Addition(MIND, 1, (IMAGE,)))),
+        (
+            "add 2 more components for the role eye that issue Image and one more component for the role mind"
+            " that issues Image"
+        ),
+    ),
+    (AskForFewer(EYE, 0), "let the role eye be optional (sc:minCount 0)"),
+    (AskForFewer(EYE, 2), "let the role eye ask for 2 (sc:minCount 2)"),
+    (AskForOne(EYE), "let the role eye ask for one (sc:minCount 1)"),
+    (AddInteraction(EYE, MIND), "let the role eye feed the role mind (sc:feeds)"),
+    (
+        AcceptNearMiss(NearMiss(EYE, iri("cap"), WrongType(iri("Eye"))), Candidate(Profile(iri("cap")))),
+        "let cap play eye, although it is no Eye",
+    ),
+]
+
+
+def test_every_relaxation_is_worded_and_has_a_code_and_a_role() -> None:
+    assert {type(relaxation) for relaxation, _ in WORDED} == set(get_args(Relaxation))
+    assert {relaxation.role for relaxation, _ in WORDED} == {EYE}
+    assert sorted(kind.code for kind in get_args(Relaxation)) == [
+        "accept-near-miss",
+        "add-components",
+        "add-interaction",
+        "ask-for-fewer",
+        "ask-for-one",
+    ]
+
+
+@pytest.mark.parametrize(("relaxation", "said"), WORDED)
+def test_a_relaxation_is_a_request(relaxation: Relaxation, said: str) -> None:
+    assert str(relaxation) == said

@@ -1,0 +1,34 @@
+"""Tables and counts in plain text."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.render import count, table
+
+
+def test_the_columns_of_a_table_are_as_wide_as_their_widest_cell() -> None:
+    assert table(["name", "n"], [["a", "1"], ["longer", "20"]]).splitlines() == [
+        "name    n",
+        "------  --",
+        "a       1",
+        "longer  20",
+    ]
+
+
+def test_a_table_without_rows_is_its_head() -> None:
+    assert table(["name", "n"], []) == "name  n\n----  -"
+
+
+def test_no_line_ends_with_blanks() -> None:
+    assert all(line == line.rstrip() for line in table(["a", "b"], [["1", ""], ["22", ""]]).splitlines())
+
+
+def test_a_row_with_a_cell_too_many_is_no_row() -> None:
+    with pytest.raises(ValueError, match="argument"):
+        table(["a"], [["1", "2"]])
+
+
+@pytest.mark.parametrize(("number", "words"), [(0, "0 sites"), (1, "1 site"), (2, "2 sites")])
+def test_one_is_one(number: int, words: str) -> None:
+    assert count(number, "site") == words

@@ -1,0 +1,123 @@
+"""Answers as text for people."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from selfconf.model.partition import NearMiss
+from selfconf.model.refusal import Refusal, TooFewEligible, Undecided
+from selfconf.render import (
+    configuration_text,
+    consequences_text,
+    cost_text,
+    refusal_text,
+    short,
+    undecided_text,
+)
+from selfconf.render.text import MOST_LINES
+from tests.render.answers import (
+    CLOCK,
+    CONFIGURATION,
+    CONSEQUENCES,
+    LAMP,
+    MISS,
+    NAMES,
+    OPTIMUM,
+    REASONS,
+    REFUSAL,
+    REPAIRS,
+    SOURCE,
+    TEMPLATE,
+    term,
+)
+
+
+def test_a_configuration_says_who_plays_what_is_connected_bound_and_set() -> None:
+    assert configuration_text(CONFIGURATION, NAMES).splitlines() == [
+        "configured :tell",
+        "  :source  :clock",
+        "  :sink    :screen",
+        "  :spare   (nobody)",
+        "connections",
+        "  :clock time  ->  :screen text",
+        "bindings",
+        "  room = :kitchen",
+        '  greeting = "say \\"hello\\""',
+        "parameters",
+        "  :screen size = 12",
+    ]
+
+
+def test_headings_without_anything_below_them_are_left_out() -> None:
+    plain = replace(CONFIGURATION, connections=(), settings=(), bindings={})
+    assert len(configuration_text(plain, NAMES).splitlines()) == 1 + len(CONFIGURATION.assignments)
+    assert configuration_text(replace(plain, assignments=()), NAMES) == "configured :tell"
+
+
+def test_a_single_point_of_failure_stands_out() -> None:
+    lines = consequences_text(CONSEQUENCES, NAMES).splitlines()
+    assert lines == [
+        "if it failed",
+        "  :clock   ->  NONE, a single point of failure",
+        "  :screen  ->  :lamp, :clock as :spare, and :clock would stop",
+    ]
+
+
+def test_a_cost_says_its_levels_its_bound_and_what_has_no_number() -> None:
+    assert cost_text(OPTIMUM, {term("error")}, NAMES).splitlines() == [
+        "cost, compared level by level",
+        "  level 1  0.5  (bound 0.25)",
+        "  level 2  24  (bound 24)",
+        "  not proved: there may be something better",
+        "  2 terms are unknown, and left out of the sums (sc:otherwise would say what to count)",
+        "    nobody in the ecology has a number for :error",
+        "    :clock has no number for :power",
+    ]
+
+
+def test_a_cost_that_is_proved_has_no_bound() -> None:
+    proved = replace(OPTIMUM, cost=OPTIMUM.cost[:1], bound=OPTIMUM.cost[:1], missing=(), proved=True)
+    assert cost_text(proved, (), NAMES).splitlines() == ["cost", "  level 1  0.5", "  proved: nothing costs less"]
+
+
+def test_a_refusal_has_every_reason_near_miss_and_repair_with_its_place() -> None:
+    lines = refusal_text(REFUSAL, NAMES).splitlines()
+    assert lines[0] == "no configuration for :tell"
+    assert lines[1 : 1 + len(REASONS)] == [
+        f"  because {reason}" + (f"  [{reason.place}]" if reason.place else "") for reason in REASONS
+    ]
+    assert "near misses" in lines
+    assert "  source: :lamp would fit, but it is no Clock  [lamp.ttl:4]" in lines
+    mended = lines.index("what would mend it")
+    assert [line.split("  [")[0].strip() for line in lines[mended + 1 : -2]] == [str(repair) for repair in REPAIRS]
+    assert lines[-2:] == [
+        "  with --reasoning subclass there is a configuration",
+        "the site cellar lives and did not answer in full",
+    ]
+
+
+def test_a_refusal_fits_on_a_screen_however_many_reasons_it_has() -> None:
+    reasons = tuple(TooFewEligible(term(f"r{number}"), 1, 0) for number in range(100))
+    misses = tuple(NearMiss(SOURCE, term(f"c{number}"), MISS.obstacle) for number in range(100))
+    lines = refusal_text(Refusal(TEMPLATE, reasons, misses), NAMES).splitlines()
+    assert f"  and {100 - MOST_LINES} more reasons" in lines
+    assert f"  and {100 - MOST_LINES} more" in lines
+    assert len(lines) < 24
+
+
+def test_a_refusal_without_reasons_says_that_there_was_no_time() -> None:
+    assert refusal_text(Refusal(TEMPLATE, ()), NAMES).splitlines() == [
+        "no configuration for :tell",
+        "  no time was left to find out why; allow more",
+    ]
+
+
+def test_what_is_not_decided_is_one_sentence() -> None:
+    assert undecided_text(Undecided(1), TEMPLATE, NAMES) == ":tell is not decided within 1 step; allow more by --steps"
+    assert "install the extra `solvers`" in undecided_text(Undecided(9, unaided=True), TEMPLATE, NAMES)
+
+
+def test_names_are_as_they_are_asked_for() -> None:
+    assert "configured tell" in configuration_text(CONFIGURATION, short)
+    assert CLOCK not in configuration_text(CONFIGURATION, short)
+    assert LAMP not in refusal_text(REFUSAL, short)
