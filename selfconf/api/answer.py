@@ -196,7 +196,7 @@ class Inquiry:
         partitioner = self.composer.partitioner
         wider = (method.wider() if ecology.remote else None) or partitioner.hierarchy
         self.ecology = ecology.for_task(partitioner, wider)
-        self.seconds["load"] = time.perf_counter() - began
+        self.seconds["load"] = ecology.read_seconds + time.perf_counter() - began
         began = time.perf_counter()
         partition = self.composer.partition(self.ecology)
         self.seconds["partition"] = time.perf_counter() - began

@@ -92,6 +92,8 @@ class Ecology(ABC):
     """What else was left out of the answers of a living ecology, a sentence each."""
     remote = False
     """Whether only what a task may want is fetched."""
+    read_seconds = 0.0
+    """How long its advertisements took to be read, where that was before any task."""
 
     def close(self) -> None:
         """Leave the ecology, where that means something."""

@@ -38,8 +38,8 @@ def endpoint_files(ecology: EndpointEcology, task: TaskSpecification, method: Me
 
 def _trustworthy(url: str) -> bool:
     """Whether what it answers cannot be changed between the endpoint and this machine."""
-    where = urlsplit(url)
     try:
+        where = urlsplit(url)
         return where.scheme == "https" or where.hostname == "localhost" or ip_address(where.hostname or "").is_loopback
     except ValueError:
         return False

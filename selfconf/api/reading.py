@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import re
 import sys
+import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -62,7 +63,10 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
         if len(given) > 1:
             raise AuthorError("a SPARQL endpoint is an ecology by itself; read the other sources by themselves")
         return EndpointEcology(endpoints[0])
-    return LoadedEcology(*gathered(_texts(given)), names=tuple(map(_name, given)))
+    began = time.perf_counter()
+    ecology = LoadedEcology(*gathered(_texts(given)), names=tuple(map(_name, given)))
+    ecology.read_seconds = time.perf_counter() - began
+    return ecology
 
 
 def is_endpoint(source: object) -> bool:

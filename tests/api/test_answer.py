@@ -341,3 +341,9 @@ def test_a_task_without_a_value_or_with_a_shape_that_is_none_is_said() -> None:
     bad = PREFIXES + ':t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:pattern "(" .'
     with pytest.raises(TemplateError, match="not well-formed"):
         configure(template(bad), read(EVERYTHING))
+
+
+def test_the_time_to_load_counts_the_reading_of_files(clock: sc.TaskSpecification) -> None:
+    ecology = sc.read("examples/clock")
+    inquiry = Inquiry(clock, ecology, Method())
+    assert inquiry.seconds["load"] > ecology.read_seconds > 0

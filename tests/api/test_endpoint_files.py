@@ -95,3 +95,9 @@ def test_a_task_that_is_not_complete_is_said_before_anything_is_asked() -> None:
     ecology = EndpointEcology("http://127.0.0.1:9/query")
     with pytest.raises(BindingError, match="needs a value"), endpoint_files(ecology, template(NAVIGATE), Method()):
         pytest.fail("there are no files")
+
+
+def test_what_is_no_url_is_refused_in_a_sentence() -> None:
+    task = template("examples/clock/tell-the-time.ttl")
+    with pytest.raises(AuthorError, match="https://"), endpoint_files(EndpointEcology("http://[/"), task, Method()):
+        pass

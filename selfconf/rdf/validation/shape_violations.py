@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
 import pyshacl
 from pyshacl.errors import ReportableRuntimeError, ValidationFailure
-from rdflib import RDF, Graph, Literal, Namespace, URIRef
+from rdflib import RDF, RDFS, Graph, Literal, Namespace, URIRef
 from rdflib.plugins.sparql import prepareQuery
 from rdflib.plugins.sparql.sparql import Query
 from rdflib.query import Result
@@ -67,33 +67,59 @@ _LISTING = (_SHAPES.RolesList, _SHAPES.RolesDistinct, _SHAPES.FedRoleListed)
 """Shapes whose queries only find what `_lists_stray` sees first; rdflib goes down a list by recursion."""
 
 
+_TARGETS = (_SH.targetClass, _SH.targetSubjectsOf, _SH.targetObjectsOf)
+"""The kinds of targets (SHACL, 2.1.3) of the shapes that ship with selfconf."""
+
+
 @dataclass(frozen=True, slots=True)
 class Shapes:
-    """The shapes, and what is left of them for a file in which no component repeats a name and no list of roles strays.
+    """The shapes, and for each file as few of them as may find something.
 
-    pySHACL parses the query of a SPARQL constraint for each focus node, which takes longer than all else.
+    pySHACL reads all shapes anew for each file, and looks for the targets of each; which shapes have no target in it is
+    known sooner. It also asks the query of a SPARQL constraint for each focus node, which takes longer than all else.
     """
 
     all: Graph
-    simple: Graph
+    targets: tuple[tuple[Node, Node, Node], ...]
+    """Shape, kind of target, and the class or predicate."""
+    _parts: dict[frozenset[Node], Graph] = field(default_factory=dict)
 
     @classmethod
     def of(cls, shapes: Graph) -> Shapes:
-        """Set aside what is not always needed."""
-        simple = Graph()
-        for triple in shapes:
-            if triple[0] not in (*_NAMING, *_LISTING):
-                simple.add(triple)
-        return cls(shapes, simple)
+        """Find the targets of the shapes."""
+        return cls(shapes, tuple((s, kind, o) for kind in _TARGETS for s, o in shapes.subject_objects(kind)))
 
     def needed(self, graph: Graph) -> Graph:
         """The shapes that a file may violate."""
-        return self.all if _names_repeat(graph) or _lists_stray(graph) else self.simple
+        predicates, types = set(graph.predicates()), set(graph.objects(None, RDF.type))
+        below = RDFS.subClassOf in predicates  # then a node may be an instance of a class that it does not name
+        aimed = {
+            shape
+            for shape, kind, value in self.targets
+            if (value in types or below if kind == _SH.targetClass else value in predicates)
+        }
+        unneeded = () if _names_repeat(graph) or _lists_stray(graph) else (*_NAMING, *_LISTING)
+        chosen = frozenset(aimed.difference(unneeded))
+        if chosen not in self._parts:
+            self._parts[chosen] = self._with_all_below(chosen, set(unneeded))
+        return self._parts[chosen]
+
+    def _with_all_below(self, shapes: Iterable[Node], without: set[Node]) -> Graph:
+        """Some shapes with everything that they lead to."""
+        part, waiting, seen = Graph(), list(shapes), without
+        while waiting:
+            node = waiting.pop()
+            if node not in seen:
+                seen.add(node)
+                for triple in self.all.triples((node, None, None)):
+                    part.add(triple)
+                    waiting.append(triple[2])
+        return part
 
 
 def _names_repeat(graph: Graph) -> bool:
     for link in COMPONENT.fields:
-        for distinct in (field for field in link.into.fields if field.distinct):
+        for distinct in (named for named in link.into.fields if named.distinct):
             predicate, word = URIRef(link.predicate), URIRef(distinct.predicate)
             for component in set(graph.subjects(predicate)):
                 names = [name for node in graph.objects(component, predicate) for name in graph.objects(node, word)]
