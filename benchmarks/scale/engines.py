@@ -24,7 +24,7 @@ from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.advertisements.advertisement import property_order
-from selfconf.rdf.eligibility.index import AdvertisementIndex
+from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.permitted_fields import STRUCTURE
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.vocabulary import SC

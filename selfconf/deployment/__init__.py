@@ -4,7 +4,7 @@ A `RunRequest` says which task to run, and how; a `TaskRunner` runs it. Inside, 
 `liveness` decides when a component is believed to be dead, and `record` answers questions about what is deployed.
 """
 
-from selfconf.deployment.request import RunRequest
+from selfconf.deployment.run_request import RunRequest
 from selfconf.deployment.runner import TaskRunner
 
 __all__ = ["RunRequest", "TaskRunner"]

@@ -14,7 +14,7 @@ from selfconf.configurator import machine
 from selfconf.configurator.effects import ApplyTo, ReleaseFrom, SetOn
 from selfconf.configurator.events import Answered, Call, Event
 from selfconf.configurator.state import State
-from selfconf.deployment.request import EventListener, Standby
+from selfconf.deployment.run_request import EventListener, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection

@@ -14,7 +14,7 @@ from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
 from selfconf.configurator.state import State
 from selfconf.deployment.calls import Calls
-from selfconf.deployment.request import EventListener
+from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.run_event import EcologyReachable, EcologyUnreachable
 from selfconf.model.term import IRI

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from selfconf.bus.port import Bus, Request
-from selfconf.deployment.request import RunRequest
+from selfconf.deployment.run_request import RunRequest
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode

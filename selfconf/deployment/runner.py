@@ -39,7 +39,7 @@ from selfconf.configurator.state import Loss, Phase, State
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.record import DeploymentRecord
-from selfconf.deployment.request import RunRequest
+from selfconf.deployment.run_request import RunRequest
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.model.configuration import Configuration

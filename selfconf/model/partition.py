@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from selfconf.model.candidate_order import candidate_order
 from selfconf.model.obstacle import Obstacle
-from selfconf.model.profile import Place, Profile, candidate_order
+from selfconf.model.profile import Place, Profile
 from selfconf.model.term import IRI, Term
 
 ANY_VALUE = -1

@@ -96,8 +96,3 @@ class Profile:
     def values(self, predicate: IRI) -> tuple[Term, ...]:
         """The values of a property, in order."""
         return tuple(value for key, value in self.properties if key == predicate)
-
-
-def candidate_order(profile: Profile) -> tuple[Decimal, str]:
-    """The order in which candidates are tried: higher preference first, then by IRI, never by time of arrival."""
-    return profile.preference.copy_negate(), profile.component  # a minus sign would round

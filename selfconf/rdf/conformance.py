@@ -25,7 +25,7 @@ from selfconf.errors import TemplateError
 from selfconf.model.obstacle import ShapeViolated
 from selfconf.model.term import IRI
 from selfconf.rdf.deadline import TimeUp, processor_limit
-from selfconf.rdf.literals import UNORDERED
+from selfconf.rdf.literal_comparison import UNORDERED
 from selfconf.rdf.sparql import fault
 
 SHAPE_SECONDS = 30.0

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from decimal import Decimal
 
+from selfconf.model.candidate_order import candidate_order
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable, ordered
-from selfconf.model.profile import Profile, candidate_order
+from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 
 

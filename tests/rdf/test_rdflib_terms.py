@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.literals import has_value, order, well_typed
+from selfconf.rdf.literal_comparison import has_value, order, well_typed
 from selfconf.rdf.rdflib_terms import from_rdflib, rdflib_term, to_rdflib
 from selfconf.rdf.vocabulary import RDF, XSD
 

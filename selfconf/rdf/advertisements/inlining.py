@@ -2,7 +2,7 @@
 
 Making an object of every triple costs more than parsing it. So Oxigraph's parser is connected to Oxigraph's own
 serialiser, a few hundred triples at a time, and what comes out is text in one layout only: a line for each predicate of
-a subject, which is a statement (`selfconf.rdf.advertisements.statements`).
+a subject, which is a statement (`selfconf.rdf.advertisements.statement_table`).
 
 Blank nodes become part of the statement that leads to them: `sc:hasInput [ sc:name "pose" ; ... ]`, as their author
 wrote them. That is sound where every blank node is written in brackets or as a list, so that exactly one statement
@@ -18,7 +18,7 @@ from itertools import islice
 import pyoxigraph as ox
 
 from selfconf.rdf import turtle
-from selfconf.rdf.advertisements.statements import END, NotInlinableError, Statement, StatementTable, bracketed
+from selfconf.rdf.advertisements.statement_table import END, NotInlinableError, Statement, StatementTable, bracketed
 from selfconf.rdf.permitted_fields import NEXT
 from selfconf.rdf.vocabulary import FIRST, NIL, REST
 

@@ -22,7 +22,7 @@ from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement, about, property_order
 from selfconf.rdf.advertisements.segments import SegmentCache, inlined_document
-from selfconf.rdf.advertisements.statements import (
+from selfconf.rdf.advertisements.statement_table import (
     END,
     NotInlinableError,
     Statement,

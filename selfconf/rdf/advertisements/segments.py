@@ -25,7 +25,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
 from selfconf.rdf.advertisements.inlining import inlined
-from selfconf.rdf.advertisements.statements import NotInlinableError, Statement, StatementTable
+from selfconf.rdf.advertisements.statement_table import NotInlinableError, Statement, StatementTable
 from selfconf.rdf.advertisements.token_templates import TokenTemplates, patterns_of
 from selfconf.rdf.turtle import SKOLEM
 

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from selfconf.rdf.advertisements.recognition import port_of
-from selfconf.rdf.advertisements.statements import Statement, StatementTable
+from selfconf.rdf.advertisements.statement_table import Statement, StatementTable
 from selfconf.rdf.permitted_fields import RATE
 from selfconf.rdf.vocabulary import SC
 

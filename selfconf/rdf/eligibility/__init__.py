@@ -5,8 +5,8 @@
 out (`Exclusion`). `bound_shape` is the shape of a role with its parameters replaced.
 """
 
+from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.compiler import bound_shape
-from selfconf.rdf.eligibility.index import AdvertisementIndex
 from selfconf.rdf.eligibility.nearly_eligible import Exclusion, exclusions, near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.remote import ANYBODY, TYPES, prefaced, statements, wanted

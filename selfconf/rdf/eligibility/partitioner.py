@@ -22,8 +22,13 @@ from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_parameters as free_values
+from selfconf.rdf.eligibility.advertisement_index import (
+    AdvertisementIndex,
+    AdvertisementSignature,
+    ClassClosure,
+    TypeSet,
+)
 from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
-from selfconf.rdf.eligibility.index import AdvertisementIndex, AdvertisementSignature, ClassClosure, TypeSet
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Triple

@@ -1,4 +1,7 @@
-"""The tests that a role makes of a profile, compiled from its shape: a component that passes them all is eligible.
+"""The tests that a role makes of a profile, compiled from its shape.
+
+Whether a component is eligible is decided in `partitioner.py`: these tests say all that most shapes say, and pySHACL
+judges the rest.
 
 Each test returns the obstacle by which it keeps a component out (`selfconf.model.obstacle`), or None.
 """

@@ -16,7 +16,7 @@ from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import TypeRelation, WrongType
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI
-from selfconf.rdf.eligibility.index import AdvertisementIndex
+from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.nearly_eligible import nearly
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.role_tests import ClassTest, CompiledRole

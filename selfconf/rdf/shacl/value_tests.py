@@ -1,8 +1,8 @@
 """What SHACL asks of one value: its kind, datatype, range, length and pattern (SHACL 4.1.2, 4.1.3, 4.3, 4.4).
 
-Whether a literal is well-formed, and which of two is the greater, is decided by rdflib (`selfconf.rdf.literals`), as
-it is in pySHACL: two opinions on what `"07"^^xsd:integer` is would be one too many. Verdicts are remembered, as values
-recur.
+Whether a literal is well-formed, and which of two is the greater, is decided by rdflib, as it is in pySHACL
+(`selfconf.rdf.literal_comparison`): two opinions on what `"07"^^xsd:integer` is would be one too many. Verdicts are
+remembered, as values recur.
 """
 
 from __future__ import annotations
@@ -134,6 +134,6 @@ def _matches(expression: re.Pattern[str], value: str) -> bool:
 
 def _literals() -> ModuleType:
     """rdflib's and pySHACL's view of literals, loaded when a value first needs it: most tasks ask for none."""
-    from selfconf.rdf import literals
+    from selfconf.rdf import literal_comparison
 
-    return literals
+    return literal_comparison

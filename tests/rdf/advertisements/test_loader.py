@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
-from selfconf.rdf.advertisements import loader, statements
+from selfconf.rdf.advertisements import loader, statement_table
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.advertisements.segments import SegmentCache
@@ -165,8 +165,8 @@ def test_oxigraph_writes_a_subject_as_the_fast_loader_expects_it() -> None:
     parser = ox.parse(text, format=ox.RdfFormat.TURTLE)
     written = (ox.serialize(parser, format=ox.RdfFormat.TURTLE) or b"").decode()
     lines = [
-        block.partition(" ")[2].split(statements.NEXT)
-        for block in written[: -len(statements.END)].split(statements.END)
+        block.partition(" ")[2].split(statement_table.NEXT)
+        for block in written[: -len(statement_table.END)].split(statement_table.END)
     ]
     assert lines[0] == ["a <s:T> , <s:U>", '<s:p> "x\\ty ;\\n\\t"']
     assert [line[0].partition(" ")[0] for line in lines[1:]] == ["<s:q>", "<s:q>", "<s:r>", "<s:p>"]

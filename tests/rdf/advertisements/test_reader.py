@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.model.profile import Input, OperationalParameter, Output, candidate_order
+from selfconf.model.candidate_order import candidate_order
+from selfconf.model.profile import Input, OperationalParameter, Output
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.advertisements import loader
 from selfconf.rdf.advertisements import reader as advertisements

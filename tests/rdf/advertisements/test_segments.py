@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements import statements
+from selfconf.rdf.advertisements import statement_table
 from selfconf.rdf.advertisements.segments import NEW_SEGMENTS, SegmentCache, inlined_document
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
@@ -56,7 +56,9 @@ def cut(text: str, known: SegmentCache) -> object:
         return str(error)
     if found is None:
         return None
-    written = "".join(f"{s} {statements.NEXT.join(c.text for c in said)}{statements.END}" for s, said in found.items())
+    written = "".join(
+        f"{s} {statement_table.NEXT.join(c.text for c in said)}{statement_table.END}" for s, said in found.items()
+    )
     return list(found), shape_of(tuple(turtle.parse(written, "").triples()))
 
 

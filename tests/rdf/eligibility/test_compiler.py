@@ -11,7 +11,7 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement
-from selfconf.rdf.eligibility.index import AdvertisementIndex
+from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.role_tests import ParameterTest
 from selfconf.rdf.reasoning import closure
