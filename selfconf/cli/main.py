@@ -14,7 +14,7 @@ from collections.abc import Collection, Sequence
 from types import ModuleType
 from typing import NoReturn
 
-from selfconf.cli.terminal import display, for_programs, guard, silence
+from selfconf.cli.terminal import complain, for_programs, guard, silence
 from selfconf.errors import SelfconfError, SiteMisusedError, reason
 
 COMMANDS = {
@@ -114,7 +114,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SelfconfError as error:
         if given.debug:
             traceback.print_exc()
-        display(f"selfconf {given.command}: {error}", sys.stderr)
+        complain(f"selfconf {given.command}: {error}")
         return 2
     except BrokenPipeError:
         silence(sys.stdout)
@@ -122,11 +122,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         if given.debug:
             traceback.print_exc()
-        display(f"selfconf {given.command}: {reason(error)}", sys.stderr)
+        complain(f"selfconf {given.command}: {reason(error)}")
         silence(sys.stdout)
         return 2
     except KeyboardInterrupt:
-        display(f"selfconf {given.command}: interrupted", sys.stderr)
+        complain(f"selfconf {given.command}: interrupted")
         return INTERRUPTED
 
 

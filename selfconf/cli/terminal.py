@@ -76,8 +76,11 @@ def display(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
 
 
 def complain(sentence: str) -> None:
-    """Say something on stderr that is not a result."""
-    display(sentence, sys.stderr)
+    """Say something on stderr that is not a result; where that cannot be written, that is all that can be done."""
+    try:
+        print(sentence, file=sys.stderr, flush=True)
+    except OSError:
+        silence(sys.stderr)
 
 
 def silence(stream: TextIO) -> None:

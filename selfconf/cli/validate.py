@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from selfconf.cli.terminal import display
+from selfconf.cli.terminal import complain, display
 from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
@@ -66,10 +66,10 @@ def run(arguments: argparse.Namespace) -> int:
     result = validate(arguments.paths, ontologies=arguments.ontology, cache=arguments.cache)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
     display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
-    display(text.summary(result), sys.stderr)
+    complain(text.summary(result))
     if result.unreadable:
         names = ", ".join(sorted(result.unreadable))
-        display(f"selfconf validate: cannot read {names}; correct the path or the syntax.", sys.stderr)
+        complain(f"selfconf validate: cannot read {names}; correct the path or the syntax.")
         return 2
     return 0 if result.conforms else 1
 

@@ -113,7 +113,7 @@ def test_reading_leaves_the_garbage_of_the_program_to_the_collector() -> None:
     sc.read("examples/clock")
     gc.collect()
     assert gone() is None
-    assert gc.get_freeze_count() == before
+    assert gc.get_freeze_count() <= before
     assert gc.isenabled()
 
 
