@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 from dataclasses import dataclass
 from typing import Any
@@ -47,5 +48,7 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> Outcome:
         code = main(arguments)
     except SystemExit as error:
         code = int(error.code or 0)
+    finally:
+        gc.unfreeze()  # a command leaves what it has read to the end of its process, which is not this one
     said = capsys.readouterr()
     return Outcome(code, said.out, said.err)

@@ -7,6 +7,7 @@ SPARQL as they are), and how many lines it says on stderr. The members of `secon
 from __future__ import annotations
 
 import contextlib
+import gc
 import io
 import json
 import os
@@ -55,6 +56,8 @@ def answered(case: Case) -> Answer:
             code = main(case.arguments)
         except SystemExit as error:
             code = int(error.code or 0)
+        finally:
+            gc.unfreeze()  # a command leaves what it has read to the end of its process, which is not this one
     return taken_apart(case, code, out.getvalue(), err.getvalue())
 
 
