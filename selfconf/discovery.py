@@ -171,7 +171,7 @@ class _Inquiry:
             self._complaints.append(f"left out {page.component} of {name}: {len(payload)} bytes are too many")
             return None
         try:
-            good, bad = advertisements.read(payload, name, segments=self._segments)
+            good, bad = advertisements.read_advertisements(payload, name, segments=self._segments)
         except TurtleError as error:
             self._complaints.append(f"left out: {error}")
             return None

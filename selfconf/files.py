@@ -53,9 +53,9 @@ def advertisements(
 
     Raises AuthorError for what is not there, cannot be read, or is not Turtle.
     """
-    from selfconf.rdf.advertisements import read  # loads a parser, which a list of files does not need
+    from selfconf.rdf.advertisements import read_advertisements  # loads a parser, which a list of files does not need
 
-    return read(text(octets(path), str(path)), str(path), base(path), segments)
+    return read_advertisements(text(octets(path), str(path)), str(path), base(path), segments)
 
 
 def octets(path: Path) -> bytes:

@@ -16,8 +16,7 @@ from selfconf.api.ecology import Ecology, EndpointEcology, LoadedEcology
 from selfconf.errors import AuthorError
 from selfconf.model.left_out import LeftOut
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements import Advertisement, SegmentCache
-from selfconf.rdf.advertisements import read as read_advertisements
+from selfconf.rdf.advertisements import Advertisement, SegmentCache, read_advertisements
 from selfconf.rdf.eligibility import AdvertisementIndex
 
 if TYPE_CHECKING:

@@ -55,7 +55,7 @@ def read_endpoint(
     with _reply(url, statements(relevant), TRIPLES, ENDPOINT_PATIENCE) as reply:
         found = reply.read()
     try:
-        good, bad = advertisements.read(found, url)
+        good, bad = advertisements.read_advertisements(found, url)
     except TurtleError as error:
         raise NetworkError(f"{url} does not answer in N-Triples: {_line(error.message)}") from None
     left_out = [LeftOut(url, malformed.component, malformed.problems[0]) for malformed in bad]

@@ -9,8 +9,7 @@ from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss
 from selfconf.model.term import IRI
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.advertisements import read as read_advertisements
+from selfconf.rdf.advertisements import Advertisement, read_advertisements
 from selfconf.rdf.tasks import read_task
 from selfconf.rdf.turtle import parse
 from tests.lab import PREFIXES, iri

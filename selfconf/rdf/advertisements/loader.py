@@ -2,7 +2,7 @@
 
 A component is its IRI and a tuple of statements that it shares with others (`statements`). Its profile and its triples
 are made from them when they are asked for, which for a component that no role wants is never. A document that cannot be
-inlined is read by the careful reader (`reader.read`) instead, and so is each component about which anything is
+inlined is read by the careful reader (`reader.read_document`) instead, and so is each component about which anything is
 unusual: the careful reader is the authority on what conforms, and on how to say what does not.
 
 A port may have a name of its own, and be described elsewhere. What is said of it there says as much of the port as if
@@ -226,7 +226,7 @@ def _written(subject: str, statements: Iterable[Statement]) -> str:
 
 
 # complexity: the loop over all components; calls in it would cost a tenth of the load
-def read(
+def read_advertisements(
     text: bytes, source: str, base: str | None = None, segments: SegmentCache | None = None
 ) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
     """Every advertisement of a document, in the order of the text, and those that do not conform.

@@ -104,40 +104,43 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
 @example(PREFIXES + f":c1 {GOOD} ; :place :kitchen . :c2 {GOOD} ; :place :kitchen . :kitchen :size [ :value 3 ] .")
 def test_the_fast_loader_reads_what_the_careful_reader_reads(text: str) -> None:
     careful = advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl"))
-    assert told(loader.read(text.encode(), "a.ttl", "file:///a.ttl")) == told(careful)
+    assert told(loader.read_advertisements(text.encode(), "a.ttl", "file:///a.ttl")) == told(careful)
 
 
 def test_a_document_longer_than_a_window_is_read_as_one() -> None:
     text = PREFIXES + "\n".join(f":c{k} {GOOD} ; rob:support :robot{k % 7} ." for k in range(500))
-    good, bad = loader.read(text.encode(), "a.ttl")
+    good, bad = loader.read_advertisements(text.encode(), "a.ttl")
     assert (len(good), bad) == (500, [])
     assert told((good, bad)) == told(advertisements.read_document(turtle.parse(text, "a.ttl")))
 
 
 def test_documents_may_share_their_segments() -> None:
     shared = SegmentCache()
-    found = [loader.read((PREFIXES + text).encode(), name, None, shared)[0][0] for name, text in ADVERTISEMENTS.items()]
+    found = [
+        loader.read_advertisements((PREFIXES + text).encode(), name, None, shared)[0][0]
+        for name, text in ADVERTISEMENTS.items()
+    ]
     assert [a.profile.place and a.profile.place.source for a in found] == list(ADVERTISEMENTS)
     assert found[2].profile.preference == 10
 
 
 def test_blank_nodes_of_two_advertisements_are_never_the_same() -> None:
     text = PREFIXES + f":c1 {GOOD} ; :size [ :value 3 ] . :c2 {GOOD} ; :size [ :value 3 ] ."
-    (one, other), _ = loader.read(text.encode(), "a.ttl")
+    (one, other), _ = loader.read_advertisements(text.encode(), "a.ttl")
     assert one.profile.values(iri("size")) != other.profile.values(iri("size"))
     assert one != other
 
 
 def test_what_is_no_turtle_is_blamed_by_line_and_column() -> None:
     with pytest.raises(TurtleError, match=r"a\.ttl:2:5: not Turtle"):
-        loader.read(b"<urn:a> <urn:b> <urn:c> .\n<x> ; .", "a.ttl", "file:///")
+        loader.read_advertisements(b"<urn:a> <urn:b> <urn:c> .\n<x> ; .", "a.ttl", "file:///")
 
 
 @pytest.mark.parametrize("form", [':c1 rdfs:label "{}" .', ":c1 a sc:Component, :A ; rdfs:label '''{}''' ."])
 def test_a_literal_that_is_too_long_for_the_parser_is_blamed_on_its_file(form: str) -> None:
     text = (PREFIXES + form.format("a" * (17 << 20))).encode()
     with pytest.raises(TurtleError, match=r"big\.ttl: a literal in it is over 16 MiB"):
-        loader.read(text, "big.ttl")
+        loader.read_advertisements(text, "big.ttl")
     with pytest.raises(TurtleError, match="over 16 MiB"):
         turtle.parse(text, "big.ttl")
 
@@ -147,15 +150,15 @@ def test_ports_with_names_take_time_as_there_are_ports(monkeypatch: pytest.Monke
     text = PREFIXES + "".join(f":c{k} {GOOD} ; sc:hasInput :in{k} . :in{k} {port} .\n" for k in range(50))
     careful = told(advertisements.read_document(turtle.parse(text, "a.ttl")))
     monkeypatch.setattr(advertisements, "profiles", None)  # nobody looks at one by one
-    found = loader.read(text.encode(), "a.ttl")
+    found = loader.read_advertisements(text.encode(), "a.ttl")
     assert told(found) == careful
     assert iri("in7") in {value for _, _, value in found[0][7].triples}
 
 
 def test_blank_nodes_with_labels_are_the_same_in_one_document_and_others_in_another() -> None:
     text = PREFIXES + f":c1 {GOOD} ; :near _:x . :c2 {GOOD} ; :near _:x . _:x :near _:y ; rdfs:label 'x' ."
-    one, other = loader.read(text.encode(), "a.ttl")[0]
-    again, _ = loader.read(text.encode(), "a.ttl")[0]
+    one, other = loader.read_advertisements(text.encode(), "a.ttl")[0]
+    again, _ = loader.read_advertisements(text.encode(), "a.ttl")[0]
     assert one.profile.values(iri("near")) == other.profile.values(iri("near")) != again.profile.values(iri("near"))
     assert one.profile.values(iri("near"))[0] in {subject for subject, _, _ in one.triples}
 

@@ -182,7 +182,10 @@ def broken(path: Path) -> bool:
 @pytest.mark.parametrize("path", sorted(filter(broken, BAD.glob("*.ttl"))), ids=lambda path: path.stem)
 def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
     text = path.read_bytes()
-    careful, streamed = advertisements.read_document(turtle.parse(text, path.name)), loader.read(text, path.name)
+    careful, streamed = (
+        advertisements.read_document(turtle.parse(text, path.name)),
+        loader.read_advertisements(text, path.name),
+    )
     if path.stem in UNDECLARED:
         assert careful == streamed == ([], [])
     else:
@@ -193,4 +196,7 @@ def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
 def test_what_a_grounding_with_a_name_says_is_read() -> None:
     text = ':a a sc:Component, :L ; sc:grounding :g . :g sc:command "go" . :b a sc:Component, :L ; sc:grounding :g .'
     assert [a.profile.command for a in read(text)[0]] == ["go", "go"]
-    assert [a.profile.command for a in loader.read((PREFIXES + text).encode(), "ads.ttl")[0]] == ["go", "go"]
+    assert [a.profile.command for a in loader.read_advertisements((PREFIXES + text).encode(), "ads.ttl")[0]] == [
+        "go",
+        "go",
+    ]

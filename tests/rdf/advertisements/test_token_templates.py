@@ -108,11 +108,11 @@ def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None
         careful = told(advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl")))
     except TurtleError:
         with pytest.raises(TurtleError):
-            loader.read(text.encode(), "a.ttl", "file:///a.ttl")
+            loader.read_advertisements(text.encode(), "a.ttl", "file:///a.ttl")
         return
     known = SegmentCache()
     for _ in range(2):  # what was learnt the first time is used the second
-        found = loader.read(text.encode(), "a.ttl", "file:///a.ttl", known)
+        found = loader.read_advertisements(text.encode(), "a.ttl", "file:///a.ttl", known)
         assert told(found) == careful
         for clause in (c for one in found[0] if isinstance(one, LoadedAdvertisement) for c in one.statements):
             assert clause.predicate == clause.text.partition(" ")[0]
@@ -148,4 +148,4 @@ def test_one_odd_statement_leaves_the_rest_to_the_segments(odd: str, monkeypatch
     text = f"{each(':serial {d}')}\n{odd}"
     careful = told(advertisements.read_document(turtle.parse(text, "a.ttl")))
     monkeypatch.setattr(advertisements, "read_document", None)
-    assert told(loader.read(text.encode(), "a.ttl")) == careful
+    assert told(loader.read_advertisements(text.encode(), "a.ttl")) == careful

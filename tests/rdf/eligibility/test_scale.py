@@ -39,7 +39,7 @@ def text() -> bytes:
 
 def read(text: bytes) -> list[Advertisement]:
     """All of them; none is malformed."""
-    good, bad = loader.read(text, "many.ttl", "file:///many.ttl")
+    good, bad = loader.read_advertisements(text, "many.ttl", "file:///many.ttl")
     assert not bad
     return good
 

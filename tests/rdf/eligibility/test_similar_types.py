@@ -16,7 +16,7 @@ from tests.lab import PREFIXES, iri
 def test_a_component_of_a_misspelt_type_is_a_near_miss_and_one_of_another_type_is_none() -> None:
     text = PREFIXES + ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Clock ."
     partitioner = Partitioner(read_task(parse(text, "t.ttl")))
-    found, _ = advertisements.read(
+    found, _ = advertisements.read_advertisements(
         (PREFIXES + ":a a sc:Component, :Clok . :b a sc:Component, :Lamp .").encode(), "a.ttl"
     )
     ecology = AdvertisementIndex.of(found)

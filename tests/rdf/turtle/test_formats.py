@@ -89,7 +89,7 @@ def test_what_is_wrong_in_an_ontology_is_told_with_its_file_and_line(name: str, 
 )
 def test_an_advertisement_in_another_format_is_refused_with_the_command_that_converts_it(found: RdfFormat) -> None:
     name = f"my lamps.{found.endings[0]}"
-    for read in (advertisements.read, turtle.parse):
+    for read in (advertisements.read_advertisements, turtle.parse):
         with pytest.raises(TurtleError, match=f"this is {found.name}, where Turtle is read") as caught:
             read(written(found), name)
         assert f"rdfpipe -i {found.rdfpipe} -o turtle 'my lamps.{found.endings[0]}' > 'my lamps.ttl'" in str(
