@@ -87,7 +87,10 @@ def draw(
     view = perspective(solids, care.film_size, (14.0, 10.0, width - 14.0, height - 10.0))
     floor = lay(ground, apartment.rooms, coverings, areas, record, care.film_density)
     scene = Scene(solids, robot(), ground, floor.bare)
-    filming = lambda share: progress("filming", 0.6 + 0.35 * share)  # noqa: E731
+
+    def filming(share: float) -> None:
+        progress("filming", 0.6 + 0.35 * share)
+
     frames = film.shoot(scene, floor, view, record, care.frames, care.film_samples, filming)
     paths.append(out_dir / "run.webp")
     film.save(frames, paths[-1], FILM_LIMIT)
