@@ -11,7 +11,7 @@ import pytest
 import rdflib
 
 from benchmarks.scale import engines, report, worlds
-from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import read_advertisements
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -27,7 +27,7 @@ def test_the_short_run_runs() -> None:
 
 def test_rdflib_reads_the_same_profiles() -> None:
     text = "".join(worlds.ecology(50))
-    good, bad = stream.read(text.encode(), "a.ttl")
+    good, bad = read_advertisements(text.encode(), "a.ttl")
     found = engines.profiles(rdflib.Graph().parse(data=text, format="turtle"))
     assert not bad
     assert {replace(profile, properties=()) for profile in found} == {
@@ -39,7 +39,7 @@ def test_other_forms_of_an_advertisement_are_advertisements() -> None:
     head, *advertisements = worlds.ecology(20)
     for form in (worlds.labelled, worlds.linked, worlds.topical, worlds.unlike):
         text = head + "".join(form(text, number) for number, text in enumerate(advertisements))
-        good, bad = stream.read(text.encode(), "a.ttl")
+        good, bad = read_advertisements(text.encode(), "a.ttl")
         assert (len(good), bad) == (20, [])
 
 

@@ -13,7 +13,7 @@ import pytest
 from rdflib import Graph, URIRef
 
 from selfconf.cli.main import main
-from selfconf.rdf.advertisements import loader as stream
+from selfconf.rdf.advertisements import read_advertisements
 from selfconf.rdf.sparql.dataset import Dataset
 from tests.cli.command import each
 from tests.cli.endpoints import oxigraph
@@ -118,7 +118,7 @@ def test_each_role_as_a_query_gives_the_same_candidates_in_the_same_order(
     dataset = Dataset()
     folder = Path(arguments[arguments.index("--ads") + 1])
     for path in sorted(folder.glob("*.ttl")) if folder.is_dir() else [folder]:
-        dataset.add_advertisements(stream.read(path.read_bytes(), path.name)[0])
+        dataset.add_advertisements(read_advertisements(path.read_bytes(), path.name)[0])
     found = {}
     for role, query in spelt(told(capsys, *arguments, "--show", "sparql")).items():
         answer = dataset.query(query)
@@ -137,7 +137,7 @@ def test_each_role_as_a_shape_gives_the_same_candidates(
     folder = Path(arguments[arguments.index("--ads") + 1])
     for path in sorted(folder.glob("*.ttl")) if folder.is_dir() else [folder]:
         ads.parse(path)
-        components |= {a.component for a in stream.read(path.read_bytes(), path.name)[0]}
+        components |= {a.component for a in read_advertisements(path.read_bytes(), path.name)[0]}
     expected = candidates(told(capsys, *arguments, "--format", "json"))
     for role, shape in spelt(told(capsys, *arguments, "--show", "shape")).items():
         shapes = Graph().parse(data=shape, format="turtle")
