@@ -1,4 +1,9 @@
-"""The event loop of a bus in real time: callbacks from a queue, and timers, on one thread."""
+"""The event loop of a bus in real time: callbacks from a queue, and timers, on one thread.
+
+What is urgent (`wake_up`) stands in one queue, what comes in bulk (`enqueue_bulk`) in another that is bounded. The
+queue of the urgent holds at most one mark that says "now one of the bulk": so an urgent callback waits for the urgent
+ones before it and for one of the bulk, however many of these there are, and the bulk is not starved either.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +11,9 @@ import heapq
 import itertools
 import logging
 import queue
+import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -20,9 +27,17 @@ class Loop:
     """How many callbacks a call of `poll` runs at most, so that `run` asks whether to go on even in a flood of them."""
     FEW_TIMERS = 64
     """How many timers are kept without asking how many of them were taken back."""
+    MOST_IN_BULK = 10_000
+    """How many callbacks wait in bulk at most; then each that comes drives out the oldest one."""
 
     def __init__(self) -> None:
         self._waiting: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._bulk: deque[Callable[[], None]] = deque()
+        self._bulk_lock = threading.Lock()
+        self._bulk_is_marked = False
+        """Whether `_waiting` holds the mark that lets one of the bulk run."""
+        self.dropped = 0
+        """How many callbacks were driven out of the bulk."""
         self._timers: list[tuple[float, int, _Timer]] = []
         self._taken_back = 0
         """How many entries of the heap were taken back; they stay until their time, or until they are the majority."""
@@ -36,6 +51,28 @@ class Loop:
     def wake_up(self, action: Callable[[], None]) -> None:
         """Call `action` on the loop's thread, soon; may be called from any thread."""
         self._waiting.put(action)
+
+    def enqueue_bulk(self, action: Callable[[], None]) -> None:
+        """Call `action` on the loop's thread, unless newer ones drive it out; may be called from any thread."""
+        with self._bulk_lock:
+            if len(self._bulk) >= self.MOST_IN_BULK:
+                self._bulk.popleft()
+                self.dropped += 1
+            self._bulk.append(action)
+            self._mark_bulk()
+
+    def _mark_bulk(self) -> None:
+        if self._bulk and not self._bulk_is_marked:
+            self._bulk_is_marked = True
+            self._waiting.put(self._run_one_of_bulk)
+
+    def _run_one_of_bulk(self) -> None:
+        with self._bulk_lock:
+            self._bulk_is_marked = False
+            action = self._bulk.popleft() if self._bulk else None
+            self._mark_bulk()
+        if action is not None:
+            action()
 
     def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
         """Call `action` once, after that time; the result takes it back."""
@@ -69,6 +106,8 @@ class Loop:
         self._ended = True
         self._timers.clear()
         self._taken_back = 0
+        with self._bulk_lock:
+            self._bulk.clear()
 
     def _due(self) -> Callable[[], None] | None:
         """The timer whose time has come; timers go before the queue, or a flood in the queue would hold them up."""

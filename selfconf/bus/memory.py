@@ -194,9 +194,14 @@ class MemoryBus:
         return declared
 
     def subscribe(
-        self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL
+        self,
+        key: str,
+        receive: Callable[[Sample], None],
+        urgency: Urgency = Urgency.SIGNAL,
+        *,
+        direct: bool = False,
     ) -> Callable[[], None]:
-        """Receive every sample put on a key from now on."""
+        """Receive every sample put on a key from now on; there is one thread, so `direct` makes no difference."""
         undo = self._declare(self._subscribers, (key, receive))
         self.match_all()
 

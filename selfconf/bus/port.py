@@ -1,9 +1,19 @@
 """What the programs of selfconf ask of a network.
 
 A bus belongs to one thread: everything that arrives (samples, requests, replies, lives, timers) is delivered by
-callbacks inside `run` or `poll`, one after the other, in order of arrival. So a program needs no locks, and it can run
-unchanged in a simulated network with a clock turned by hand. The one exception: `Publisher.put` and `wake_up` may be
-called from any thread.
+callbacks inside `run` or `poll`, one after the other. So a program needs no locks, and it can run unchanged in a
+simulated network with a clock turned by hand. Two exceptions: `Publisher.put` and `wake_up` may be called from any
+thread, and a *direct* subscription is called on the thread that a sample arrives on.
+
+What arrives stands in one of three classes, each in order of its arrival:
+
+1. timers that are due;
+2. *control*: requests, replies, lives, matching, `wake_up`, and the samples of subscriptions of Urgency.EVENT;
+3. *bulk*: the samples of all other subscriptions.
+
+A callback of control waits for those of control before it and for one of bulk at most: a flood of signals or of
+`changed` delays no call, no FAIL and no life by more than one such callback. Bulk is bounded; in a flood that the
+program cannot keep up with, the oldest samples are dropped.
 
 A *life* is one incarnation of a program or a component: a liveliness token under a key of its own, which is there from
 `announce` until that is undone, or until the node is gone.
@@ -120,8 +130,22 @@ class Bus(Protocol):
         """Declare a key to put on; `matched` is called when there begins to be, or ceases to be, a subscriber."""
         ...
 
-    def subscribe(self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL) -> Undo:
-        """Receive every sample put on a key from now on."""
+    def subscribe(
+        self,
+        key: str,
+        receive: Callable[[Sample], None],
+        urgency: Urgency = Urgency.SIGNAL,
+        *,
+        direct: bool = False,
+    ) -> Undo:
+        """Receive every sample put on a key from now on; those of EVENT before those of other urgencies.
+
+        If `direct`, `receive` is called on whatever thread a sample arrives on, ahead of everything in the queues of
+        the bus. It must return at once: nothing else arrives meanwhile. So it puts the sample into a queue of its own,
+        and may call `wake_up` and `put`, but nothing else of the bus. Calls do not overlap, and samples of one
+        publisher keep their order. Once the undo has returned, no call is under way and none will come; so the undo
+        must not be called while holding a lock that `receive` waits for.
+        """
         ...
 
     def serve(self, key: str, answer: Callable[[Request], None]) -> Undo:

@@ -4,8 +4,8 @@ Each site opens a *router* session that listens on one endpoint; everything else
 routers connect to each other. Multicast is off, endpoints are explicit, and nothing listens anywhere but on loopback
 unless an endpoint says so. The topology and the keys are in `docs/protocol.md`.
 
-* Callbacks of Zenoh only put into the loop's queue (`indirect=False`): work in one would hold up every other message,
-  and by default each would have a thread.
+* Callbacks of Zenoh only put into the loop's queues (`indirect=False`): work in one would hold up every other message,
+  and by default each would have a thread. The callback of a direct subscription puts into a queue of its owner.
 * Questions go to all queryables and are not consolidated, for that keeps one reply per key and waits for the slowest.
   They end when every queryable has finished, not at the time-out.
 * All control calls of one component have the same priority and are express, or they would overtake each other.
@@ -15,7 +15,9 @@ unless an endpoint says so. The topology and the keys are in `docs/protocol.md`.
 from __future__ import annotations
 
 import json
+import logging
 import socket
+import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -25,6 +27,8 @@ from zenoh.handlers import Callback
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.errors import NetworkError
+
+log = logging.getLogger(__name__)
 
 LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
@@ -163,13 +167,14 @@ class _Request:
 class _Receiver:
     """Calls back on the loop's thread for what a declaration receives, until the declaration is taken back."""
 
-    def __init__(self, bus: ZenohBus, call: Callable[..., None]) -> None:
+    def __init__(self, bus: ZenohBus, call: Callable[..., None], urgent: bool = True) -> None:
         self._bus, self._call = bus, call
+        self._enqueue = bus.wake_up if urgent else bus.enqueue_bulk
         self._listening = True
 
     def received(self, *arguments: Any) -> None:
         """Called by Zenoh, on a thread of its own."""
-        self._bus.wake_up(lambda: self._call(*arguments) if self._listening else None)
+        self._enqueue(lambda: self._call(*arguments) if self._listening else None)
 
     def open(self, declared: Any) -> Callable[[], None]:
         """Begin, for what has been declared; the result takes it back, with every callback that has not run yet."""
@@ -180,6 +185,44 @@ class _Receiver:
             undeclare()
 
         return undo
+
+
+class _DirectReceiver:
+    """Calls back on Zenoh's thread for what a subscription receives, until the subscription is taken back."""
+
+    def __init__(self, bus: ZenohBus, receive: Callable[[Sample], None]) -> None:
+        self._bus, self._receive = bus, receive
+        self._listening = True
+        # Held during each call, so that the undo waits for one that is under way. Reentrant: `receive` may put on the
+        # key that it receives, which arrives on the same thread.
+        self._calling = threading.RLock()
+
+    def received(self, sample: zenoh.Sample) -> None:
+        """Called by Zenoh, on a thread of its own, or on the thread of a publisher of the same session."""
+        with self._calling:
+            if not self._listening:
+                return
+            try:
+                self._receive(_sample(sample))
+            except Exception:  # an outermost loop, like that of the bus: Zenoh would print it and go on
+                log.exception("a direct callback broke; going on")
+
+    def open(self, declared: Any) -> Callable[[], None]:
+        """Begin, for what has been declared; once the result has returned there is no call any more."""
+        undeclare = self._bus._keep(declared)
+        self._bus._direct.add(self)
+
+        def undo() -> None:
+            self.close()
+            self._bus._direct.discard(self)
+            undeclare()
+
+        return undo
+
+    def close(self) -> None:
+        """Wait for a call that is under way, and let none begin any more."""
+        with self._calling:
+            self._listening = False
 
 
 class ZenohBus(Loop):
@@ -200,6 +243,7 @@ class ZenohBus(Loop):
                 raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
             raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
         self._declared: set[Any] = set()
+        self._direct: set[_DirectReceiver] = set()
         self._open = True
 
     @property
@@ -223,10 +267,18 @@ class ZenohBus(Loop):
         return _Publisher(self, declared)
 
     def subscribe(
-        self, key: str, receive: Callable[[Sample], None], urgency: Urgency = Urgency.SIGNAL
+        self,
+        key: str,
+        receive: Callable[[Sample], None],
+        urgency: Urgency = Urgency.SIGNAL,
+        *,
+        direct: bool = False,
     ) -> Callable[[], None]:
         """Receive every sample put on a key from now on."""
-        receiver = _Receiver(self, receive)
+        if direct:
+            immediate = _DirectReceiver(self, receive)
+            return immediate.open(self._session.declare_subscriber(key, Callback(immediate.received, indirect=False)))
+        receiver = _Receiver(self, receive, urgent=urgency is Urgency.EVENT)
         return receiver.open(
             self._session.declare_subscriber(
                 key, Callback(lambda sample: receiver.received(_sample(sample)), indirect=False)
@@ -306,6 +358,9 @@ class ZenohBus(Loop):
         if self._open:
             self._open = False
             self.end()
+            for receiver in self._direct:
+                receiver.close()
+            self._direct.clear()
             self._declared.clear()
             self._session.close()
 

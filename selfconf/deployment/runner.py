@@ -100,7 +100,7 @@ class TaskRunner:
         self._leave = bus.announce(self.supervisor)
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
         bus.subscribe(self.keys.any_fail(), self._received_fail, Urgency.EVENT)
-        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})), Urgency.EVENT)
+        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})))  # not urgent: a flood delays no FAIL
 
     def start(self) -> None:
         """Begin with act 1."""

@@ -152,6 +152,39 @@ def test_samples_may_be_put_from_any_thread(net: Net, top: str) -> None:
     assert net.until(lambda: len(heard) == 50)
 
 
+def test_a_direct_subscription_hears_though_nobody_polls_its_bus(net: Net, top: str) -> None:
+    one, two = net.node(), net.node()
+    heard: list[bytes] = []
+    matches: list[bool] = []
+    two.subscribe(f"{top}/pose", lambda sample: heard.append(sample.payload), direct=True)
+    publisher = one.publisher(f"{top}/pose", Urgency.EVENT, matches.append)
+    assert net.until(lambda: matches == [True])
+    for number in range(100):
+        publisher.put(b"%d" % number)
+    assert net.until(lambda: len(heard) == 100)
+    assert heard == [b"%d" % number for number in range(100)]
+
+
+def test_a_direct_subscription_hears_nothing_once_it_is_undone_nor_when_its_bus_is_closed(net: Net, top: str) -> None:
+    one, two, three = net.node(), net.node(), net.node()
+    heard: list[Sample] = []
+    others: list[Sample] = []
+    undo = two.subscribe(f"{top}/pose", heard.append, direct=True)
+    three.subscribe(f"{top}/pose", heard.append, direct=True)
+    net.node().subscribe(f"{top}/pose", others.append)
+    matches: list[bool] = []
+    publisher = one.publisher(f"{top}/pose", Urgency.EVENT, matches.append)
+    assert net.until(lambda: matches == [True])
+    net.settle()
+    undo()
+    undo()
+    three.close()
+    publisher.put(b"late")
+    assert net.until(lambda: bool(others))
+    net.settle()
+    assert not heard
+
+
 # Questions.
 
 

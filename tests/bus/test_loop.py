@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import threading
 from functools import partial
 
 import pytest
@@ -156,3 +157,57 @@ def test_undoing_a_timer_that_has_gone_off_does_nothing() -> None:
     loop.poll()
     undo()
     assert (said, loop._taken_back) == ([1], 0)
+
+
+def test_what_is_urgent_waits_for_one_of_the_bulk_at_most() -> None:
+    loop = Loop()
+    said: list[str] = []
+    for _ in range(5000):
+        loop.enqueue_bulk(lambda: said.append("bulk"))
+    loop.wake_up(lambda: said.append("call"))
+    loop.poll()
+    assert said.index("call") == 1
+
+
+def test_the_bulk_goes_on_in_a_flood_of_what_is_urgent() -> None:
+    loop = Loop()
+    said: list[str] = []
+
+    def flood() -> None:
+        loop.wake_up(flood)
+
+    loop.wake_up(flood)
+    loop.enqueue_bulk(lambda: said.append("one"))
+    loop.enqueue_bulk(lambda: said.append("two"))
+    loop.poll()
+    assert said == ["one", "two"]
+
+
+def test_a_bulk_that_is_full_drops_the_oldest_and_counts_them() -> None:
+    loop = Loop()
+    said: list[int] = []
+    for number in range(Loop.MOST_IN_BULK + 5):
+        loop.enqueue_bulk(partial(said.append, number))
+    while len(said) < Loop.MOST_IN_BULK:
+        loop.poll()
+    assert said == list(range(5, Loop.MOST_IN_BULK + 5))
+    assert loop.dropped == 5
+
+
+def test_nothing_of_the_bulk_is_lost_or_doubled_among_many_threads() -> None:
+    loop = Loop()
+    said: list[int] = []
+
+    def put(thread: int) -> None:
+        for number in range(1000):
+            loop.enqueue_bulk(partial(said.append, 1000 * thread + number))
+
+    threads = [threading.Thread(target=put, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    loop.run(lambda: len(said) == 4000)
+    for thread in threads:
+        thread.join()
+    loop.poll()
+    assert sorted(said) == list(range(4000))
+    assert all([s for s in said if s // 1000 == t] == list(range(1000 * t, 1000 * t + 1000)) for t in range(4))

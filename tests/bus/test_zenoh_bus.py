@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import socket
+import threading
 import time
 from collections.abc import Callable
 
 import pytest
 
-from selfconf.bus.port import Sample, Urgency
+from selfconf.bus.port import Replies, Request, Sample, Urgency
 from selfconf.bus.zenoh_bus import ZenohBus, client, router
 from selfconf.errors import NetworkError
 
@@ -92,3 +94,78 @@ def test_a_client_whose_router_is_gone_is_not_linked_and_is_again_when_it_is_bac
     assert called == [(f"{top}/live/1",)]
     for node in (bus, other, second):
         node.close()
+
+
+def test_a_direct_callback_that_breaks_is_logged_and_not_the_last(
+    zenoh_router: ZenohBus, top: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    heard: list[bytes] = []
+
+    def receive(sample: Sample) -> None:
+        heard.append(sample.payload)
+        raise RuntimeError("no such port")
+
+    undo = zenoh_router.subscribe(f"{top}/pose", receive, direct=True)
+    publisher = zenoh_router.publisher(f"{top}/pose", Urgency.EVENT)
+    with caplog.at_level(logging.ERROR):
+        publisher.put(b"1")
+        publisher.put(b"2")
+        assert until(lambda: heard == [b"1", b"2"], zenoh_router)
+    undo()
+    assert "no such port" in caplog.text
+
+
+def test_the_undo_of_a_direct_subscription_waits_for_the_call_that_is_under_way(
+    zenoh_router: ZenohBus, top: str
+) -> None:
+    bus = client([zenoh_router.endpoint])
+    entered, leave, undone = threading.Event(), threading.Event(), threading.Event()
+
+    def receive(_: Sample) -> None:
+        entered.set()
+        leave.wait(5.0)
+
+    undo = zenoh_router.subscribe(f"{top}/pose", receive, direct=True)
+    matches: list[bool] = []
+    publisher = bus.publisher(f"{top}/pose", Urgency.EVENT, matches.append)
+    assert until(lambda: matches == [True], bus)
+    publisher.put(b"1")
+    assert entered.wait(5.0)
+
+    def undo_it() -> None:
+        undo()
+        undone.set()
+
+    thread = threading.Thread(target=undo_it)
+    thread.start()
+    assert not undone.wait(0.05)
+    leave.set()
+    assert undone.wait(5.0)
+    thread.join()
+    bus.close()
+
+
+def test_a_flood_of_signals_delays_no_call(zenoh_router: ZenohBus, top: str) -> None:
+    busy, caller = client([zenoh_router.endpoint]), client([zenoh_router.endpoint])
+    heard: list[Sample] = []
+    behind: list[int] = []
+
+    def answer(request: Request) -> None:
+        behind.append(len(heard))
+        request.reply(f"{top}/@ctl/state", b"")
+        request.finish()
+
+    busy.subscribe(f"{top}/pose", heard.append)
+    busy.serve(f"{top}/@ctl/state", answer)
+    matches: list[bool] = []
+    publisher = caller.publisher(f"{top}/pose", Urgency.EVENT, matches.append)
+    assert until(lambda: matches == [True], caller)
+    for _ in range(2000):
+        publisher.put(b"")
+    replies: list[Replies] = []
+    caller.ask(f"{top}/@ctl/state", b"", 5.0, replies.append)
+    assert until(lambda: busy._waiting.qsize() == 2, seconds=5.0)  # the call, and the mark for one of the bulk
+    assert until(lambda: bool(replies), busy, caller)
+    assert behind == [1]
+    for bus in (busy, caller):
+        bus.close()
