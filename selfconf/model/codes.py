@@ -189,6 +189,34 @@ CODES: tuple[Code, ...] = (
         ("OperationalNamesDistinct",),
     ),
     Code(
+        "SC-A14", "A component says at most once, by true or false, whether it may be shared.",
+        "Tasks share it or do not; by default they share what has neither inputs nor operational parameters.",
+        f'{_TUNER} ; sc:shareable "yes" .', f"{_TUNER} ; sc:shareable true .",
+        ("Shareable",),
+    ),
+    Code(
+        "SC-A15", "A duration is one number of seconds above zero, and a component has one of each kind at most.",
+        "How long it acts on while an input is unfed (sc:tolerates); how long a callback may take (sc:deadline).",
+        f"{_TUNER} ; sc:deadline [ sc:value -2 ; sc:unit unit:SEC ] .",
+        f"{_TUNER} ; sc:deadline [ sc:value 2 ; sc:unit unit:SEC ] .",
+        ("ToleratesOnce", "DeadlineOnce", "DurationNode", "DurationValue", "DurationUnit"),
+    ),
+    Code(
+        "SC-A16", "A component has at most one number of restarts, a whole number from 0 to 1000000.",
+        "So often within a minute its site starts it again after a crash; with 0, never.",
+        f"{_TUNER} ; sc:restarts 2.5 .", f"{_TUNER} ; sc:restarts 2 .",
+        ("Restarts",),
+    ),
+    Code(
+        "SC-A17", "A depth belongs to an input, as a whole number from 1 to 1000000.",
+        "So many signals wait there while the component is busy; at an output none waits.",
+        ":display a sc:Component, rob:Display ;\n"
+        '    sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ; sc:depth 0 ] .',
+        ":display a sc:Component, rob:Display ;\n"
+        '    sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ; sc:depth 10 ] .',
+        ("Depth", "DepthOfOutput"),
+    ),
+    Code(
         "SC-T01", "A template has an IRI and is a sc:Template.",
         "Tasks and command lines speak of it by its IRI.",
         f":radio sc:roles ( :source :sink ) .\n{_SOURCE}\n{_SINK}", _PAIR,
@@ -304,6 +332,12 @@ CODES: tuple[Code, ...] = (
         ("SettingsAgree",),
     ),
     Code(
+        "SC-T16", "A priority belongs to a template or a task, as one whole number from -1000000 to 1000000.",
+        "Of several tasks that want one component, the one with the highest priority gets it.",
+        f"{_PAIR}\n:radio sc:priority 0.5 .", f"{_PAIR}\n:radio sc:priority 5 .",
+        ("PrioritisedTyped", "Priority"),
+    ),
+    Code(
         "SC-K01", "A task has exactly one template, given by its IRI.",
         "A task is a template with bindings.",
         ":music a sc:Task .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
@@ -416,7 +450,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-C11", "A failure has one component, one cause, and at most one detail and time.",
-        'The causes are "fail", "crash", "silence" and "refused".',
+        'The causes are "fail", "crash", "silence", "refused", "hung" and "malformed".',
         '[] a sc:Failure ; sc:component :tuner ; sc:cause "tired" .',
         '[] a sc:Failure ; sc:component :tuner ; sc:cause "crash" .',
         ("FailureComponent", "FailureCause", "FailureDetail", "FailureTime"),
@@ -435,6 +469,14 @@ CODES: tuple[Code, ...] = (
         ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf rob:Tuner .',
         ("TermLabelled",),
         Severity.WARNING,
+    ),
+    Code(
+        "SC-O03", "A field of a kind of signal has one name and one datatype; it may be repeated and optional.",
+        "What an output emits is checked against these fields, so that a wrong signal is blamed on who sent it.",
+        ':Bell a owl:Class ; rdfs:label "bell"@en ; rob:field ( [ rob:fieldName "rings" ] ) .',
+        ':Bell a owl:Class ; rdfs:label "bell"@en ;\n'
+        '    rob:field ( [ rob:fieldName "rings" ; rob:datatype xsd:unsignedInt ] ) .',
+        ("FieldsOnce", "FieldName", "FieldDatatype", "FieldRepeated", "FieldOptional"),
     ),
     Code(
         "SC-L01", "Terms of sc: and sh: are spelt as they are declared.",

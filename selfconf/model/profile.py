@@ -27,10 +27,11 @@ class Place:
 
 # Ports are named tuples, which Python hashes and compares in C: a search groups a hundred thousand candidates by them.
 class Input(NamedTuple):
-    """A port that accepts signals of one type."""
+    """A port that accepts signals of one type; `depth` is how many may wait while the component is busy, if it says."""
 
     name: str
     signal: IRI
+    depth: int | None = None
 
 
 class Output(NamedTuple):
@@ -76,6 +77,14 @@ class Profile:
     ports: Ports = NO_PORTS
     parameters: tuple[OperationalParameter, ...] = ()
     preference: Decimal = NO_PREFERENCE
+    shareable: bool | None = None
+    """Whether several tasks may hold it, if it says so; `is_shareable` is what holds."""
+    tolerates: float | None = None
+    """For how many seconds it acts on while a required input is unfed, if it says so."""
+    deadline: float | None = None
+    """How many seconds a callback of it may take, if it says so."""
+    restarts: int | None = None
+    """How often a minute its site starts it again after a crash, if it says so."""
     command: str | None = None
     place: Place | None = field(default=None, compare=False)
 
@@ -88,6 +97,11 @@ class Profile:
     def outputs(self) -> tuple[Output, ...]:
         """The ports that issue signals."""
         return self.ports.outputs
+
+    @property
+    def is_shareable(self) -> bool:
+        """Whether several tasks may hold it: by default, what has neither inputs nor operational parameters."""
+        return not self.inputs and not self.parameters if self.shareable is None else self.shareable
 
     def output(self, name: str) -> Output | None:
         """The output of that name, if there is one."""

@@ -67,6 +67,8 @@ class Template:
     label: str | None = None
     cost: tuple[CostLevel, ...] = ()
     """What the strategy `best` minimises, the most important level first; nothing if the template states none."""
+    priority: int = 0
+    """The priority of its tasks that state none of their own."""
 
     def role(self, iri: IRI) -> Role:
         """The role of that IRI; KeyError if the template has none."""
@@ -83,6 +85,13 @@ class Task:
     template: Template
     bindings: Mapping[IRI, Term] = field(default_factory=dict)
     iri: IRI | None = None
+    stated_priority: int | None = None
+    """The priority that the task states itself; `priority` is what holds."""
+
+    @property
+    def priority(self) -> int:
+        """Of tasks that want the same component, the one with the highest goes first; zero if nothing is said."""
+        return self.template.priority if self.stated_priority is None else self.stated_priority
 
     def by_name(self) -> dict[str, Term]:
         """The bindings by the parameters' names."""

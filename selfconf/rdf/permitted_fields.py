@@ -1,9 +1,9 @@
 """What an advertisement may say: one table of its fields, which all that reads or checks advertisements is made from.
 
-Each subject (a component, an input, an output, an operational parameter, a rate, a grounding) has fields; a field is a
-predicate with the number of its values and what kind of value it takes. The careful reader, the prefilter of
-validation, the patterns of the fast loader and the lints take both from here. `shapes/advertisement.ttl` says the same
-in SHACL, for use without selfconf; a test holds the two together, both ways.
+Each subject (a component, an input, an output, an operational parameter, a rate, a duration, a grounding) has fields;
+a field is a predicate with the number of its values and what kind of value it takes. The careful reader, the prefilter
+of validation, the patterns of the fast loader and the lints take both from here. `shapes/advertisement.ttl` says the
+same in SHACL, for use without selfconf; a test holds the two together, both ways.
 
 A kind of value is given three times: as a test of a value, as the words that an author reads, and as the Turtle that
 the fast loader recognises without looking closer. The last may accept less than the first, never more.
@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from selfconf.model.number import number_of
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.turtle import SKOLEM
-from selfconf.rdf.vocabulary import SC, TYPE, UNIT
+from selfconf.rdf.vocabulary import SC, TYPE, UNIT, XSD
 
 NEXT = " ;\n\t"
 """What Oxigraph writes between two statements about one subject; no term has a line break in it."""
@@ -29,6 +29,11 @@ def _never(_: str) -> bool:
 
 def _always(_: str) -> bool:
     return True
+
+
+def _whole(lexical: str, datatype: str) -> int:
+    """The value of a literal of xsd:integer; of any other literal, and of text that is no number, less than zero."""
+    return -1 if datatype != XSD.integer or number_of(lexical, datatype) is None else int(lexical)
 
 
 def _no_literal(_: str, __: str) -> bool:
@@ -76,6 +81,24 @@ POSITIVE = ValueKind(
     literal=lambda lexical, datatype: (number_of(lexical, datatype) or 0) > 0,
 )
 HERTZ = ValueKind("unit:HZ", f"<({UNIT.HZ})>", iri=UNIT.HZ.__eq__)
+SECOND = ValueKind("unit:SEC", f"<({UNIT.SEC})>", iri=UNIT.SEC.__eq__)
+MOST = 1_000_000
+"""The largest whole number that a field takes; the component or site that obeys it keeps room for so many."""
+COUNT = ValueKind(
+    "a whole number from 0 to 1000000",
+    r"([0-9]{1,6})",
+    literal=lambda lexical, datatype: 0 <= _whole(lexical, datatype) <= MOST,
+)
+COUNT_FROM_ONE = ValueKind(
+    "a whole number from 1 to 1000000",
+    r"((?=[0-9]*[1-9])[0-9]{1,6})",
+    literal=lambda lexical, datatype: 1 <= _whole(lexical, datatype) <= MOST,
+)
+TRUE_OR_FALSE = ValueKind(
+    "true or false",
+    r"(true|false)",
+    literal=lambda lexical, datatype: datatype == XSD.boolean and lexical in ("true", "false"),
+)
 NODE = ValueKind("a node with properties", iri=_always, blank=True)
 
 
@@ -140,8 +163,13 @@ class Field:
 PORT_NAME = Field(SC.name, TEXT, least=1, distinct=True)
 SIGNAL_TYPE = Field(SC.signalType, RESOURCE, least=1)
 RATE = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, HERTZ, least=1)))
-INPUT = Subject((PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, most=0, into=RATE)), SC.Input)
-OUTPUT = Subject((PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, into=RATE)), SC.Output)
+DURATION = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, SECOND, least=1)))
+INPUT = Subject(
+    (PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, most=0, into=RATE), Field(SC.depth, COUNT_FROM_ONE)), SC.Input
+)
+OUTPUT = Subject(
+    (PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, into=RATE), Field(SC.depth, COUNT_FROM_ONE, most=0)), SC.Output
+)
 PARAMETER = Subject((PORT_NAME, Field(SC.parameterType, RESOURCE, least=1)), SC.OperationalParameter)
 GROUNDING = Subject((Field(SC.command, COMMAND_LINE),), SC.Grounding)
 COMPONENT = Subject(
@@ -151,6 +179,10 @@ COMPONENT = Subject(
         Field(SC.hasOutput, NODE, most=None, into=OUTPUT),
         Field(SC.hasParameter, NODE, most=None, into=PARAMETER),
         Field(SC.preference, NUMBER),
+        Field(SC.shareable, TRUE_OR_FALSE),
+        Field(SC.tolerates, NODE, into=DURATION),
+        Field(SC.deadline, NODE, into=DURATION),
+        Field(SC.restarts, COUNT),
         Field(SC.grounding, NODE, into=GROUNDING),
     ),
     SC.Component,
@@ -158,6 +190,15 @@ COMPONENT = Subject(
 
 PORTS = tuple(field for field in COMPONENT.fields if PORT_NAME in field.into.fields)
 """The fields of a component that lead to what has a name: inputs, outputs, operational parameters."""
+SETTINGS = {
+    SC.preference: "preference",
+    SC.shareable: "shareable",
+    SC.tolerates: "tolerates",
+    SC.deadline: "deadline",
+    SC.restarts: "restarts",
+    SC.grounding: "command",
+}
+"""The fields of a component that say one thing each, with the member of its profile that holds it."""
 LINKS = frozenset(field.predicate for subject in COMPONENT.walk() for field in subject.fields if field.into.fields)
 """What leads from a component to what else its profile is made of."""
 STRUCTURE = COMPONENT.predicates | {SC.name, SC.signalType}

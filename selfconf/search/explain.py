@@ -271,7 +271,7 @@ class _Wording:
         profile = problem.candidates[role][min(kind.number for kind in kinds)].profile
         unfed = next(
             name
-            for name, signal in profile.inputs
+            for name, signal, _ in profile.inputs
             if signal == need.signal and problem.feeding(role, name) == need.sources
         )
         feeding = [problem.roles[source] for source in dict.fromkeys(source for source, _ in need.sources)]

@@ -124,7 +124,7 @@ class Problem:
         if not profile.inputs:
             return True
         lacking: dict[IRI, list[str]] = {}
-        for name, signal in profile.inputs:
+        for name, signal, _ in profile.inputs:
             lacking.setdefault(signal, []).append(name)
         flat, above = self.hierarchy.flat, self.hierarchy.superclasses
         for source, output, only in self.links[role]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from selfconf.model.profile import Input, Output, Place, Ports, Profile, shared_ports
+import pytest
+
+from selfconf.model.profile import Input, OperationalParameter, Output, Place, Ports, Profile, shared_ports
 from selfconf.model.term import IRI, Literal
 
 
@@ -17,6 +19,22 @@ def test_ports_are_found_by_name_and_inputs_are_no_outputs() -> None:
     assert profile.output("pose") is pose
     assert profile.output("where") is None
     assert [port.name for port in profile.inputs] == ["where"]
+
+
+@pytest.mark.parametrize("said", [None, True, False])
+@pytest.mark.parametrize(
+    ("ports", "parameters", "otherwise"),
+    [
+        (Ports(outputs=(Output("pose", IRI("urn:Pose")),)), (), True),
+        (Ports(inputs=(Input("where", IRI("urn:Pose")),)), (), False),
+        (Ports(), (OperationalParameter("goal", IRI("urn:Goal")),), False),
+    ],
+)
+def test_a_component_is_shareable_if_it_says_so_or_if_nobody_can_want_anything_of_it(
+    ports: Ports, parameters: tuple[OperationalParameter, ...], otherwise: bool, said: bool | None
+) -> None:
+    profile = Profile(IRI("urn:c"), ports=ports, parameters=parameters, shareable=said)
+    assert profile.is_shareable is (otherwise if said is None else said)
 
 
 def test_the_values_of_a_property_are_all_of_them_in_order() -> None:

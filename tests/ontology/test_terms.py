@@ -41,7 +41,7 @@ NAMED_IN_THE_MANUAL = re.findall(
     hasOutput hasParameter name signalType parameterType preference grounding parameter roles feeds from to output
     input sets value minCount maxCount Port OperationalParameter Setting Grounding Binding Assignment rate unit
     command template binding task assignment connection setting role component epoch cause detail replaces passedOver
-    cost term property weight otherwise ofRole
+    cost term property weight otherwise ofRole shareable tolerates deadline restarts depth priority
     """,
 )
 

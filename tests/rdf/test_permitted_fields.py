@@ -16,21 +16,30 @@ from rdflib.term import Node
 from selfconf import library
 from selfconf.model import number as numbers
 from selfconf.model import term as model
+from selfconf.model.profile import Profile
 from selfconf.rdf.advertisements import reader
 from selfconf.rdf.permitted_fields import (
     COMMAND_LINE,
     COMPONENT,
+    COUNT,
+    COUNT_FROM_ONE,
+    DURATION,
     GROUNDING,
     HERTZ,
     INPUT,
+    MOST,
     NODE,
     NUMBER,
     OUTPUT,
     PARAMETER,
+    PORTS,
     POSITIVE,
     RATE,
     RESOURCE,
+    SECOND,
+    SETTINGS,
     TEXT,
+    TRUE_OR_FALSE,
     Field,
     Subject,
     ValueKind,
@@ -50,6 +59,8 @@ TARGETS: dict[Node, tuple[Subject, ...]] = {
     URIRef(SC.hasOutput): (OUTPUT,),
     URIRef(SC.hasParameter): (PARAMETER,),
     URIRef(SC.rate): (RATE,),
+    URIRef(SC.tolerates): (DURATION,),
+    URIRef(SC.deadline): (DURATION,),
     URIRef(SC.grounding): (GROUNDING,),
 }
 """What the node shapes of the file speak of, by the class or the property that makes it their target."""
@@ -60,6 +71,20 @@ ASKED: dict[int, set[tuple[str, object]]] = {
     id(NUMBER): {("node", URIRef(SHAPES.Number))},
     id(POSITIVE): {("node", URIRef(SHAPES.Number)), ("minExclusive", 0)},
     id(HERTZ): {("in", (URIRef(UNIT.HZ),))},
+    id(SECOND): {("in", (URIRef(UNIT.SEC),))},
+    id(COUNT): {
+        ("datatype", XSD.integer),
+        ("node", URIRef(SHAPES.Number)),
+        ("minInclusive", 0),
+        ("maxInclusive", MOST),
+    },
+    id(COUNT_FROM_ONE): {
+        ("datatype", XSD.integer),
+        ("node", URIRef(SHAPES.Number)),
+        ("minInclusive", 1),
+        ("maxInclusive", MOST),
+    },
+    id(TRUE_OR_FALSE): {("in", (Literal(True), Literal(False)))},
     id(NODE): {("nodeKind", SH.BlankNodeOrIRI)},
 }
 """What a shape asks of a value of each kind."""
@@ -115,6 +140,11 @@ def test_the_names_that_have_to_differ_are_those_of_the_shape() -> None:
     assert distinct == {word for word in ("hasInput", "hasOutput", "hasParameter") if any(word in q for q in queries)}
 
 
+def test_every_field_of_a_component_is_a_type_a_port_or_a_member_of_its_profile() -> None:
+    assert COMPONENT.predicates == {str(RDF.type), *(link.predicate for link in PORTS), *SETTINGS}
+    assert set(SETTINGS.values()) <= set(Profile.__dataclass_fields__)
+
+
 def test_the_number_of_a_cost_is_the_number_of_an_advertisement() -> None:
     template = Graph().parse(next(path for path in library.shapes() if path.stem == "template"))
     one, other = SHAPE.cbd(URIRef(SHAPES.Number)), template.cbd(URIRef(SHAPES.CostNumber))
@@ -156,7 +186,9 @@ VALUES = st.sampled_from(
     (
         '"words"', '" "', '""', '"mot"@fr', "7", "-2.5", "0", "1e3", "true",
         '"7"^^xsd:unsignedByte', '"INF"^^xsd:double',
-        '"x"^^xsd:integer', "rob:Audio", "unit:HZ", "[]", "[ sc:value 5 ; sc:unit unit:HZ ]", '[ sc:command "go" ]',
+        '"x"^^xsd:integer', "rob:Audio", "unit:HZ", "[]", "[ sc:value 5 ; sc:unit unit:HZ ]",
+        "unit:SEC", "[ sc:value 5 ; sc:unit unit:SEC ]", "false", '"1"^^xsd:boolean', "1000000", "1000001", "+3", "-3",
+        '[ sc:command "go" ]',
         '[ sc:name "in" ; sc:signalType rob:Audio ]', '"one", "two"', "rob:Audio, rob:Text", "1, 2",
     )
 )  # fmt: skip
@@ -168,6 +200,8 @@ COMPONENTS = {
     ":c a sc:Component, :L ; sc:hasParameter [ sc:parameterType :S ; VALUE ] .": PARAMETER,
     ':c a sc:Component, :L ; sc:hasParameter [ sc:name "a" ; VALUE ] .': PARAMETER,
     ':c a sc:Component, :L ; sc:hasOutput [ sc:name "a" ; sc:signalType :S ; sc:rate [ sc:value 5 ; VALUE ] ] .': RATE,
+    ":c a sc:Component, :L ; sc:tolerates [ sc:value 5 ; VALUE ] .": DURATION,
+    ":c a sc:Component, :L ; sc:deadline [ sc:unit unit:SEC ; VALUE ] .": DURATION,
     ":c a sc:Component, :L ; sc:grounding [ VALUE ] .": GROUNDING,
 }
 PLACES = [(field, text) for text, subject in COMPONENTS.items() for field in subject.fields]
@@ -184,12 +218,15 @@ def test_shape_and_careful_reader_agree_on_any_value_anywhere(place: tuple[Field
 
 
 @pytest.mark.parametrize(
-    "kind", [RESOURCE, TEXT, COMMAND_LINE, NUMBER, POSITIVE, HERTZ], ids=lambda kind: str(kind.words)
+    "kind",
+    [RESOURCE, TEXT, COMMAND_LINE, NUMBER, POSITIVE, HERTZ, SECOND, COUNT, COUNT_FROM_ONE, TRUE_OR_FALSE],
+    ids=lambda kind: str(kind.words),
 )
 def test_what_the_fast_loader_recognises_is_of_the_kind(kind: ValueKind) -> None:
     pattern = re.compile(kind.turtle)
     samples = [
-        "<urn:a>", f"<{UNIT.HZ}>", "<urn:selfconf:blank:x>", '"a"', '" "', '""', '"\\n"', "0", "0.0", "00", "7",
+        "<urn:a>", f"<{UNIT.HZ}>", f"<{UNIT.SEC}>", "<urn:selfconf:blank:x>", '"a"', '" "', '""', '"\\n"',
+        "0", "0.0", "00", "7",
         "-7", "+7",
         "2.5", "1e3", "1234567890", ".5", '"a"@en', "true",
     ]  # fmt: skip

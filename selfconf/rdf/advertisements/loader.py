@@ -15,8 +15,9 @@ from __future__ import annotations
 from collections.abc import Collection, Container, Iterable, Mapping
 from hashlib import blake2s
 from operator import attrgetter
+from typing import Any
 
-from selfconf.model.profile import NO_PREFERENCE, Input, OperationalParameter, Output, Place, Profile, shared_ports
+from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile, shared_ports
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
@@ -29,12 +30,13 @@ from selfconf.rdf.advertisements.statement_table import (
     StatementTable,
     bracketed,
 )
-from selfconf.rdf.permitted_fields import LINKS, NEXT
+from selfconf.rdf.permitted_fields import LINKS, NEXT, SETTINGS
 from selfconf.rdf.turtle import SKOLEM, Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
 
 Keyed = tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]
 _NAME = attrgetter("name")
+_SETTINGS = {f"<{predicate}>": member for predicate, member in SETTINGS.items()}
 _NONE: frozenset[IRI] = frozenset()
 
 
@@ -117,7 +119,7 @@ def _merged(component: IRI, types: frozenset[IRI], statements: tuple[Statement, 
     inputs: list[Input] = []
     outputs: list[Output] = []
     parameters: list[OperationalParameter] = []
-    preference, command = NO_PREFERENCE, None
+    settings: dict[str, Any] = {}
     for statement in statements:
         if statement.slot is statement:
             properties += statement.keyed or _keyed(statement, component)
@@ -129,9 +131,9 @@ def _merged(component: IRI, types: frozenset[IRI], statements: tuple[Statement, 
             outputs += part.outputs
         elif part.parameters:
             parameters += part.parameters
-        else:
-            preference = preference or part.preference
-            command = part.command if command is None else command
+        elif statement.predicate in _SETTINGS:
+            member = _SETTINGS[statement.predicate]
+            settings[member] = getattr(part, member)
     properties.sort()
     return Profile(
         component,
@@ -142,9 +144,8 @@ def _merged(component: IRI, types: frozenset[IRI], statements: tuple[Statement, 
             tuple(outputs) if len(outputs) < 2 else tuple(sorted(outputs, key=_NAME)),
         ),
         tuple(parameters) if len(parameters) < 2 else tuple(sorted(parameters, key=_NAME)),
-        preference,
-        command,
-        place,
+        place=place,
+        **settings,
     )
 
 

@@ -62,12 +62,15 @@ class _Reader:
         types = self._types()
         inputs = []
         for name, signal, node in self._named(COMPONENT[SC.hasInput]):
-            inputs.append(Input(name, signal))
+            inputs.append(Input(name, signal, self._depth(node, name)))
             if self.document.values(node, SC.rate):
                 self._problem(f"only an output promises a sc:rate, and {name!r} is an input")
-        outputs = [
-            Output(name, signal, self._rate(node, name)) for name, signal, node in self._named(COMPONENT[SC.hasOutput])
-        ]
+        outputs = []
+        for name, signal, node in self._named(COMPONENT[SC.hasOutput]):
+            rate = COMPONENT[SC.hasOutput].into[SC.rate]
+            outputs.append(Output(name, signal, self._quantity(node, rate, f"the sc:rate of output {name!r}")))
+            if self.document.values(node, SC.depth):
+                self._problem(f"only an input has a sc:depth, and {name!r} is an output")
         parameters = [OperationalParameter(name, kind) for name, kind, _ in self._named(COMPONENT[SC.hasParameter])]
         return Profile(
             component=self.component,
@@ -81,6 +84,10 @@ class _Reader:
             ),
             parameters=tuple(sorted(parameters, key=lambda parameter: parameter.name)),
             preference=self._preference(),
+            shareable=self._shareable(),
+            tolerates=self._quantity(self.component, COMPONENT[SC.tolerates], "what a component sc:tolerates"),
+            deadline=self._quantity(self.component, COMPONENT[SC.deadline], "the sc:deadline of a component"),
+            restarts=self._restarts(),
             command=self._command(),
             place=Place(self.document.source),
         )
@@ -123,26 +130,48 @@ class _Reader:
         if problem not in self.problems:
             self.problems.append(problem)
 
-    def _preference(self) -> Decimal:
-        field = COMPONENT[SC.preference]
+    def _setting(self, field: Field) -> Literal | None:
+        """The value of a field that a component need not have; a problem if it is there and not in order."""
         if not self.document.values(self.component, field.predicate):
-            return NO_PREFERENCE
+            return None
         value = self._required(self.component, field)
-        found = None if value is None else number(value)
-        if found is None:
-            self._problem(f"{_word(field.predicate)} is {field.kind.words}, if it is there at all")
-            return NO_PREFERENCE
-        return found
+        if isinstance(value, Literal):
+            return value
+        self._problem(f"{_word(field.predicate)} is {field.kind.words}, if it is there at all")
+        return None
 
-    def _rate(self, port: Term, name: str) -> float | None:
-        field = COMPONENT[SC.hasOutput].into[SC.rate]
+    def _preference(self) -> Decimal:
+        value = self._setting(COMPONENT[SC.preference])
+        return NO_PREFERENCE if value is None else number(value) or NO_PREFERENCE
+
+    def _shareable(self) -> bool | None:
+        value = self._setting(COMPONENT[SC.shareable])
+        return None if value is None else value.lexical == "true"
+
+    def _restarts(self) -> int | None:
+        value = self._setting(COMPONENT[SC.restarts])
+        return None if value is None else int(value.lexical)
+
+    def _depth(self, port: Term, name: str) -> int | None:
+        field = COMPONENT[SC.hasInput].into[SC.depth]
         if not self.document.values(port, field.predicate):
             return None
-        rate = self._required(port, field)
-        if rate is None or not self._conforms(rate, field.into):
-            self._problem(f"the sc:rate of output {name!r} is [ sc:value NUMBER ; sc:unit unit:HZ ], above zero")
+        value = self._required(port, field)
+        if isinstance(value, Literal):
+            return int(value.lexical)
+        self._problem(f"the sc:depth of input {name!r} is {field.kind.words}, if it is there at all")
+        return None
+
+    def _quantity(self, node: Term, field: Field, what: str) -> float | None:
+        """The number of a rate or of a duration, if there is one; a problem if it is not in order."""
+        if not self.document.values(node, field.predicate):
             return None
-        return float(number(self.document.values(rate, SC.value)[0]) or 0)
+        quantity = self._required(node, field)
+        if quantity is None or not self._conforms(quantity, field.into):
+            unit = field.into[SC.unit].kind.words
+            self._problem(f"{what} is [ sc:value NUMBER ; sc:unit {unit} ], above zero")
+            return None
+        return float(number(self.document.values(quantity, SC.value)[0]) or 0)
 
     def _command(self) -> str | None:
         field = COMPONENT[SC.grounding]

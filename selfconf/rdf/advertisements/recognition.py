@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -38,42 +39,57 @@ class _PortPattern(NamedTuple):
     bounded: tuple[tuple[str, int, float], ...]
     """How the other fields begin, and how often they may be there."""
     pattern: re.Pattern[str]
-    groups: tuple[int, int, int]
-    """Which groups of the pattern are the name, the type, and the number of the rate."""
+    groups: tuple[int, int, int, int]
+    """Which groups of the pattern are the name, the type, the number of the rate, and the depth."""
 
     @classmethod
     def of(cls, link: Field) -> _PortPattern:
         """The pattern from the table."""
         fields = link.into.fields
+        (kind,) = (field.predicate for field in fields if field.least and field is not PORT_NAME)
         allowed = [field.turtle for field in fields if field.most != 0]
-        if not any(field.into.fields for field in fields if field.most != 0):
-            allowed.append(f"(?P<{SC.value.short}>(?!))")  # there is no rate: a group that matches nothing
+        groups = SC.name.short, kind.short, SC.value.short, SC.depth.short
+        there = "".join(allowed)  # where there is no rate or no depth, a group for it matches nothing
+        allowed += [f"(?P<{group}>(?!))" for group in groups if f"(?P<{group}>" not in there]
         statement = f"(?:{_KINDS}|{'|'.join(allowed)}|<[^<>]*> {_VALUE})"
         pattern = re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]")
-        (kind,) = (field.predicate for field in fields if field.least and field is not PORT_NAME)
-        name, type_, rate = (pattern.groupindex[predicate.short] for predicate in (SC.name, kind, SC.value))
+        name, type_, rate, depth = (pattern.groupindex[group] for group in groups)
+        counts = [(f"<{f.predicate}> ", f.least, math.inf if f.most is None else f.most) for f in fields]
         return cls(
-            tuple([f"<{f.predicate}> " for f in fields if (f.least, f.most) == (1, 1)]),
-            tuple(
-                [
-                    (f"<{f.predicate}> ", f.least, math.inf if f.most is None else f.most)
-                    for f in fields
-                    if (f.least, f.most) != (1, 1)
-                ]
-            ),
+            tuple([mark for mark, *count in counts if count == [1, 1]]),
+            tuple([each for each in counts if each[1:] != (1, 1)]),
             pattern,
-            (name, type_, rate),
+            (name, type_, rate, depth),
         )
 
 
-_RATED = f"<{SC.rate}> "
+_RATED, _DEEP = f"<{SC.rate}> ", f"<{SC.depth}> "
 _PORTS = {f"<{link.predicate}>": _PortPattern.of(link) for link in PORTS}
-_PREFERENCE = re.compile(COMPONENT[SC.preference].turtle)
+_SETTINGS: dict[str, tuple[re.Pattern[str], Callable[[str], Profile]]] = {
+    f"<{predicate}>": (re.compile(COMPONENT[predicate].turtle), part)
+    for predicate, part in (
+        (SC.preference, lambda text: Profile(SUBJECT, preference=Decimal(text))),
+        (SC.shareable, lambda text: Profile(SUBJECT, shareable=text == "true")),
+        (SC.tolerates, lambda text: Profile(SUBJECT, tolerates=float(text))),
+        (SC.deadline, lambda text: Profile(SUBJECT, deadline=float(text))),
+        (SC.restarts, lambda text: Profile(SUBJECT, restarts=int(text))),
+    )
+}
+"""Of the fields of a component that say one thing: their pattern, and what makes a profile of the text of the value."""
 _COMMAND = re.compile(rf"<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?{GROUNDING[SC.command].turtle} \]")
 
 
-def port_of(link: str, text: str) -> tuple[str, str, str | None] | None:
-    """Name, type and number of the rate of the port in a statement, if it has one port in order and of a common form.
+class PortText(NamedTuple):
+    """What the text of a port says, as text."""
+
+    name: str
+    type: str
+    rate: str | None
+    depth: str | None
+
+
+def port_of(link: str, text: str) -> PortText | None:
+    """What the port in a statement says, if it has one port in order and of a common form.
 
     Each field has to be there as often as the table says, and its value has to be recognised. To count the predicates
     in the text is enough: one in a string or in brackets would count too, and the statement would be read carefully.
@@ -91,27 +107,30 @@ def port_of(link: str, text: str) -> tuple[str, str, str | None] | None:
     found = pattern.fullmatch(text)
     if found is None:
         return None
-    name, type_, rate = found.group(*groups)
-    return None if name is None or type_ is None or (rate is None and _RATED in text) else (name, type_, rate)
+    name, type_, rate, depth = found.group(*groups)
+    if name is None or type_ is None or (rate is None and _RATED in text) or (depth is None and _DEEP in text):
+        return None
+    return PortText(name, type_, rate, depth)
 
 
-def ported(link: str, name: str, kind: str, rate: str | None) -> Profile:
+def ported(link: str, port: PortText) -> Profile:
     """The part of a statement with one port."""
-    type_ = IRI(kind)
+    name, type_, rate, depth = port.name, IRI(port.type), port.rate, port.depth
     if link == f"<{SC.hasInput}>":
-        return Profile(SUBJECT, ports=Ports(inputs=(Input(name, type_),)))
+        return Profile(SUBJECT, ports=Ports(inputs=(Input(name, type_, None if depth is None else int(depth)),)))
     if link == f"<{SC.hasOutput}>":
         return Profile(SUBJECT, ports=Ports(outputs=(Output(name, type_, None if rate is None else float(rate)),)))
     return Profile(SUBJECT, parameters=(OperationalParameter(name, type_),))
 
 
-def setting_of(text: str) -> Profile | None:
-    """The part of a statement with a preference or a command, in order and of a common form."""
-    command = _COMMAND.fullmatch(text)
-    if command is not None:
-        return Profile(SUBJECT, command=command["command"])
-    preference = _PREFERENCE.fullmatch(text)
-    return None if preference is None else Profile(SUBJECT, preference=Decimal(preference["preference"]))
+def setting_of(predicate: str, text: str) -> Profile | None:
+    """The part of a statement with a preference, a command or another setting, in order and of a common form."""
+    if predicate not in _SETTINGS:
+        command = _COMMAND.fullmatch(text)
+        return None if command is None else Profile(SUBJECT, command=command["command"])
+    pattern, part = _SETTINGS[predicate]
+    found = pattern.fullmatch(text)
+    return None if found is None else part(found.group(1))
 
 
 def property_of(text: str) -> tuple[IRI, Term] | None:

@@ -75,7 +75,7 @@ class Statement(ABC):
         """What it adds to a profile."""
         if self.part is None:
             port = port_of(self.predicate, self.text)
-            self.part = ported(self.predicate, *port) if port else self.carefully()[0]
+            self.part = ported(self.predicate, port) if port else self.carefully()[0]
         return self.part
 
     def carefully(self) -> tuple[Profile, bool]:
@@ -165,7 +165,7 @@ class StatementTable(dict[str, Statement]):
         elif predicate in _SILENT:
             statement.part = _NOTHING
         else:
-            statement.part, faulty = setting_of(statement.text), False
+            statement.part, faulty = setting_of(predicate, statement.text), False
             if statement.part is None:
                 statement.part, faulty = statement.carefully()
             part = statement.part

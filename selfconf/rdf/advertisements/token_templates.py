@@ -177,7 +177,7 @@ def _template(pattern: bytes, statement: Statement, known: StatementTable) -> To
     """The template of a statement with marks."""
     text = statement.text
     port, name = port_of(statement.predicate, text), None
-    if port is not None and (mark := _NAME.fullmatch(port[0])):
+    if port is not None and port.depth is None and (mark := _NAME.fullmatch(port.name)):
         strings = [number for number, hole in enumerate(_HOLES.findall(pattern)) if hole == b'"']
         name = 2 * strings.index(int(mark[1])) + 1
     return TokenTemplate(
@@ -187,7 +187,7 @@ def _template(pattern: bytes, statement: Statement, known: StatementTable) -> To
         statement.bracketed,
         port is None and len(statement.links) > 0,
         name,
-        () if port is None else _marks(port[2] or ""),
+        () if port is None else _marks(port.rate or ""),
         statement.slot is statement and statement not in known.suspects and not _MARK.search(statement.predicate),
     )
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import partial
 
 import pyoxigraph as ox
 
 from selfconf.errors import BindingError
-from selfconf.model.template import Parameter, Task, Template
+from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import LITERAL
@@ -73,7 +74,7 @@ def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> 
         bindings[parameter.iri] = (
             value if isinstance(value, IRI | Literal | BlankNode) else read_term(value, document.prefixes)
         )
-    return TaskDocument(Task(task.template, bindings, task.iri), document)
+    return TaskDocument(replace(task, bindings=bindings), document)
 
 
 def complete(given: TaskDocument) -> TaskDocument:
@@ -95,7 +96,7 @@ def complete(given: TaskDocument) -> TaskDocument:
                 )
         if parameter.iri in bindings:
             _check(parameter, bindings[parameter.iri], document)
-    return TaskDocument(Task(task.template, bindings, task.iri), document)
+    return TaskDocument(replace(task, bindings=bindings), document)
 
 
 def _rigid(given: TaskDocument, parameter: Parameter) -> IRI | None:

@@ -26,8 +26,14 @@ from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, SH, TYPE, XSD
 
 WHOLE = frozenset(XSD[name] for name in ("integer", "int", "long", "short", "nonNegativeInteger", "positiveInteger"))
 _COUNT = re.compile(r"\+?[0-9]{1,18}")
-_SAID_OF = {**dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount), SC.Role), SC.cost: SC.Template}
-"""What is said only of instances of a class."""
+_PRIORITY = re.compile(r"[+-]?[0-9]{1,300}")
+_MOST_PRIORITY = 1_000_000
+_SAID_OF = {
+    **dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount), (SC.Role,)),
+    SC.cost: (SC.Template,),
+    SC.priority: (SC.Template, SC.Task),
+}
+"""What is said only of instances of a class, or of one of two."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +88,7 @@ class _Reader(DocumentReader):
                 problem = f"the task binds the parameter {worded(parameter)} twice"
                 raise self.mistake(problem, binding, SC.parameter, parameter)
             bindings[parameter] = value
-        return Task(template, bindings, task if isinstance(task, IRI) else None)
+        return Task(template, bindings, task if isinstance(task, IRI) else None, self._priority(task))
 
     def template(self, template: Node | Term) -> Template:
         if not isinstance(template, IRI):
@@ -98,7 +104,20 @@ class _Reader(DocumentReader):
             parameters=parameters_of(self.document, template, roles),
             label=self._label(template),
             cost=cost_of(self.document, template, frozenset(role.iri for role in roles)),
+            priority=self._priority(template) or 0,
         )
+
+    def _priority(self, subject: Node) -> int | None:
+        """The priority that a task or template states, if it states one."""
+        values = self.document.values(subject, SC.priority)
+        if not values:
+            return None
+        value = values[0]
+        whole = isinstance(value, Literal) and value.datatype == XSD.integer and _PRIORITY.fullmatch(value.lexical)
+        if len(values) > 1 or not isinstance(value, Literal) or not whole or abs(int(value.lexical)) > _MOST_PRIORITY:
+            problem = f"the sc:priority of {worded(subject)} is one whole number from -1000000 to 1000000"
+            raise self.mistake(problem, subject, SC.priority, values[-1])
+        return int(value.lexical)
 
     def _listed(self, template: IRI) -> list[Term]:
         """The members of the list of roles."""
@@ -123,9 +142,11 @@ class _Reader(DocumentReader):
     def _said_of_others(self) -> None:
         """Raises where something is said that is said of roles or templates alone."""
         for subject, statements in self.document.statements.items():
-            for predicate, kind in _SAID_OF.items():
-                if (TYPE, kind) not in statements and any(said == predicate for said, _ in statements):
-                    what = f"has sc:{predicate.short}, but is not described as a sc:{kind.short}"
+            for predicate, kinds in _SAID_OF.items():
+                described = any((TYPE, kind) in statements for kind in kinds)
+                if not described and any(said == predicate for said, _ in statements):
+                    words = " or a ".join(f"sc:{kind.short}" for kind in kinds)
+                    what = f"has sc:{predicate.short}, but is not described as a {words}"
                     raise self.mistake(f"{worded(subject)} {what}", subject)
 
     def _role(self, name: Term, cell: Term) -> Role:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import pyoxigraph as ox
 
 from selfconf.rdf.permitted_fields import COMPONENT, Field, Subject
-from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE
 
 MOST_PROBLEMS = 100
 """After so many syntax errors a file is taken for something else than Turtle."""
@@ -26,6 +26,8 @@ _SUBJECTS = tuple(COMPONENT.walk())
 _RATE = COMPONENT[SC.hasOutput].into[SC.rate]
 _OWN = COMPONENT.predicates - {TYPE}
 """What only a component has."""
+_FIELDS = frozenset((ROB.field, ROB.fieldName, ROB.datatype, ROB.repeated, ROB.optional))
+"""What is said of kinds of signals and their fields."""
 _PART_TERMS = frozenset().union(*(subject.predicates for subject in _SUBJECTS)) - COMPONENT.predicates
 _PARTS = frozenset(subject.type for subject in _SUBJECTS if subject.type is not None) - {SC.Component}
 _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
@@ -198,7 +200,12 @@ def _harmless(properties: Properties) -> bool:
         elif predicate in SC:
             if predicate not in _PART_TERMS:
                 return False
-        elif predicate in SH or predicate in OWL or (predicate in RDFS and predicate not in _PLAIN):
+        elif (
+            predicate in SH
+            or predicate in OWL
+            or predicate in _FIELDS
+            or (predicate in RDFS and predicate not in _PLAIN)
+        ):
             return False
     return True
 

@@ -57,7 +57,7 @@ class Wiring:
         found: list[tuple[int, ...]] = []
         for some in inputs:
             numbers: list[int] = []
-            for _, signal in some:
+            for _, signal, _ in some:
                 known = by_signal.get(signal)
                 if known is None:
                     known = by_signal[signal] = [len(needs)]

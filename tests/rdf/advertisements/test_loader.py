@@ -14,6 +14,7 @@ from selfconf.rdf.advertisements import loader, statement_table
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.advertisements.segments import SegmentCache
+from selfconf.rdf.permitted_fields import SETTINGS
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle.document import Triple
 from selfconf.rdf.turtle.serialization import ntriples
@@ -35,6 +36,10 @@ PORTS = st.one_of(
         "[ sc:name {} ; sc:signalType {} ; sc:rate [ sc:value {} ; sc:unit unit:HZ ] ]".format,
         NAMES, SIGNALS, st.sampled_from(("5.0", "0", '"fast"')),
     ),
+    st.builds(
+        "[ sc:name {} ; sc:signalType {} ; sc:depth {} ]".format,
+        NAMES, SIGNALS, st.sampled_from(("5", "0", "007", "1 , 2", "1.5")),
+    ),
     st.sampled_from(("[]", "[ sc:name 'x' ]", ":shared-port", "'port'")),
 )  # fmt: skip
 CLAUSES = st.one_of(
@@ -45,6 +50,15 @@ CLAUSES = st.one_of(
         "sc:hasParameter [ sc:name {} ; sc:parameterType {} ]".format, NAMES, st.sampled_from((":Goal", "'Goal'"))
     ),
     st.builds("sc:preference {}".format, st.sampled_from(("1", "2.5", '"high"', "1 , 1", "1 , 2"))),
+    st.builds("sc:shareable {}".format, st.sampled_from(("true", "false", '"yes"', "true , false", "1"))),
+    st.builds("sc:restarts {}".format, st.sampled_from(("0", "5", "-1", "2.5", "1 , 2", "9999999"))),
+    st.builds(
+        "sc:{} [ sc:value {} ; sc:unit {} ]".format,
+        st.sampled_from(("tolerates", "deadline")),
+        st.sampled_from(("0.5", "2", "-1", "0")),
+        st.sampled_from(("unit:SEC", "unit:SEC , unit:MIN", "unit:HZ")),
+    ),
+    st.sampled_from(("sc:deadline [ sc:unit unit:SEC ; sc:value 1 ]", "sc:deadline :kitchen", "sc:tolerates 2")),
     st.builds("sc:grounding [ sc:command {} ]".format, st.sampled_from(('"go --fast"', "5", '"a", "b"'))),
     st.sampled_from(("sc:grounding :kitchen", "sc:command 'go'", "sc:grounding 'go'")),
     st.builds("{} {}".format, st.sampled_from((":place", "rob:support", "rdfs:label", "rdfs:domain")), VALUES),
@@ -86,7 +100,8 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
                 a.types,
                 Counter((p, "[]" if type(v).__name__ == "BlankNode" else v) for p, v in a.profile.properties),
                 (a.profile.inputs, a.profile.outputs, a.profile.parameters),
-                (a.profile.preference, a.profile.command, str(a.profile.place)),
+                [getattr(a.profile, member) for member in SETTINGS.values()],
+                str(a.profile.place),
                 shape_of(a.triples),
             )
             for a in good

@@ -20,7 +20,7 @@ from selfconf.rdf.vocabulary import RDFS, ROB, SC
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 BAD = Path(__file__).resolve().parents[2] / "bad"
-UNDECLARED = {"component-untyped"}
+UNDECLARED = {"component-untyped", "run-untyped"}
 """Files about something that says nowhere that it is a component."""
 PORT = '[ sc:name "a" ; sc:signalType :S'
 Read = tuple[list[Advertisement], list[MalformedAdvertisement]]
@@ -88,6 +88,22 @@ def test_a_promised_rate_and_a_command_are_read() -> None:
     assert profile.command == "python t.py"
 
 
+def test_how_a_component_is_run_is_read() -> None:
+    profile = one(
+        ":drive a sc:Component, :Drive ; sc:tolerates [ sc:value 0.5 ; sc:unit unit:SEC ] ; sc:shareable false ;"
+        " sc:deadline [ sc:value 3 ; sc:unit unit:SEC ] ; sc:restarts 0 ;"
+        ' sc:hasInput [ sc:name "velocity" ; sc:signalType :S ; sc:depth 3 ] .'
+    ).profile
+    assert profile.inputs == (Input("velocity", iri("S"), 3),)
+    assert (profile.tolerates, profile.deadline, profile.restarts, profile.shareable) == (0.5, 3.0, 0, False)
+
+
+def test_what_is_not_said_of_how_a_component_is_run_is_none() -> None:
+    profile = one(f":x a sc:Component, :L ; sc:hasInput {PORT} ] .").profile
+    assert (profile.tolerates, profile.deadline, profile.restarts, profile.shareable) == (None, None, None, None)
+    assert profile.inputs[0].depth is None
+
+
 def test_a_document_may_hold_several_components_in_the_order_of_the_text() -> None:
     good, bad = read("\n".join(ADVERTISEMENTS.values()))
     assert [advertisement.profile.component.short for advertisement in good][:2] == ["sonar-array", "wheels"]
@@ -112,6 +128,12 @@ def test_a_document_may_hold_several_components_in_the_order_of_the_text() -> No
         (':x a sc:Component, :Lamp ; sc:hasParameter [ sc:name "a" ] .', "sc:parameterType"),
         (f":x a sc:Component, :L ; sc:hasOutput {PORT} ; sc:rate [ sc:value 0 ; sc:unit unit:HZ ] ] .", "above zero"),
         (f":x a sc:Component, :L ; sc:hasOutput {PORT} ; sc:rate 5 ] .", "sc:rate"),
+        (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:depth 0 ] .", "from 1 to"),
+        (f":x a sc:Component, :L ; sc:hasOutput {PORT} ; sc:depth 5 ] .", "only an input"),
+        (":x a sc:Component, :L ; sc:shareable 5 .", "true or false"),
+        (":x a sc:Component, :L ; sc:restarts -1 .", "whole number"),
+        (":x a sc:Component, :L ; sc:tolerates 2 .", "sc:unit unit:SEC"),
+        (":x a sc:Component, :L ; sc:deadline [ sc:value 2 ; sc:unit unit:M ] .", "sc:unit unit:SEC"),
     ],
 )
 def test_what_does_not_conform_is_left_out_with_one_sentence(text: str, problem: str) -> None:

@@ -45,6 +45,8 @@ SAID = st.sampled_from(
         'sc:hasInput [ sc:name "{s}" ; sc:signalType :S{d} ]', "sc:preference {d}", "sc:preference {d}.{d}",
         'sc:hasInput [ sc:name "{s}" ; sc:signalType :S ] , [ sc:signalType :T{d} ; sc:name "/{d}/{s}" ]',
         'sc:hasOutput [ a :O ; sc:name "o{d}" ; sc:signalType :S ; sc:rate [ sc:value {d}.{d} ; sc:unit unit:HZ ] ]',
+        'sc:hasInput [ sc:name "in{d}" ; sc:signalType :S ; sc:depth {d} ]', "sc:restarts {d}",
+        "sc:deadline [ sc:value {d}.{d} ; sc:unit unit:SEC ]", "sc:tolerates :lasting{d}", "sc:shareable true",
         'sc:hasOutput [ sc:name "{s}" ; sc:name "o" ; sc:signalType :S ]', 'sc:hasOutput [ sc:name "o{d}"@en ]',
         'sc:hasOutput [ sc:name "n{d}" ; sc:signalType :S ; rdfs:label "{s}" ; rdfs:seeAlso sc:Component ]',
         'sc:hasParameter [ sc:name "m{d}" ; sc:parameterType :M{d} ]', 'sc:grounding [ sc:command "{s}" ]',
@@ -67,6 +69,7 @@ THINGS = st.sampled_from(
         '_:port{d} sc:name "in" ; sc:signalType :S .', "_:n :near _:n{d} .",
         ":room{d} rdfs:label 'room' ; :in [ :x {d} ] .",
         ':port sc:name "x" ; sc:signalType :S ; sc:rate :rate{d} .', ":rate{d} sc:value {d} ; sc:unit unit:HZ .",
+        ":lasting{d} sc:value {d} ; sc:unit unit:SEC .",
         ':ground{d} sc:command "{s}" .', ":room{d} rdfs:seeAlso sc:Component, :port{d} .", "_:c{d} a sc:Component .",
         ':port{d} :p "{s}" .', ":kitchen :polygon ( {d} {d} ) .", '<c{d}> rdfs:label "{s}" .', "<#c{d}> a :Thing .",
     )
@@ -103,6 +106,9 @@ def each(said: str) -> str:
 @example(each('sc:hasOutput [ sc:name "o" ; sc:signalType :S ; sc:rate [ sc:value {d} ; sc:unit unit:HZ ] ]'))
 @example(each('sc:hasInput [ sc:name "{d}" ; sc:signalType :S ] ; sc:hasInput [ sc:name "{d}" ; sc:signalType :T ]'))
 @example(each("sc:hasInput _:in{d} . _:in{d} sc:name 'in' ; sc:signalType _:s"))
+@example(each('sc:hasInput [ sc:name "i" ; sc:signalType :S ; sc:depth {d} ]'))
+@example(each("sc:restarts {d} ; sc:deadline [ sc:value {d} ; sc:unit unit:SEC ]"))
+@example(each("sc:tolerates :lasting{d} . :lasting{d} sc:value {d} ; sc:unit unit:SEC"))
 def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None:
     try:
         careful = told(advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl")))

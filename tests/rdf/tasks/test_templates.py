@@ -85,6 +85,16 @@ def test_a_task_is_a_template_with_values() -> None:
     assert (task.iri, task.bindings, task.by_name()) == (iri("k"), {iri("p"): Literal("x")}, {"p": Literal("x")})
 
 
+@pytest.mark.parametrize(
+    ("template", "task", "priority"),
+    [("", "", 0), ("3", "", 3), ("", "-2", -2), ("3", "+5", 5), ("3", "0", 0)],
+)
+def test_a_task_has_its_own_priority_or_that_of_its_template(template: str, task: str, priority: int) -> None:
+    given, own = (f" ; sc:priority {value}" if value else "" for value in (template, task))
+    text = f":t a sc:Template ; sc:roles ( :r ){given} . {ROLE} :k a sc:Task ; sc:template :t{own} ."
+    assert read(text).priority == priority
+
+
 def test_the_same_setting_twice_is_one() -> None:
     settings = ":r sc:sets [ sc:parameterType :P ; sc:value 1 ] , [ sc:parameterType :P ; sc:value 1 ] ."
     (role,) = read(f":t a sc:Template ; sc:roles ( :r ) . {ROLE} {settings}").template.roles
@@ -116,6 +126,9 @@ def test_of_several_templates_one_must_be_named() -> None:
         (f':t a sc:Template ; sc:roles ( :r ) . {ROLE} :r sc:feeds "x" .', "no role"),
         (f":t a sc:Template ; sc:roles ( :r ) . {ROLE} :r sc:minCount -1 .", "whole number"),
         (f":t a sc:Template ; sc:roles ( :r ) . {ROLE} :r sc:minCount 1, 2 .", "whole number"),
+        (f":t a sc:Template ; sc:roles ( :r ) ; sc:priority 0.5 . {ROLE}", "one whole number from -1000000"),
+        (f":t a sc:Template ; sc:roles ( :r ) ; sc:priority 1, 2 . {ROLE}", "one whole number from -1000000"),
+        (f":t a sc:Template ; sc:roles ( :r ) . {ROLE} :r sc:priority 1 .", "as a sc:Template or a sc:Task"),
         (f':t a sc:Template ; sc:roles ( :r ) ; sc:parameter :p, :q . {ROLE} :p sc:name "x" . :q sc:name "x" .', "two"),
         (f':t a sc:Template ; sc:roles ( :r ) ; sc:parameter :p . {ROLE} :p sc:name "" .', "sc:name of the parameter"),
         (
