@@ -24,6 +24,11 @@ def parent_environment() -> Mapping[str, str]:
     return {_PARENT: str(os.getpid())}
 
 
+def started_by_another() -> bool:
+    """Whether this program was started by another one, such as a site."""
+    return _PARENT in os.environ
+
+
 def orphaned(parent: int) -> bool:
     """Whether this program, whose parent process at first was `parent`, was started by another one that is gone.
 
@@ -79,8 +84,8 @@ class Termination:
         self._parent = os.getppid()
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._signalled)
-        if _PARENT in os.environ:
-            self._look()
+        if started_by_another():
+            bus.wake_up(self._look)
 
     def __call__(self) -> bool:
         return self._ending

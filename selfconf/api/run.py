@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -31,8 +32,8 @@ CHECK = 0.5
 class Run:
     """A task that runs in a living ecology; use it in a `with` statement, which takes it down at its end.
 
-    The run is driven by `events`, in the thread that reads them: read on for as long as it should be watched. While the
-    block deals with an event, the run notices no failure and answers no other program, so deal with it briefly.
+    It listens to the ecology on a thread of its own. What takes long, such as a search after a failure, is done by
+    `events` in the thread that reads them, so deal with an event briefly, and read on for as long as the task runs.
 
     >>> with join() as living, living.run(template("examples/clock/tell-the-time.ttl")) as run:
     ...     for event in run.events():
@@ -52,6 +53,9 @@ class Run:
         wait: bool = False,
         rests_on: Callable[[], bool] = lambda: True,
         described: Callable[[], Mapping[IRI, Advertisement]] = dict,
+        name: str = "",
+        priority: int | None = None,
+        upgrade: float | None = None,
     ) -> None:
         """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
 
@@ -63,7 +67,7 @@ class Run:
         self._composer = method.composer(self.task)
         self._rests_on, self._described = rests_on, described
         self._found: Mapping[IRI, Advertisement] = {}
-        self._events: deque[RunEvent] = deque()
+        self._work = WorkQueue()
         self._ended = False
         self._bus = client(list(endpoints))
         self._runner = TaskRunner(
@@ -76,14 +80,19 @@ class Run:
                 passed_over=self._composer.passed_over,
                 policy=policy,
                 patient=wait,
-                report=self._events.append,
+                name=name,
+                priority=self.task.document.task.priority if priority is None else priority,
+                upgrade=upgrade,
+                aside=self._work.work,
+                report=self._work.report,
                 ended=self._settle,
             ),
         )
 
     def __enter__(self) -> Run:
-        self._runner.start()
-        self._check()
+        self._bus.run_aside()
+        self._bus.wake_up(self._runner.start)
+        self._bus.wake_up(self._check)
         return self
 
     def __exit__(
@@ -93,19 +102,23 @@ class Run:
         try:
             self.stop()
             deadline = self._bus.now() + TAKING_DOWN
-            self._bus.run(lambda: self._ended or self._bus.now() > deadline)
+            while not self._ended and self._bus.now() < deadline:
+                self._work.next(CHECK)
         finally:
             self._bus.close()
 
     def events(self) -> Iterator[RunEvent]:
-        """What happens, in order, until the task has ended; drives the run while it waits for the next event.
+        """What happens, in order, until the task has ended; does the work of the run while it waits for the next event.
 
         Raises SelfconfError where the shapes of the task cannot be judged, once everything is taken down.
         """
-        while not (self._ended and not self._events):
-            self._bus.run(lambda: bool(self._events) or self._ended)
-            while self._events:
-                yield self._placed(self._events.popleft())
+        while True:
+            ended = self._ended  # before the look at the queue: what was reported by then is in it
+            event = self._work.next(0.0 if ended else CHECK)
+            if event is not None:
+                yield self._placed(event)
+            elif ended:
+                break
         if self._runner.trouble is not None:
             raise self._runner.trouble
 
@@ -155,6 +168,7 @@ class Run:
 
     def _settle(self, refusal: Refusal | Undecided | None) -> None:
         self.refusal, self._ended = refusal, True
+        self._work.wake_up()
 
     def _placed(self, event: RunEvent) -> RunEvent:
         """An event with the places of what its refusal speaks of; looked up now, when nothing waits for act 4."""
@@ -168,3 +182,44 @@ class Run:
             self._bus.later(CHECK, self._check)
         else:
             self._runner.stop()
+
+
+class WorkQueue:
+    """What a run hands from the thread of its bus to the thread that reads its events: work first, then events."""
+
+    def __init__(self) -> None:
+        self._works: deque[Callable[[], None]] = deque()
+        self._events: deque[RunEvent] = deque()
+        self._more = threading.Condition()
+        self._woken = False
+
+    def work(self, work: Callable[[], None]) -> None:
+        """Have something done that takes long."""
+        with self._more:
+            self._works.append(work)
+            self._more.notify()
+
+    def report(self, event: RunEvent) -> None:
+        """Hand an event over."""
+        with self._more:
+            self._events.append(event)
+            self._more.notify()
+
+    def wake_up(self) -> None:
+        """Let `next` return at once."""
+        with self._more:
+            self._woken = True
+            self._more.notify()
+
+    def next(self, seconds: float) -> RunEvent | None:
+        """Do all the work there is, and return the next event; None if none has come after that long."""
+        with self._more:
+            if not (self._works or self._events or self._woken) and seconds > 0:
+                self._more.wait(seconds)
+            self._woken = False
+            works = list(self._works)
+            self._works.clear()
+        for work in works:
+            work()
+        with self._more:
+            return self._events.popleft() if self._events else None

@@ -39,10 +39,12 @@ class Loop:
         self.dropped = 0
         """How many callbacks were driven out of the bulk."""
         self._timers: list[tuple[float, int, _Timer]] = []
+        self._timer_lock = threading.Lock()
         self._taken_back = 0
         """How many entries of the heap were taken back; they stay until their time, or until they are the majority."""
         self._count = itertools.count()
         self._ended = False
+        self._thread: threading.Thread | None = None
 
     def now(self) -> float:
         """Seconds of the machine's monotonic clock."""
@@ -75,9 +77,12 @@ class Loop:
             action()
 
     def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
-        """Call `action` once, after that time; the result takes it back."""
+        """Call `action` once, after that time; the result takes it back. May be called from any thread."""
         timer = _Timer(action)
-        heapq.heappush(self._timers, (self.now() + seconds, next(self._count), timer))
+        with self._timer_lock:
+            heapq.heappush(self._timers, (self.now() + seconds, next(self._count), timer))
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self.wake_up(lambda: None)  # it waits for an earlier timer
 
         def undo() -> None:
             if timer.action is not None:
@@ -101,9 +106,19 @@ class Loop:
         while not until():
             self.poll(0.5)
 
+    def run_aside(self) -> bool:
+        """Run callbacks on a thread of their own from now on, until the loop ends."""
+        if self._thread is None:
+            self._thread = threading.Thread(target=self.run, args=(lambda: self._ended,), daemon=True, name="bus")
+            self._thread.start()
+        return True
+
     def end(self) -> None:
-        """Run no callback any more."""
+        """Run no callback any more; one that runs on the loop's own thread is waited for."""
         self._ended = True
+        self.wake_up(lambda: None)
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join()
         self._timers.clear()
         self._taken_back = 0
         with self._bulk_lock:
@@ -111,28 +126,31 @@ class Loop:
 
     def _due(self) -> Callable[[], None] | None:
         """The timer whose time has come; timers go before the queue, or a flood in the queue would hold them up."""
-        while self._timers and (self._timers[0][2].action is None or self._timers[0][0] <= self.now()):
-            timer = heapq.heappop(self._timers)[2]
-            if timer.action is None:
-                self._taken_back -= 1
-                continue
-            action, timer.action = timer.action, None  # taking it back from now on does nothing
-            return action
-        return None
+        with self._timer_lock:
+            while self._timers and (self._timers[0][2].action is None or self._timers[0][0] <= self.now()):
+                timer = heapq.heappop(self._timers)[2]
+                if timer.action is None:
+                    self._taken_back -= 1
+                    continue
+                action, timer.action = timer.action, None  # taking it back from now on does nothing
+                return action
+            return None
 
     def _drop_taken_back(self) -> None:
         """Build the heap anew once most of it was taken back: constant cost per timer, as none is dropped twice."""
-        if len(self._timers) > self.FEW_TIMERS and 2 * self._taken_back > len(self._timers):
-            self._timers = [entry for entry in self._timers if entry[2].action is not None]
-            heapq.heapify(self._timers)
-            self._taken_back = 0
+        with self._timer_lock:
+            if len(self._timers) > self.FEW_TIMERS and 2 * self._taken_back > len(self._timers):
+                self._timers = [entry for entry in self._timers if entry[2].action is not None]
+                heapq.heapify(self._timers)
+                self._taken_back = 0
 
     def _next(self, deadline: float | None) -> Callable[[], None] | None:
         """The next callback, of the queue or of a timer; it is waited for until the deadline, if there is one."""
         while True:
             wait = 0.0 if deadline is None else deadline - self.now()
-            if self._timers:
-                wait = min(wait, self._timers[0][0] - self.now())
+            with self._timer_lock:
+                if self._timers:
+                    wait = min(wait, self._timers[0][0] - self.now())
             try:
                 return self._waiting.get(wait > 0, wait if wait > 0 else None)
             except queue.Empty:

@@ -264,6 +264,10 @@ class MemoryBus:
         """Let the network run for that much simulated time."""
         self.network.run(lambda: False, seconds)
 
+    def run_aside(self) -> bool:
+        """There is one thread, in which simulated time passes."""
+        return False
+
     def run(self, until: Callable[[], bool]) -> None:
         """Let the network run until `until` holds."""
         self.network.run(until, float("inf"))

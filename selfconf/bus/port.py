@@ -172,6 +172,10 @@ class Bus(Protocol):
         """Run every callback that is due; if there is none, wait up to that long for the first."""
         ...
 
+    def run_aside(self) -> bool:
+        """Run callbacks on a thread of their own from now on; False, and nothing else, on a bus in simulated time."""
+        ...
+
     def run(self, until: Callable[[], bool]) -> None:
         """Run callbacks until `until` holds."""
         ...

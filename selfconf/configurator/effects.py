@@ -13,7 +13,7 @@ from selfconf.protocol.messages import Wire
 
 @dataclass(frozen=True, slots=True)
 class Discover:
-    """Acts 1 and 2: broadcast a query, collect the advertisements."""
+    """Acts 1 and 2: broadcast a query, collect the advertisements, and ask the other tasks what they hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,26 +40,52 @@ class Unwatch:
 
 
 @dataclass(frozen=True, slots=True)
-class ApplyTo:
-    """Act 4: activate a component and connect its inputs."""
+class WakeUp:
+    """Act 4: have a component started by its site, unless it lives."""
+
+    component: IRI
+    epoch: int
+
+
+@dataclass(frozen=True, slots=True)
+class ReserveOf:
+    """Act 4: have a component held for this task, without acting."""
 
     component: IRI
     epoch: int
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    values: Mapping[str, Term] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
-class SetOn:
-    """Act 4, last: give operational parameters their values."""
+class QueueFor:
+    """Have a component remember that this task waits for it, and tell when it is free."""
 
     component: IRI
     epoch: int
+
+
+@dataclass(frozen=True, slots=True)
+class ApplyTo:
+    """Act 4: give a component the values of its parameters, activate it, and connect its inputs."""
+
+    component: IRI
+    epoch: int
+    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class ReleaseFrom:
-    """Turn a component off."""
+    """Turn a component off, as far as this task is concerned."""
+
+    component: IRI
+    epoch: int
+
+
+@dataclass(frozen=True, slots=True)
+class AwaitRelease:
+    """Another task holds a component: it is waited for, but not for long without a look (`WaitedLong`)."""
 
     component: IRI
     epoch: int
@@ -79,4 +105,17 @@ class Finish:
     refusal: Refusal | Undecided | None = None
 
 
-Effect = Discover | Compose | Watch | Unwatch | ApplyTo | SetOn | ReleaseFrom | Running | Finish
+Effect = (
+    Discover
+    | Compose
+    | Watch
+    | Unwatch
+    | WakeUp
+    | ReserveOf
+    | QueueFor
+    | ApplyTo
+    | ReleaseFrom
+    | AwaitRelease
+    | Running
+    | Finish
+)

@@ -3,20 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
+from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 
 
 class Call(str, Enum):
-    """The calls that a configurator makes to a component."""
+    """The calls that a configurator makes to a component, or to its site."""
 
+    WAKE = "wake"
+    """Have the site start a dormant component; a component that lives is awake."""
+    RESERVE = "reserve"
     APPLY = "apply"
-    SET = "set"
     RELEASE = "release"
+
+
+@dataclass(frozen=True, slots=True)
+class Holder:
+    """Who holds a component: a task, its priority and beginning, and its configurator."""
+
+    task: str
+    priority: int = 0
+    beginning: float = 0.0
+    configurator: str = ""
+    acting: bool = True
+    """Whether the component acts for it: else it has only been reserved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +42,19 @@ class Accepted:
 
 
 @dataclass(frozen=True, slots=True)
+class Adopted:
+    """A task that runs already is to be gone on with, whose configurator is gone; `lives` by component."""
+
+    epoch: int
+    configuration: Configuration
+    lives: Mapping[IRI, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class Discovered:
-    """The ecology has answered."""
+    """The ecology has answered; `holders` are the other tasks that hold components."""
+
+    holders: Mapping[IRI, Holder] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +76,8 @@ class Answered:
     life: str = ""
     newest: int = 0
     detail: str = ""
+    holder: Holder | None = None
+    """Who holds the component, where that is another task."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +91,30 @@ class Failed:
 
 
 @dataclass(frozen=True, slots=True)
+class Freed:
+    """A component that another task held is kept for this one, for a moment."""
+
+    component: IRI
+
+
+@dataclass(frozen=True, slots=True)
+class WaitedLong:
+    """A component that was asked for, and is held by another task, has not become free for some time."""
+
+    component: IRI
+    epoch: int
+
+
+@dataclass(frozen=True, slots=True)
 class Appeared:
     """Something has come that may help: a component lives (again), or the advertisements of a site have changed."""
 
     lives: Mapping[IRI, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Improvable:
+    """What the task needs may be had from components that the strategy would rather have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,4 +127,17 @@ class Stopped:
     """The configuration is to be taken down."""
 
 
-Event = Accepted | Discovered | Composed | Answered | Failed | Appeared | Reconnected | Stopped
+Event = (
+    Accepted
+    | Adopted
+    | Discovered
+    | Composed
+    | Answered
+    | Failed
+    | Freed
+    | WaitedLong
+    | Appeared
+    | Improvable
+    | Reconnected
+    | Stopped
+)

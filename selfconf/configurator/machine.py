@@ -1,47 +1,43 @@
 """The four acts and the monitoring as one pure function: `step(state, event) -> (state, effects)`.
 
-    IDLE ──accepted──▶ DISCOVERING ──discovered──▶ COMPOSING ──configuration──▶ DEPLOYING ──all applied──▶ SETTING
-                            ▲                        ▲   │                         │                         │
-                            │                        │   └─refusal──▶ DISMANTLING ─┴──▶ REFUSED              ▼
-                            └── something appeared ──┼──────────────────(patient)───────┘                 RUNNING
-                                                     └──────────────── a component is lost ──────────────────┘
+    IDLE ──accepted──▶ DISCOVERING ──discovered──▶ COMPOSING ──configuration──▶ RESERVING ──all held──▶ DEPLOYING
+                            ▲                        ▲   │                         │                       │
+                            │                        │   └─refusal──▶ DISMANTLING ─┴──▶ REFUSED            ▼
+                            └── something appeared ──┼──────────────────(patient)───────┘               RUNNING
+                                                     └──────────────── a component is lost ────────────────┘
 
-Deployment is a transaction: FAIL is watched before anything is activated; components are activated and connected;
-parameters are set when everything is connected. Whatever ends it (a loss, a refusal, a stop) releases all that was
-touched, so that nothing is left half deployed.
+Deployment is a transaction (`deploying`): FAIL is watched before anything is called; every component is reserved before
+any acts; those that feed act before those that they feed. Whatever ends it (a loss, a refusal, a stop) releases all
+that was touched, those that are fed before those that feed them, so that nothing is left half deployed.
 
 Two policies for a loss. `REPAIR` keeps what runs and changes what must change; `DISMANTLE` first takes everything
 down, as the paper does (section 4.2). Either way the lost component is turned off and its profile dropped, and the
 search runs again. A search that finds nothing counts only if nothing has appeared since the ecology was asked; else
 it is asked again.
 
-A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
-released again when it is seen again. One that another configurator holds is owed it until it is free.
+Other tasks. Components that a task of the same or a higher priority holds do not count for the search. If it fails for
+that reason, it is found out which of them would be needed: these are named, and a patient task waits for them. A task
+of higher priority that asks for a component of this one makes it let go: everything comes to rest, sinks first, and is
+configured again without that component.
 
-Invariants, each a test: a component is watched before it is applied to; epochs grow; what is held or owed a release
-is a superset of what may be active because of this configurator; in IDLE, REFUSED and STOPPED nothing is held; an
-answer to an older epoch, or the result of an older search, changes nothing.
+A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
+released again when it is seen again.
+
+Invariants, each a test: a component is watched before it is called; epochs grow; what is held or owed a release is a
+superset of what may be active because of this configurator; in IDLE, REFUSED and STOPPED nothing is held; an answer to
+an older epoch, or the result of an older search, changes nothing; no component is applied to before all are reserved.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from selfconf.configurator.effects import (
-    ApplyTo,
-    Compose,
-    Discover,
-    Effect,
-    Finish,
-    ReleaseFrom,
-    Running,
-    SetOn,
-    Unwatch,
-    Watch,
-)
+from selfconf.configurator import deploying
+from selfconf.configurator.deploying import Reaction, then
+from selfconf.configurator.effects import Compose, Discover, Effect, Finish, QueueFor, ReleaseFrom, Unwatch
 from selfconf.configurator.events import (
     Accepted,
+    Adopted,
     Answered,
     Appeared,
     Call,
@@ -49,136 +45,122 @@ from selfconf.configurator.events import (
     Discovered,
     Event,
     Failed,
+    Freed,
+    Improvable,
     Reconnected,
     Stopped,
+    WaitedLong,
 )
-from selfconf.configurator.state import Held, InputWires, Loss, Phase, Policy, State
+from selfconf.configurator.order import parameter_values, resting_next, wiring
+from selfconf.configurator.state import Held, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
-from selfconf.model.term import IRI, Term
-from selfconf.protocol.messages import Cause, Verdict, Wire
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import task_name
+from selfconf.protocol.messages import Cause, Verdict
 
-OBEYED = (Verdict.DONE, Verdict.STALE)
-"""The answers after which a component obeys no older call; a busy one may yet, once it is free."""
-Reaction = tuple[State, tuple[Effect, ...]]
-"""The next state, and what is to be done."""
+OBEYED = (Verdict.DONE, Verdict.STALE, Verdict.OTHER_LIFE)
+"""The answers to a release after which a component obeys no older call of this task."""
+DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
+"""The phases of act 4."""
 
 
 def step(state: State, event: Event) -> Reaction:
     """What an event does. Total: every state answers every event, if only by staying as it is."""
     match event:
         case Accepted():
-            return _accepted(state, event)
+            return _discover(replace(state, epoch=event.epoch)) if state.phase is Phase.IDLE else (state, ())
+        case Adopted():
+            return _adopted(state, event)
         case Discovered():
-            return _compose(state) if state.phase is Phase.DISCOVERING else (state, ())
+            return _discovered(state, event)
         case Composed():
             return _composed(state, event)
         case Answered():
             return _answered(state, event)
         case Failed():
             return _failed(state, event)
+        case Freed():
+            return _freed(state, event.component)
+        case WaitedLong():
+            current = event.epoch == state.epoch and state.phase is Phase.RESERVING
+            return deploying.ask_again(state, event.component) if current else (state, ())
         case Appeared():
             return _appeared(state, event)
+        case Improvable():
+            return _improve(state)
         case Reconnected():
             return _reconnected(state)
         case Stopped():
             return _stopped(state)
 
 
-def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
-    """For each component of a configuration, which outputs each of its inputs follows."""
-    wires: dict[IRI, dict[str, tuple[Wire, ...]]] = {component: {} for component in configuration.components}
-    for connection in configuration.connections:
-        inputs = wires[connection.sink]
-        inputs[connection.input] = (
-            *inputs.get(connection.input, ()),
-            Wire(connection.source, connection.output),
-        )
-    return wires
-
-
-def _accepted(state: State, event: Accepted) -> Reaction:
+def _adopted(state: State, event: Adopted) -> Reaction:
+    """Go on with what runs: every component keeps what it does, and hears whom it does it for."""
     if state.phase is not Phase.IDLE:
         return state, ()
-    return _discover(replace(state, epoch=event.epoch))
+    wires, values = wiring(event.configuration), parameter_values(event.configuration)
+    held = {
+        component: Held(inputs, values[component], event.lives.get(component, ""), reserved=True, active=True)
+        for component, inputs in wires.items()
+    }
+    return deploying.deploy(replace(state, epoch=event.epoch, target=event.configuration, held=held))
 
 
 def _discover(state: State) -> Reaction:
     return replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False), (Discover(),)
 
 
-def _compose(state: State) -> Reaction:
+def _discovered(state: State, event: Discovered) -> Reaction:
+    if state.phase is not Phase.DISCOVERING:
+        return state, ()
+    taken = {
+        component: holder
+        for component, holder in event.holders.items()
+        if holder.priority >= state.priority and component not in state.held
+    }
+    lost = {component: loss for component, loss in state.lost.items() if not loss.busy}
+    return _compose(replace(state, taken=taken, lost=lost))
+
+
+def _compose(state: State, despite: bool = False) -> Reaction:
     attempt = state.attempt + 1
     running = state.target if state.policy is Policy.REPAIR else None
-    return (
-        replace(state, phase=Phase.COMPOSING, attempt=attempt, pending=frozenset()),
-        (Compose(attempt, frozenset(state.lost), running),),
-    )
+    without = frozenset(state.lost) if despite else frozenset(state.lost) | frozenset(state.taken)
+    searching = replace(state, phase=Phase.COMPOSING, attempt=attempt, pending=frozenset(), despite=despite)
+    return searching, (Compose(attempt, without, running),)
 
 
 def _composed(state: State, event: Composed) -> Reaction:
-    if state.phase is not Phase.COMPOSING or event.attempt != state.attempt:
+    if event.attempt != state.attempt:
         return state, ()
+    if state.phase is Phase.RUNNING:
+        return _improved(state, event)
+    if state.phase is not Phase.COMPOSING:
+        return state, ()
+    if state.despite:
+        return _refuse(_coveted(state, event))
     if isinstance(event.outcome, Configuration):
-        return _deploy(replace(state, target=event.outcome, refusal=None))
+        return deploying.deploy(replace(state, target=event.outcome, refusal=None))
     if state.news:
         return _discover(state)
-    return _dismantle(replace(state, refusal=event.outcome), Phase.REFUSED)
+    refused = replace(state, refusal=event.outcome)
+    return _compose(refused, despite=True) if state.taken else _refuse(refused)
 
 
-def _deploy(state: State) -> Reaction:
-    """Watch, then apply to every component that is new or wired differently, and release those not needed any more."""
-    target = state.target
-    assert target is not None
-    epoch = state.epoch + 1
-    wires = wiring(target)
-    surplus = [component for component in state.held if component not in wires]
-    changed = [component for component, inputs in wires.items() if not _as_wanted(state.held.get(component), inputs)]
-    changed.sort(key=state.held.__contains__)  # new components first: others wait for their signals
-    effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
-    effects += [ApplyTo(component, epoch, wires[component]) for component in changed]
-    effects += [ReleaseFrom(component, epoch) for component in surplus]
-    effects += [Unwatch(component) for component in sorted(state.watched - wires.keys())]
-    owed = {component: since for component, since in state.owed.items() if component not in wires}
-    deployed = replace(
-        state,
-        phase=Phase.DEPLOYING,
-        epoch=epoch,
-        held=_rewired(state.held, wires, changed),
-        pending=frozenset((component, Call.APPLY) for component in changed),
-        owed={**owed, **dict.fromkeys(surplus, epoch)},
-        watched=frozenset(wires),
-    )
-    return _then(effects, _proceed(deployed))
+def _coveted(state: State, event: Composed) -> State:
+    """Count the components of other tasks as lost without which there is no configuration."""
+    if not isinstance(event.outcome, Configuration):
+        return state
+    busy = {
+        component: Loss(Cause.REFUSED, f"the task {task_name(holder.task)} (priority {holder.priority}) holds it", "", True)
+        for component, holder in state.taken.items()
+        if component in event.outcome.components
+    }
+    return replace(state, lost={**state.lost, **busy})
 
 
-def _rewired(held: Mapping[IRI, Held], wires: Mapping[IRI, InputWires], changed: Sequence[IRI]) -> dict[IRI, Held]:
-    """What is held of a configuration once the changed components are applied to: those have yet to confirm."""
-    rewired = {component: before for component, before in held.items() if component in wires}
-    for component in changed:
-        before = rewired.get(component, Held({}))
-        rewired[component] = replace(before, inputs=wires[component], confirmed=False)
-    return rewired
-
-
-def _as_wanted(held: Held | None, inputs: InputWires) -> bool:
-    return held is not None and held.confirmed and held.inputs == inputs
-
-
-def _proceed(state: State) -> Reaction:
-    """Go on to the next part of the deployment once nothing is pending."""
-    if state.pending:
-        return state, ()
-    target = state.target
-    assert target is not None
-    if state.phase is Phase.DEPLOYING:
-        wanted: dict[IRI, dict[str, Term]] = {}
-        for setting in target.settings:
-            if state.held[setting.component].values.get(setting.name) != setting.value:
-                wanted.setdefault(setting.component, {})[setting.name] = setting.value
-        pending = frozenset((component, Call.SET) for component in wanted)
-        effects = [SetOn(component, state.epoch, values) for component, values in wanted.items()]
-        return _then(effects, _proceed(replace(state, phase=Phase.SETTING, pending=pending)))
-    return replace(state, phase=Phase.RUNNING), (Running(target),)
+def _refuse(state: State) -> Reaction:
+    return _dismantle(state, Phase.REFUSED)
 
 
 def _answered(state: State, event: Answered) -> Reaction:
@@ -186,26 +168,45 @@ def _answered(state: State, event: Answered) -> Reaction:
     if event.call is Call.RELEASE and event.verdict in OBEYED and event.epoch >= state.owed.get(event.component, 0):
         known = replace(state, owed={c: since for c, since in state.owed.items() if c != event.component})
     if (event.component, event.call) not in state.pending or event.epoch != state.epoch:
-        return known, ()
+        return _unasked(known, event)
     rest = replace(known, pending=state.pending - {(event.component, event.call)})
     if state.phase is Phase.DISMANTLING:
         return _released(rest)
     if event.verdict is Verdict.DONE:
-        held = _confirmed(state, state.held[event.component], event)
-        return _proceed(replace(rest, held={**state.held, event.component: held}))
+        return deploying.confirmed(rest, event)
     if event.verdict is Verdict.STALE and event.newest > event.epoch:
-        return _deploy(replace(rest, epoch=max(state.epoch, event.newest)))
-    detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
+        return deploying.deploy(replace(rest, epoch=max(state.epoch, event.newest)))
+    if event.verdict is Verdict.NOT_HELD:
+        forgotten = replace(state.held[event.component], reserved=False, active=False, confirmed=False)
+        return deploying.deploy(replace(rest, held={**state.held, event.component: forgotten}))
     busy = event.verdict is Verdict.BUSY
-    return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life, busy))
+    if busy:
+        state = replace(state, queued=state.queued | {event.component})
+    if busy and event.holder is not None and event.holder.task == state.task:
+        return _stand_down(state)
+    if busy and event.call is Call.RESERVE and deploying.may_wait_for(state, event.component, event.holder):
+        return deploying.await_release(state, event.component)
+    detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
+    loss = Loss(Cause.REFUSED, detail, event.life, busy, event.verdict is not None)
+    return _lose(state, event.component, loss)
 
 
-def _confirmed(state: State, held: Held, event: Answered) -> Held:
-    """What is known of a component that has obeyed; a new life has nothing set on it."""
-    values = held.values if held.life in ("", event.life) else {}
-    if event.call is Call.SET and state.target is not None:
-        values = {**values, **{s.name: s.value for s in state.target.settings if s.component == event.component}}
-    return replace(held, life=event.life, confirmed=True, values=values)
+def _unasked(state: State, event: Answered) -> Reaction:
+    """An answer that is not waited for: a component that is held now for nothing is released."""
+    if event.call is Call.RESERVE and event.verdict is Verdict.DONE and event.component not in state.held:
+        owed = {**state.owed, event.component: max(event.epoch, state.epoch)}
+        release = ReleaseFrom(event.component, owed[event.component])
+        return then((release,), _freed(replace(state, owed=owed), event.component))
+    return state, ()
+
+
+def _stand_down(state: State) -> Reaction:
+    """Another configurator goes on with this task: leave everything as it is to that one."""
+    effects = (*(Unwatch(component) for component in sorted(state.watched)), Finish())
+    left = replace(
+        state, phase=Phase.STOPPED, held={}, owed={}, pending=frozenset(), watched=frozenset(), target=None
+    )
+    return left, effects
 
 
 def _failed(state: State, event: Failed) -> Reaction:
@@ -216,11 +217,14 @@ def _failed(state: State, event: Failed) -> Reaction:
         return state, ()
     if event.cause is Cause.SILENCE and not held.confirmed:
         return state, ()  # it may not have begun
-    return _lose(state, event.component, Loss(event.cause, event.detail, event.life or held.life))
+    busy = event.cause is Cause.YIELD
+    return _lose(state, event.component, Loss(event.cause, event.detail, event.life or held.life, busy))
 
 
 def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
     """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
+    if loss.cause is Cause.YIELD:  # nothing may act on a part: the component itself comes to rest in its turn
+        return _dismantle(replace(state, lost={**state.lost, component: loss}), Phase.COMPOSING)
     epoch = state.epoch + 1
     without = replace(
         state,
@@ -234,31 +238,41 @@ def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
     effects = [ReleaseFrom(component, epoch)] if loss.cause is not Cause.CRASH else []
     if state.phase is Phase.DISCOVERING:
         return without, tuple(effects)
-    return _then(effects, _compose(without))
+    if state.fallback is not None and component not in state.fallback.components and state.phase in DEPLOYING:
+        return then(effects, deploying.deploy(replace(without, target=state.fallback, fallback=None)))
+    return then(effects, _compose(replace(without, fallback=None)))
 
 
 def _dismantle(state: State, afterwards: Phase) -> Reaction:
-    """Release everything that is held or owed a release; then comes `afterwards`."""
+    """Release everything that is held or owed a release, what is fed before what feeds; then comes `afterwards`."""
     epoch = state.epoch + 1
     owed = dict.fromkeys((*state.owed, *state.held), epoch)
-    effects: list[Effect] = [ReleaseFrom(component, epoch) for component in owed]
-    effects += [Unwatch(component) for component in sorted(state.watched)]
     dismantling = replace(
         state,
         phase=Phase.DISMANTLING,
         afterwards=afterwards,
         epoch=epoch,
-        pending=frozenset((component, Call.RELEASE) for component in owed),
+        pending=frozenset(),
+        unreleased=tuple(owed),
+        fallback=None,
         owed=owed,
         watched=frozenset(),
     )
-    return _then(effects, _released(dismantling))
+    return then([Unwatch(component) for component in sorted(state.watched)], _released(dismantling))
 
 
 def _released(state: State) -> Reaction:
+    """Go on once all that were to come to rest have: with those that feed nothing any more, or with what follows."""
     if state.pending:
         return state, ()
-    empty = replace(state, held={}, target=None)
+    if state.unreleased:
+        wires = {component: held.inputs for component, held in state.held.items() if held.active}
+        now = resting_next(wires, state.unreleased)
+        left = tuple(component for component in state.unreleased if component not in set(now))
+        pending = frozenset((component, Call.RELEASE) for component in now)
+        effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
+        return replace(state, unreleased=left, pending=pending), effects
+    empty = replace(state, held={}, target=None, order=None)
     if state.afterwards is Phase.COMPOSING:
         return _compose(empty)
     ended = replace(empty, phase=state.afterwards)
@@ -266,7 +280,25 @@ def _released(state: State) -> Reaction:
         return ended, (Finish(),)
     if not state.patient:
         return ended, (Finish(state.refusal),)
-    return _discover(ended) if state.news else (ended, ())
+    return _discover(ended) if state.news else (ended, _queue(ended))
+
+
+def _queue(state: State) -> tuple[Effect, ...]:
+    """Ask for each component that another task holds, so that it tells when it is free."""
+    waited_for = {component for component, loss in state.lost.items() if loss.busy} | state.queued
+    return tuple(QueueFor(component, state.epoch) for component in sorted(waited_for - state.owed.keys()))
+
+
+def _freed(state: State, component: IRI) -> Reaction:
+    """A component is free, and kept for this task for a moment."""
+    if state.phase is Phase.RESERVING and (component, Call.RESERVE) in state.pending:
+        return deploying.ask_again(state, component)
+    lost = {c: loss for c, loss in state.lost.items() if c != component or not loss.busy}
+    taken = {c: holder for c, holder in state.taken.items() if c != component}
+    known = replace(state, lost=lost, taken=taken, queued=state.queued - {component}, news=True)
+    if state.phase is Phase.REFUSED and state.patient:
+        return _discover(known)
+    return (known, ()) if state.phase not in (Phase.IDLE, Phase.STOPPED) else (state, ())
 
 
 def _appeared(state: State, event: Appeared) -> Reaction:
@@ -276,13 +308,32 @@ def _appeared(state: State, event: Appeared) -> Reaction:
     lost = {
         component: loss
         for component, loss in state.lost.items()
-        if component not in event.lives or (loss.cause is not Cause.CRASH and event.lives[component] == loss.life)
+        if component not in event.lives
+        or (loss.cause is not Cause.CRASH and loss.answered and event.lives[component] == loss.life)
     }
     effects = [ReleaseFrom(component, since) for component, since in state.owed.items() if component in event.lives]
     known = replace(state, lost=lost, news=True)
     if state.phase is Phase.REFUSED and state.patient:
-        return _then(effects, _discover(known))
+        return then(effects, _discover(known))
     return known, tuple(effects)
+
+
+def _improve(state: State) -> Reaction:
+    """Search for what the strategy would rather have, while everything runs on."""
+    if state.phase is not Phase.RUNNING:
+        return state, ()
+    attempt = state.attempt + 1
+    without = frozenset(state.lost) | frozenset(state.taken)
+    return replace(state, attempt=attempt), (Compose(attempt, without, None),)
+
+
+def _improved(state: State, event: Composed) -> Reaction:
+    """Change to a configuration that the strategy prefers; the one that runs stays until the other delivers."""
+    better = event.outcome
+    assert state.target is not None
+    if not isinstance(better, Configuration) or better.assignments == state.target.assignments:
+        return state, ()
+    return deploying.deploy(replace(state, target=better, fallback=state.target))
 
 
 def _reconnected(state: State) -> Reaction:
@@ -291,8 +342,8 @@ def _reconnected(state: State) -> Reaction:
         return state, ()
     if state.phase is Phase.REFUSED and not state.patient:
         return state, ()
-    unsure = {component: Held(held.inputs, held.life) for component, held in state.held.items()}
-    return _discover(replace(state, held=unsure))
+    unsure = {component: replace(held, confirmed=False) for component, held in state.held.items()}
+    return _discover(replace(state, held=unsure, fallback=None))
 
 
 def _stopped(state: State) -> Reaction:
@@ -301,8 +352,3 @@ def _stopped(state: State) -> Reaction:
     if state.phase is Phase.DISMANTLING:
         return replace(state, afterwards=Phase.STOPPED), ()
     return _dismantle(state, Phase.STOPPED)
-
-
-def _then(effects: Sequence[Effect], following: Reaction) -> Reaction:
-    state, more = following
-    return state, (*effects, *more)

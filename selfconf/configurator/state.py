@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from selfconf.configurator.events import Call
+from selfconf.configurator.events import Call, Holder
+from selfconf.configurator.order import InputWires, StartingOrder
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
-from selfconf.protocol.messages import Cause, Wire
-
-InputWires = Mapping[str, tuple[Wire, ...]]
-"""Which outputs each input of a component follows."""
+from selfconf.protocol.messages import Cause
 
 
 class Phase(str, Enum):
@@ -22,8 +20,8 @@ class Phase(str, Enum):
     IDLE = "idle"
     DISCOVERING = "discovering"
     COMPOSING = "composing"
+    RESERVING = "reserving"
     DEPLOYING = "deploying"
-    SETTING = "setting"
     RUNNING = "running"
     DISMANTLING = "dismantling"
     REFUSED = "refused"
@@ -39,12 +37,17 @@ class Policy(str, Enum):
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """A component that was applied to: its inputs and life, whether it has confirmed, and what was set on it."""
+    """A component that was called for this task: what it is to do, and how far that has come."""
 
     inputs: InputWires
-    life: str = ""
-    confirmed: bool = False
     values: Mapping[str, Term] = field(default_factory=dict)
+    life: str = ""
+    reserved: bool = False
+    """Whether it has said that it is held for this task."""
+    active: bool = False
+    """Whether it was applied to: it may act, if with other inputs."""
+    confirmed: bool = False
+    """Whether it has said that it acts with these inputs and values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +58,9 @@ class Loss:
     detail: str = ""
     life: str = ""
     busy: bool = False
-    """Whether another configurator held it; it is free once it obeys the release that it is owed."""
+    """Whether another task held it: it may be had once that one lets go of it."""
+    answered: bool = True
+    """Whether that is known from the component: else it could not be reached, and may well be able to act."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,16 +70,31 @@ class State:
     policy: Policy = Policy.REPAIR
     patient: bool = False
     """Whether a refusal does not end the task: the configurator waits until the ecology has what it needs."""
+    task: str = ""
+    """The identity of the task."""
+    priority: int = 0
     phase: Phase = Phase.IDLE
     epoch: int = 0
     attempt: int = 0
     target: Configuration | None = None
+    order: StartingOrder | None = None
+    """In which order the components of the target are started."""
+    fallback: Configuration | None = None
+    """What ran before a change for the better: if that does not come about, it is what is wanted again."""
     held: Mapping[IRI, Held] = field(default_factory=dict)
     pending: frozenset[tuple[IRI, Call]] = frozenset()
+    unreleased: tuple[IRI, ...] = ()
+    """While dismantling, the components that act on until those that they feed are at rest."""
     owed: Mapping[IRI, int] = field(default_factory=dict)
     """The components that were released and have not obeyed yet, each with the epoch of the release."""
     watched: frozenset[IRI] = frozenset()
     lost: Mapping[IRI, Loss] = field(default_factory=dict)
+    taken: Mapping[IRI, Holder] = field(default_factory=dict)
+    """The components that tasks of the same or a higher priority hold, as of the last discovery."""
+    queued: frozenset[IRI] = frozenset()
+    """The components that remember that this task waits for them."""
+    despite: bool = False
+    """Whether the search that is going on is for what there would be if the others let go of what they hold."""
     afterwards: Phase = Phase.STOPPED
     """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""
     refusal: Refusal | Undecided | None = None

@@ -1,19 +1,22 @@
-"""The calls that a configurator makes to components: activate and connect, set, turn off, wake, stand by.
+"""The calls that a configurator makes to components: wake, reserve, activate and connect, turn off, stand by.
 
-A time-out is not an outcome: after one the component is asked for its actual state, and that decides. A call is made
-again if the state shows that it never arrived.
+Every call names the task, and the life of the component that it means. A time-out is not an outcome: after one the
+component is asked for its actual state, and that decides. A call is made again if the state shows that it never
+arrived.
 """
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from selfconf.bus.port import Replies, Undo
-from selfconf.configurator import machine
-from selfconf.configurator.effects import ApplyTo, ReleaseFrom, SetOn
-from selfconf.configurator.events import Answered, Call, Event
-from selfconf.configurator.state import State
+from selfconf.configurator.effects import ApplyTo, AwaitRelease, QueueFor, ReleaseFrom, ReserveOf, WakeUp
+from selfconf.configurator.events import Answered, Call, Event, Failed, Holder, WaitedLong
+from selfconf.configurator.order import parameter_values, wiring
+from selfconf.configurator.state import Phase, State
+from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.run_request import EventListener, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
@@ -22,6 +25,7 @@ from selfconf.model.run_event import (
     ActivationSent,
     CallDeclined,
     ComponentActivated,
+    ComponentAwaited,
     ComponentReleased,
     ComponentUnreachable,
     ComponentWoken,
@@ -30,12 +34,21 @@ from selfconf.model.run_event import (
 )
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import Apply, CallAnswer, Release, SetParameters, Verdict, Wake, Wire
+from selfconf.protocol.keys import owner_of
+from selfconf.protocol.messages import (
+    Apply,
+    CallAnswer,
+    Cause,
+    End,
+    Release,
+    Reserve,
+    StateOf,
+    Verdict,
+    Wake,
+    Wire,
+)
 
 log = logging.getLogger(__name__)
-
-_DONE = {Call.APPLY: ComponentActivated, Call.SET: ParametersSet, Call.RELEASE: ComponentReleased}
-"""The event of a call that was obeyed."""
 
 CALL = 2.0
 """Seconds that a component may take to answer a call before it is asked for its state."""
@@ -47,6 +60,12 @@ CALL_ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
 WAKING = 15.0
 """Seconds that a component that a site starts may take to live."""
+ASK_AGAIN = 0.5
+"""Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
+AUDIT = 1.0
+"""Seconds between two looks at what runs: a component may have forgotten for whom it acts."""
+AUDITED = 20
+"""How many components are looked at in one of them; they take turns."""
 
 
 class Calls:
@@ -55,42 +74,94 @@ class Calls:
     def __init__(
         self,
         ecology: EcologyView,
+        identity: TaskIdentity,
         supervisor: str,
         state: Callable[[], State],
         step: Callable[[Event], None],
         report: EventListener,
     ) -> None:
-        self.bus, self.ecology, self.keys = ecology.bus, ecology, ecology.keys
+        self.bus, self.ecology, self.keys, self.identity = ecology.bus, ecology, ecology.keys, identity
         self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
-        self._waking: dict[IRI, tuple[ApplyTo, Undo]] = {}
+        self._waking: dict[IRI, tuple[WakeUp, Undo]] = {}
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""
+        self._awaited: set[IRI] = set()
+        """The components that another task holds, and that are waited for: reported once."""
+        self._audited = 0
+
+    # Waking and reserving.
+
+    def wake(self, effect: WakeUp) -> None:
+        """Have a component live: one that is dormant is started by its site."""
+        found = self.ecology.discovery.found.get(effect.component)
+        if self.ecology.life(effect.component) is not None:
+            self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
+        elif found is not None and found.startable:
+            self._start_by_site(effect, found)
+        else:
+            self._unreachable(effect.component, Call.WAKE, effect.epoch, "it is advertised, but it does not run")
 
     def woken(self, component: IRI) -> None:
-        """A component lives; if it was started for an apply, the apply goes out now."""
+        """A component lives; perhaps it was started for this task."""
         waiting = self._waking.pop(component, None)
         if waiting is not None:
             waiting[1]()
-            if waiting[0].epoch == self._state().epoch:
-                self.apply(waiting[0])
+            self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
 
-    def set(self, effect: SetOn) -> None:
-        """Give operational parameters their values."""
-        message = SetParameters(effect.epoch, self.supervisor, effect.values)
-        self._call(effect.component, Call.SET, message)
+    def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
+        """Have the site start the process; that is done when the component lives."""
+        self._report(ComponentWoken(effect.component, found.site))
+
+        def give_up(detail: str) -> None:
+            waiting = self._waking.get(effect.component)
+            if waiting is not None and waiting[0] is effect:
+                del self._waking[effect.component]
+                waiting[1]()
+                self._unreachable(effect.component, Call.WAKE, effect.epoch, detail)
+
+        def answered(replies: Replies) -> None:
+            if not replies.samples:
+                give_up(replies.errors[0] if replies.errors else "its site does not answer")
+
+        if effect.component in self._waking:
+            self._waking.pop(effect.component)[1]()
+        too_late = f"it was started, but does not live after {WAKING:.0f} s"
+        self._waking[effect.component] = effect, self.bus.later(WAKING, lambda: give_up(too_late))
+        self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component)), CALL, answered)
+
+    def reserve(self, effect: ReserveOf) -> None:
+        """Have a component held for this task."""
+        component = effect.component
+        message = Reserve(
+            **self._claim(component, effect.epoch),
+            inputs=self._with_promises(effect.inputs),
+            values=dict(effect.values),
+        )
+        self._call(component, Call.RESERVE, message)
+
+    def queue(self, effect: QueueFor) -> None:
+        """Have a component remember that this task waits; what it answers is not waited for."""
+        message = Reserve(**self._claim(effect.component, effect.epoch), waits=True)
+        self.bus.ask(self.keys.call(effect.component, Call.RESERVE.value), encode(message), CALL, lambda replies: None)
+
+    def await_release(self, effect: AwaitRelease) -> None:
+        """Ask again after a while for a component that another task holds."""
+        if effect.component not in self._awaited:
+            self._awaited.add(effect.component)
+            self._report(ComponentAwaited(effect.component))
+        self.bus.later(ASK_AGAIN, lambda: self._step(WaitedLong(effect.component, effect.epoch)))
+
+    # Activating.
 
     def apply(self, effect: ApplyTo) -> None:
-        """Activate a component and connect its inputs; one that is dormant is woken by its site first."""
+        """Activate a component with its parameters, and connect its inputs."""
         life = self.ecology.life(effect.component)
-        found = self.ecology.discovery.found.get(effect.component)
-        if life is None and found is not None and found.startable:
-            self._wake(effect, found)
-            return
         if life is None:
-            self._later_answer(effect, "it is advertised, but it does not run")
+            self._unreachable(effect.component, Call.APPLY, effect.epoch, "it does not live any more")
             return
         inputs = self._with_promises(effect.inputs)
-        self._call(effect.component, Call.APPLY, Apply(effect.epoch, self.supervisor, inputs))
+        claim = self._claim(effect.component, effect.epoch)
+        self._call(effect.component, Call.APPLY, Apply(**claim, inputs=inputs, values=dict(effect.values)))
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         known, before = self._connections.get(effect.component, (life, frozenset()))
         for c in sorted(connections - before if known == life else connections):
@@ -102,16 +173,157 @@ class Calls:
         """Components may have turned themselves off: all that is applied to from now on is connected anew."""
         self._connections.clear()
 
-    def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
-        return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}
-
     def stand_by(self, configuration: Configuration, standby: Standby) -> None:
         """Let the inputs listen to what may come next, now that there is time; the answers are not waited for."""
-        wires = machine.wiring(configuration)
+        wires, values = wiring(configuration), parameter_values(configuration)
         for component, outputs in standby.items():
+            claim = self._claim(component, self._state().epoch)
             inputs, spare = self._with_promises(wires[component]), self._with_promises(outputs)
-            message = Apply(self._state().epoch, self.supervisor, inputs, spare)
+            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component])
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
+
+    # Turning off.
+
+    def release(self, effect: ReleaseFrom) -> None:
+        """Turn a component off; one that lives but does not obey is called again as long as it is owed the release."""
+        component = effect.component
+        self._connections.pop(component, None)
+        self._awaited.discard(component)
+        if self.ecology.life(component) is None:
+            off = Answered(component, Call.RELEASE, effect.epoch, None)
+            self.bus.wake_up(lambda: self._step(off))
+            return
+
+        def again() -> None:
+            if self._state().owed.get(component) == effect.epoch and self.ecology.life(component):
+                self.release(effect)
+
+        self.bus.later(2 * CALL, again)
+        self._call(component, Call.RELEASE, Release(**self._claim(component, effect.epoch)))
+
+    def _end(self, component: IRI) -> None:
+        """Have the site end a component that does not obey its release: it may act on for nobody."""
+        found, life = self.ecology.discovery.found.get(component), self.ecology.life(component)
+        if found is not None and found.startable and life is not None:
+            message = encode(End(component, life))
+            self.bus.ask(self.keys.end(found.site), message, CALL, lambda replies: None)
+
+    # Looking.
+
+    def look(self, component: IRI, seen: Callable[[CallAnswer | None], None], attempts: int = CALL_ATTEMPTS) -> None:
+        """Ask a component for its actual state; `seen` receives None if it does not answer."""
+
+        def answered(replies: Replies) -> None:
+            answer = self._answer_in(replies, self.ecology.life(component))
+            if answer is None and not replies.complete and attempts > 1:
+                self.look(component, seen, attempts - 1)
+            else:
+                seen(answer)
+
+        self.bus.ask(self.keys.call(component, "state"), encode(StateOf(self.identity.task)), CALL, answered)
+
+    def audit(self) -> None:
+        """Ask some of the components that run, in turns, whether they act for this task; again and again."""
+        self.bus.later(AUDIT, self.audit)
+        held = [c for c, one in self._state().held.items() if one.confirmed]
+        if self._state().phase is not Phase.RUNNING or not held:
+            return
+        for number in range(self._audited, self._audited + min(AUDITED, len(held))):
+            component = held[number % len(held)]
+            self.look(component, partial(self._audit, component, self._state().epoch), 1)
+        self._audited = (self._audited + AUDITED) % len(held)
+
+    def _audit(self, component: IRI, epoch: int, answer: CallAnswer | None) -> None:
+        state = self._state()
+        held = state.held.get(component)
+        if answer is None or held is None or state.phase is not Phase.RUNNING or state.epoch != epoch:
+            return
+        if answer.life == held.life and (answer.task != self.identity.task or not answer.active):
+            self._step(Failed(component, answer.life, Cause.FAIL, "it does not act for this task any more"))
+
+    # One call.
+
+    def _call(
+        self, component: IRI, call: Call, message: Reserve | Apply | Release, attempts: int = CALL_ATTEMPTS
+    ) -> None:
+        began = self.bus.now()
+
+        def answered(replies: Replies) -> None:
+            answer = self._answer_in(replies, message.life)
+            if answer is not None:
+                self._answered(component, call, message, answer)
+            elif replies.errors:
+                detail = replies.errors[0]
+                self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
+            else:
+                if call is Call.RELEASE and not replies.complete:
+                    self._end(component)
+                inspect()
+
+        def inspect() -> None:
+            """A time-out is not an outcome: ask for the actual state, then decide."""
+            question = encode(StateOf(self.identity.task))
+            self.bus.ask(self.keys.call(component, "state"), question, PAUSE if hasty else CALL, seen)
+
+        hasty = call is Call.RELEASE
+
+        def seen(replies: Replies) -> None:
+            answer = self._answer_in(replies, message.life)
+            current = message.epoch == self._state().epoch
+            silent = not replies.samples and not replies.errors
+            if answer is not None and self._obeyed(answer, call, message):
+                self._answered(component, call, message, answer)
+            elif attempts > 1 and answer is not None and current and not hasty:
+                self._call(component, call, message, attempts - 1)
+            elif silent and current and not hasty and self.bus.now() - began < STARTING:
+                self.bus.later(PAUSE, inspect)  # it may be in `started`; if its life ends, it is lost at once
+            elif current or hasty:
+                self._unreachable(component, call, message.epoch, "it does not answer")
+
+        self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
+
+    def _obeyed(self, answer: CallAnswer, call: Call, message: Reserve | Apply | Release) -> bool:
+        """Whether a component's state shows that it has obeyed a call of this configurator."""
+        if answer.epoch != message.epoch:
+            return False
+        mine = answer.task == message.task and answer.supervisor == message.supervisor
+        return not mine if call is Call.RELEASE else mine and answer.active == (call is Call.APPLY)
+
+    def _answered(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
+        detail = answer.detail or answer.verdict.value
+        if answer.verdict is not Verdict.DONE:
+            if call is Call.APPLY:
+                self._report(CallDeclined(component, detail))
+        elif call is Call.RELEASE:
+            self._report(ComponentReleased(component, detail))
+        elif isinstance(message, Apply):
+            if message.values:
+                self._report(ParametersSet(component, detail))
+            self._report(ComponentActivated(component, detail))
+        holder = None
+        if answer.verdict is Verdict.BUSY:
+            holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
+        newest, epoch = answer.epoch, message.epoch
+        self._step(Answered(component, call, epoch, answer.verdict, answer.life, newest, answer.detail, holder))
+
+    def _unreachable(self, component: IRI, call: Call, epoch: int, detail: str) -> None:
+        self._report(ComponentUnreachable(component, call.value, detail))
+        answer = Answered(component, call, epoch, None, detail=detail)
+        self.bus.wake_up(lambda: self._step(answer))
+
+    def _claim(self, component: IRI, epoch: int) -> dict[str, int | float | str]:
+        """What every call says: see `selfconf.protocol.messages.Claim`."""
+        return {
+            "epoch": epoch,
+            "supervisor": self.supervisor,
+            "task": self.identity.task,
+            "life": self.ecology.life(component) or "",
+            "priority": self.identity.priority,
+            "beginning": self.identity.beginning,
+        }
+
+    def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
+        return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}
 
     def _promised(self, wire: Wire) -> Wire:
         """A wire with the longest pause that the output's advertisement promises."""
@@ -119,106 +331,19 @@ class Calls:
         output = found.advertisement.profile.output(wire.output) if found else None
         return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
 
-    def release(self, effect: ReleaseFrom) -> None:
-        """Turn a component off; one that lives but does not obey is called again as long as it is owed the release."""
-        self._connections.pop(effect.component, None)
-        if self.ecology.life(effect.component) is None:
-            off = Answered(effect.component, Call.RELEASE, effect.epoch, None)
-            self.bus.wake_up(lambda: self._step(off))
-            return
-
-        def again() -> None:
-            if self._state().owed.get(effect.component) == effect.epoch and self.ecology.life(effect.component):
-                self.release(effect)
-
-        self.bus.later(2 * CALL, again)
-        self._call(effect.component, Call.RELEASE, Release(effect.epoch, self.supervisor))
-
-    def _later_answer(self, effect: ApplyTo, detail: str) -> None:
-        answer = Answered(effect.component, Call.APPLY, effect.epoch, None, detail=detail)
-        self._report(ComponentUnreachable(effect.component, Call.APPLY.value, detail))
-        self.bus.wake_up(lambda: self._step(answer))
-
-    def _wake(self, effect: ApplyTo, found: FoundAdvertisement) -> None:
-        """Have the site start the process; the apply goes out when the component lives."""
-        self._report(ComponentWoken(effect.component, found.site))
-
-        def give_up(detail: str) -> None:
-            waiting = self._waking.get(effect.component)
-            if waiting is not None and waiting[0] is effect:
-                del self._waking[effect.component]
-                waiting[1]()
-                if effect.epoch == self._state().epoch:
-                    self._later_answer(effect, detail)
-
-        def answered(replies: Replies) -> None:
-            if not replies.samples:
-                give_up(replies.errors[0] if replies.errors else "its site does not answer")
-
-        too_late = f"it was started, but does not live after {WAKING:.0f} s"
-        self._waking[effect.component] = effect, self.bus.later(WAKING, lambda: give_up(too_late))
-        self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component)), CALL, answered)
-
-    def _call(
-        self, component: IRI, call: Call, message: Apply | SetParameters | Release, attempts: int = CALL_ATTEMPTS
-    ) -> None:
-        began = self.bus.now()
-
-        def answered(replies: Replies) -> None:
-            answer = _answer_in(replies)
-            if answer is not None:
-                self._answered(component, call, message.epoch, answer)
-            elif replies.errors:
-                detail = replies.errors[0]
-                self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
-            else:
-                inspect()
-
-        def inspect() -> None:
-            """A time-out is not an outcome: ask for the actual state, then decide."""
-            self.bus.ask(self.keys.call(component, "state"), b"", CALL, seen)
-
-        def seen(replies: Replies) -> None:
-            answer = _answer_in(replies)
-            current = message.epoch == self._state().epoch
-            obeyed = answer is not None and answer.epoch == message.epoch
-            silent = not replies.samples and not replies.errors
-            if obeyed and answer is not None and call is not Call.SET and answer.active == (call is Call.APPLY):
-                self._answered(component, call, message.epoch, answer)
-            elif attempts > 1 and answer is not None and current:
-                self._call(component, call, message, attempts - 1)
-            elif silent and current and call is not Call.RELEASE and self.bus.now() - began < STARTING:
-                self.bus.later(PAUSE, inspect)  # it may be in `started`; if its life ends, it is lost at once
-            elif current or call is Call.RELEASE:
-                self._report(ComponentUnreachable(component, call.value, "it does not answer"))
-                self._step(Answered(component, call, message.epoch, None))
-
-        self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
-
-    def look(self, component: IRI, seen: Callable[[CallAnswer | None], None], attempts: int = CALL_ATTEMPTS) -> None:
-        """Ask a component for its actual state; `seen` receives None if it does not answer."""
-
-        def answered(replies: Replies) -> None:
-            answer = _answer_in(replies)
-            if answer is None and not replies.complete and attempts > 1:
-                self.look(component, seen, attempts - 1)
-            else:
-                seen(answer)
-
-        self.bus.ask(self.keys.call(component, "state"), b"", CALL, answered)
-
-    def _answered(self, component: IRI, call: Call, epoch: int, answer: CallAnswer) -> None:
-        done = answer.verdict is Verdict.DONE
-        if done or call is not Call.RELEASE:  # a component that another configurator holds is released again and again
-            event = _DONE[call] if done else CallDeclined
-            self._report(event(component, answer.detail or answer.verdict.value))
-        self._step(Answered(component, call, epoch, answer.verdict, answer.life, answer.epoch, answer.detail))
+    def _answer_in(self, replies: Replies, life: str | None) -> CallAnswer | None:
+        """The answer of the life that was meant, if it has answered; else that of another."""
+        answers: list[CallAnswer] = []
+        for sample in replies.samples:
+            try:
+                answers.append(decode(sample.payload, CallAnswer))
+            except PeerError as error:
+                log.warning("passed over an answer on %s: %s", sample.key, error)
+        return min(answers, key=lambda answer: answer.life != life, default=None)
 
 
-def _answer_in(replies: Replies) -> CallAnswer | None:
-    for sample in replies.samples:
-        try:
-            return decode(sample.payload, CallAnswer)
-        except PeerError as error:
-            log.warning("passed over an answer on %s: %s", sample.key, error)
-    return None
+def _configurator(answer: CallAnswer) -> str:
+    try:
+        return owner_of(answer.supervisor)
+    except PeerError:
+        return ""

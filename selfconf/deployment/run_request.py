@@ -31,12 +31,20 @@ class RunRequest:
     task: Task
     compose: ComposeFunction
     policy: Policy = Policy.REPAIR
+    name: str = ""
+    """The name of the task in the ecology; by default that of its template."""
+    priority: int = 0
+    """Of several tasks that want one component, the one of the highest priority has it."""
+    upgrade: float | None = None
+    """After how many seconds a component that the strategy would rather have is changed to; None: never."""
     patient: bool = False
     """Whether a refusal does not end the run: it waits until the ecology has what the task needs."""
     standby: Callable[[Configuration, frozenset[IRI]], Standby] = lambda configuration, lost: {}
     """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
     passed_over: Callable[[Configuration], Mapping[IRI, Sequence[IRI]]] = lambda configuration: {}
     """For each role of a configuration, the candidates that came before the chosen ones."""
+    aside: Callable[[Callable[[], None]], None] = lambda work: work()
+    """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
     report: EventListener = lambda event: None
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None

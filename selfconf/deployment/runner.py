@@ -16,14 +16,17 @@ from selfconf.bus.port import Bus, Sample, Undo, Urgency
 from selfconf.configurator import machine
 from selfconf.configurator.effects import (
     ApplyTo,
+    AwaitRelease,
     Compose,
     Discover,
     Effect,
     Finish,
+    QueueFor,
     ReleaseFrom,
+    ReserveOf,
     Running,
-    SetOn,
     Unwatch,
+    WakeUp,
     Watch,
 )
 from selfconf.configurator.events import (
@@ -33,17 +36,24 @@ from selfconf.configurator.events import (
     Discovered,
     Event,
     Failed,
+    Freed,
+    Holder,
+    Improvable,
+    Reconnected,
     Stopped,
+    WaitedLong,
 )
 from selfconf.configurator.state import Loss, Phase, State
 from selfconf.deployment.calls import Calls
+from selfconf.deployment.holders import ask_holders
+from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.run_request import RunRequest
 from selfconf.discovery import Discovery, EcologyView
-from selfconf.errors import PeerError, SelfconfError
+from selfconf.errors import PeerError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.run_event import (
     AnswerRejected,
     ComponentLost,
@@ -59,10 +69,11 @@ from selfconf.model.run_event import (
 )
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
-from selfconf.protocol.keys import component_chunk, owner_of_fail
+from selfconf.protocol.keys import component_chunk, owner_of_fail, safe_name, task_identity
 from selfconf.protocol.messages import (
     Cause,
     Fail,
+    Free,
     Status,
 )
 
@@ -71,7 +82,13 @@ log = logging.getLogger(__name__)
 AT_LEISURE = 0.01
 """Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
 TRY_AGAIN = 5.0
-"""How often, in seconds, a patient configurator that waits looks which lost components may be tried again."""
+"""After how many seconds a patient configurator that waits tries lost components again; the pause doubles each time."""
+LONGEST_PAUSE = 60.0
+"""The longest such pause, in seconds."""
+PULSE = 0.25
+"""How often, in seconds, a configurator looks whether it has been suspended."""
+SUSPENDED = 1.0
+"""A pause of so many seconds more than `PULSE` means that this program was suspended, and so cut off."""
 
 
 class TaskRunner:
@@ -84,12 +101,16 @@ class TaskRunner:
         self.ecology = EcologyView(bus, ecology)
         self.keys = self.ecology.keys
         self.name = name or f"c{secrets.token_hex(4)}"
+        task = task_identity(request.name or safe_name(request.task.template.iri.short), self.name)
+        self.identity = TaskIdentity(task, request.priority, clock())
         self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
-        self.state = State(policy=request.policy, patient=request.patient)
+        self.state = State(
+            policy=request.policy, patient=request.patient, task=task, priority=self.identity.priority
+        )
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
-        self._calls = Calls(self.ecology, self.supervisor, self._now, self._step, self._report)
+        self._calls = Calls(self.ecology, self.identity, self.supervisor, self._now, self._step, self._report)
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
         self._record = DeploymentRecord(bus, self.keys, self.name, request, self.status, self.stop)
         self._watched: set[IRI] = set()
@@ -97,13 +118,19 @@ class TaskRunner:
         self._stepping = False
         self._unreported: list[RunEvent] = []
         self._look_again: Undo = lambda: None
+        self._pause = TRY_AGAIN
+        self._improve: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
+        self._last_pulse = bus.now()
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
         bus.subscribe(self.keys.any_fail(), self._received_fail, Urgency.EVENT)
-        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})))  # not urgent: a flood delays no FAIL
+        bus.subscribe(self.keys.any_free(), self._received_free, Urgency.EVENT)
+        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})))
 
     def start(self) -> None:
         """Begin with act 1."""
+        self._calls.audit()
+        self._pulse()
         self._step(Accepted(int(self.clock() * 1000)))
 
     def stop(self) -> None:
@@ -123,54 +150,98 @@ class TaskRunner:
         self._stepping = True
         try:
             while self._events:
-                next_event, before, known = self._events.popleft(), self.state.phase, self.state.lost
-                self.state, effects = machine.step(self.state, next_event)
-                if self.state.lost is not known:
-                    self._notice(known)
-                for effect in effects:
-                    self._do(effect)
-                returned = isinstance(next_event, Appeared) and bool(next_event.lives)
-                if returned and self.state.phase is Phase.RUNNING and self.state.target is not None:
-                    self._stand_by(self.state.target)
-                if self.state.phase is not before:
-                    self._changed_phase(before)
+                self._take(self._events.popleft())
         finally:
             self._stepping = False
+
+    def _take(self, event: Event) -> None:
+        before, known = self.state.phase, self.state.lost
+        self.state, effects = machine.step(self.state, event)
+        if self.state.lost is not known:
+            self._notice(known)
+        for effect in effects:
+            self._carry_out(effect)
+        if isinstance(event, Appeared) and self.state.phase is Phase.RUNNING and self.state.target is not None:
+            self._settle()
+            if event.lives:
+                self._stand_by(self.state.target)
+        if self.state.phase is not before:
+            self._changed_phase(before)
+
+    def _carry_out(self, effect: Effect) -> None:
+        """Do what the machine wants done. What breaks there must not leave a task half deployed: it is taken down."""
+        try:
+            self._do(effect)
+        except Exception as error:
+            log.exception("%s broke", type(effect).__name__)
+            if self.trouble is None:
+                self.trouble = ProgrammerError(f"{type(effect).__name__} broke: {type(error).__name__}: {error}")
+                self._events.append(Stopped())
 
     def _now(self) -> State:
         return self.state
 
+    def _pulse(self) -> None:
+        """Notice that this program was suspended: whatever has not been answered meanwhile says nothing."""
+        now = self.bus.now()
+        late, self._last_pulse = now - self._last_pulse - PULSE, now
+        if self.state.phase is not Phase.STOPPED:
+            self.bus.later(PULSE, self._pulse)
+        if late > SUSPENDED:
+            log.warning("this program was suspended for %.1f s; looking at what has become of the ecology", late)
+            self._calls.forget_connections()
+            self._step(Reconnected())
+
     def _stand_by(self, configuration: Configuration) -> None:
-        standby = self.request.standby(configuration, frozenset(self.state.lost))
-        self._calls.stand_by(configuration, standby)
+        lost, epoch = frozenset(self.state.lost), self.state.epoch
+
+        def work() -> None:
+            standby = self.request.standby(configuration, lost)
+
+            def send() -> None:
+                if self.state.epoch == epoch and self.state.phase is Phase.RUNNING:
+                    self._calls.stand_by(configuration, standby)
+
+            self.bus.wake_up(send)
+
+        self.request.aside(work)
+
+    def _settle(self) -> None:
+        """Look, after a while, whether what has appeared would be rather had; each time anew, so that it settles."""
+        if self.request.upgrade is not None:
+            self._improve()
+            self._improve = self.bus.later(self.request.upgrade, partial(self._step, Improvable()))
 
     def _changed_phase(self, before: Phase) -> None:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
+        if self.state.phase is Phase.RUNNING:
+            self._pause = TRY_AGAIN
         if self.state.phase is Phase.REFUSED and self.state.patient:
             self._report(TaskWaiting(self.state.refusal, self.losses))
             self._await_another_chance()
 
     def _await_another_chance(self) -> None:
         self._look_again()
-        self._look_again = self.bus.later(TRY_AGAIN, self._forgive)
+        self._look_again = self.bus.later(self._pause, self._forgive)
+        self._pause = min(2 * self._pause, LONGEST_PAUSE)
 
     def _forgive(self) -> None:
         """While the task is refused, try lost components again that may be able to act by now."""
         if self.state.phase is not Phase.REFUSED:
             return
         again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
-        if again:
+        if again or self.state.lost:
             self._step(Appeared(again))
         else:
             self._await_another_chance()
 
     def _may_be_able(self, component: IRI, loss: Loss) -> bool:
-        """Whether a site can start a crashed component, or a busy one is free, as it has obeyed its release."""
-        if loss.cause is Cause.CRASH:
-            found = self.ecology.discovery.found.get(component)
-            return found is not None and found.startable
-        return loss.busy and component not in self.state.owed
+        """Whether a component lives, or its site can start it, and it obeys what it was told last."""
+        if component in self.state.owed and not loss.busy:
+            return False
+        found = self.ecology.discovery.found.get(component)
+        return self.ecology.life(component) is not None or (found is not None and found.startable)
 
     @property
     def losses(self) -> dict[IRI, str]:
@@ -200,60 +271,104 @@ class TaskRunner:
     def _do(self, effect: Effect) -> None:
         match effect:
             case Discover():
-                self._report(EcologyAsked())
-                self.ecology.discover(self._discovered)
+                self._discover()
             case Compose():
                 self._compose(effect)
             case Watch():
-                self._watch(effect.component)
+                self._report(FailWatched(effect.component))
+                self._watched.add(effect.component)
             case Unwatch():
                 self._watched.discard(effect.component)
+            case WakeUp():
+                self._calls.wake(effect)
+            case ReserveOf():
+                self._calls.reserve(effect)
+            case QueueFor():
+                self._calls.queue(effect)
+            case AwaitRelease():
+                self._calls.await_release(effect)
             case ApplyTo():
                 self._calls.apply(effect)
-            case SetOn():
-                self._calls.set(effect)
             case ReleaseFrom():
-                leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, Phase.DEPLOYING) else 0.0
+                leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, *machine.DEPLOYING) else 0.0
                 self.bus.later(leisure, partial(self._calls.release, effect))
             case Running():
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())
                 self._report(TaskRunning(effect.configuration, self.state.epoch))
                 self._stand_by(effect.configuration)
+                self._settle()
             case Finish():
-                refusal, lost = effect.refusal, self.losses
-                self._report(TaskStopped(lost=lost) if refusal is None else TaskRefused(refusal, lost))
-                try:
-                    self._report_all()
-                finally:  # the end of a task must not depend on what receives the reports
-                    self._leave()  # a component that could not be released turns itself off now
-                    self.request.ended(effect.refusal)
+                self._finish(effect)
 
-    def _discovered(self, discovery: Discovery) -> None:
+    def _finish(self, effect: Finish) -> None:
+        refusal, lost, owed = effect.refusal, self.losses, tuple(sorted(self.state.owed))
+        self._report(TaskStopped(lost=lost, owed=owed) if refusal is None else TaskRefused(refusal, lost, owed))
+        try:
+            self._report_all()
+        finally:  # the end of a task must not depend on what receives the reports
+            self._leave()  # a component that could not be released turns itself off now
+            self.request.ended(effect.refusal)
+
+    def _discover(self) -> None:
+        """Ask the sites what they advertise, and meanwhile the other tasks what they hold."""
+        self._report(EcologyAsked())
+        found: list[Discovery] = []
+        held: list[Mapping[IRI, Holder]] = []
+
+        def both() -> None:
+            if found and held:
+                self._discovered(found[0], held[0])
+
+        def discovered(discovery: Discovery) -> None:
+            found.append(discovery)
+            both()
+
+        def answered(holders: Mapping[IRI, Holder]) -> None:
+            held.append(holders)
+            both()
+
+        ask_holders(self.bus, self.keys, self.name, answered)
+        self.ecology.discover(discovered)
+
+    def _discovered(self, discovery: Discovery, holders: Mapping[IRI, Holder]) -> None:
         self.ecology.discovery = discovery
         self._liveness.discovered(discovery)
         for complaint in discovery.complaints:
             self._report(AnswerRejected(complaint))
         self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
-        self._step(Discovered())
+        self._step(Discovered({c: holder for c, holder in holders.items() if not self._shareable(c)}))
+
+    def _shareable(self, component: IRI) -> bool:
+        found = self.ecology.discovery.found.get(component)
+        return found is not None and found.advertisement.profile.is_shareable
 
     def _compose(self, effect: Compose) -> None:
+        """Search elsewhere, so that a search keeps this configurator from nothing."""
         found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
-        began = self.bus.now()
-        try:
-            outcome = self.request.compose(found, effect.lost, effect.running)
-        except SelfconfError as error:
-            self.trouble = error
-            self._step(Stopped())
-            return
+
+        def work() -> None:
+            began = time.monotonic()
+            try:
+                outcome = self.request.compose(found, effect.lost, effect.running)
+            except SelfconfError as error:
+                trouble = error
+                self.bus.wake_up(lambda: self._give_up(trouble))
+                return
+            seconds = time.monotonic() - began
+            self.bus.wake_up(lambda: self._composed(effect, outcome, seconds))
+
+        self.request.aside(work)
+
+    def _give_up(self, trouble: SelfconfError) -> None:
+        self.trouble = trouble
+        self._step(Stopped())
+
+    def _composed(self, effect: Compose, outcome: Outcome, seconds: float) -> None:
         if isinstance(outcome, Refusal):
             outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
-        seconds = self.bus.now() - began
-        self._report(SearchEnded(outcome, seconds))
+        if effect.attempt == self.state.attempt and not self.state.despite and self.state.phase is Phase.COMPOSING:
+            self._report(SearchEnded(outcome, seconds))
         self._step(Composed(effect.attempt, outcome))
-
-    def _watch(self, component: IRI) -> None:
-        self._report(FailWatched(component))
-        self._watched.add(component)
 
     def _received_fail(self, sample: Sample) -> None:
         try:
@@ -265,6 +380,19 @@ class TaskRunner:
         reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
         if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
+
+    def _received_free(self, sample: Sample) -> None:
+        try:
+            free = decode(sample.payload, Free)
+        except PeerError as error:
+            log.warning("passed over a notice on %s: %s", sample.key, error)
+            return
+        if sample.key != self.keys.free(free.component):
+            return
+        if free.task == self.identity.task:
+            self._step(Freed(free.component))
+        elif not free.task:
+            self._step(WaitedLong(free.component, self.state.epoch))
 
     def status(self) -> Status:
         """What is deployed, by whom, since when."""
@@ -278,4 +406,8 @@ class TaskRunner:
             process=os.getpid(),
             components=tuple(self.state.held),
             lost={component: loss.cause.value for component, loss in self.state.lost.items()},
+            task=self.identity.task,
+            priority=self.identity.priority,
+            beginning=self.identity.beginning,
+            owed=tuple(self.state.owed),
         )

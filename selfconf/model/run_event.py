@@ -75,6 +75,14 @@ class ComponentWoken(RunEvent):
 
 
 @dataclass(frozen=True, slots=True)
+class ComponentAwaited(RunEvent):
+    """Act 4: another task holds a component, and it is waited for."""
+
+    act: ClassVar[str] = "awaiting"
+    component: IRI
+
+
+@dataclass(frozen=True, slots=True)
 class InputConnected(RunEvent):
     """Act 4: an input of a component was told to follow an output of another."""
 
@@ -174,6 +182,8 @@ class TaskRefused(RunEvent):
     act: ClassVar[str] = "refused"
     refusal: Refusal | Undecided
     lost: Mapping[IRI, str] = field(default_factory=dict)
+    owed: tuple[IRI, ...] = ()
+    """The components that were turned off and have not obeyed: they are out of control until they are gone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +193,8 @@ class TaskStopped(RunEvent):
     act: ClassVar[str] = "stopped"
     refusal: None = None
     lost: Mapping[IRI, str] = field(default_factory=dict)
+    owed: tuple[IRI, ...] = ()
+    """The components that were turned off and have not obeyed: they are out of control until they are gone."""
 
 
 @dataclass(frozen=True, slots=True)

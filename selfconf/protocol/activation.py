@@ -1,26 +1,43 @@
-"""Whether a component acts, and for which configurator, as a table with no network in it.
+"""For which tasks a component is held, and whether it acts, as a table with no network in it.
 
-    phase     apply              set        release         fail              orphaned
-    IDLE      ACTIVE, start      refused    IDLE            IDLE              IDLE
-    ACTIVE    ACTIVE             ACTIVE     IDLE, stop      FAILED, FAIL      IDLE, stop
-    FAILED    ACTIVE, restart    FAILED     IDLE, stop      FAILED            IDLE, stop
+    phase     apply              release (of the last)  fail              orphaned (the last)
+    IDLE      ACTIVE, start      IDLE                   IDLE              IDLE
+    ACTIVE    ACTIVE             IDLE, stop             FAILED, FAIL      IDLE, stop
+    FAILED    ACTIVE, restart    IDLE, stop             FAILED            IDLE, stop
+
+A task *holds* a component from its first reserve or apply until its release. A component is held by one task, or, if
+it can be shared, by several that want the same inputs and the same values of parameters; it acts while one of them has
+applied. `reserve` changes no phase: none of the components of a configuration acts for a task before all are held.
+
+Before the table come three guards. A call of an older epoch than the newest that was obeyed for its task is STALE:
+epochs order the calls of one task, not of two, as their clocks may differ. A call of another configurator than the one
+that supervises the task is BUSY while that one is alive. A call of a task that cannot hold the component beside those
+that do is BUSY, and the task *waits*: higher priority first, then the earlier beginning. Once the component is free,
+it is *offered* to the first that waits; until that one has reserved it or the offer is over, tasks that come later are
+BUSY. An offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot
+come for it, as each waits for the other, would have it offered to them for ever.
 
 A component that has failed stays failed for the epoch it failed in: an apply of that epoch, repeated or late, is
-REFUSED, or it would hide the failure.
+REFUSED, or it would hide the failure. An actuator, a component without outputs, is never applied to by a task that does
+not hold it (NOT HELD): a call that comes late, or after the component was believed to be orphaned, would let it act on
+a part of a configuration. Any other component is reserved by the apply itself, if it is free.
 
-*Orphaned* means that the configurator which supervises the component has been gone for the grace period: nothing would
-notice a failure of the configuration any more, so the component stops acting on it.
-
-Before the table come two guards, for apply, set and release. A call of an older epoch than the newest obeyed is
-STALE. A call of another supervisor than the present one is BUSY; a component whose supervisor is gone has none.
+*Orphaned* means that the configurator which supervises a task has been gone for the grace period. Until then its hold
+lasts, but blocks no other task, and another configurator of the same task goes on with it without a stop.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from selfconf.protocol.messages import Apply, Release, SetParameters, Verdict
+from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict
+
+MOST_WAITING = 64
+"""How many tasks a component remembers that wait for it; those that come last wait by asking again."""
+MOST_ENDED = 64
+"""Of how many tasks that hold it no more a component remembers the newest epoch."""
 
 
 class ActivationPhase(str, Enum):
@@ -43,13 +60,55 @@ class ActivationStep(str, Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class Hold:
+    """A task that holds a component: its newest call that was obeyed, and whether the component acts for it."""
+
+    claim: Reserve | Apply
+    active: bool = False
+
+    @property
+    def wants(self) -> tuple[object, object]:
+        """The inputs and the values of parameters, by which tasks that share a component must agree."""
+        return self.claim.inputs, self.claim.values
+
+
+@dataclass(frozen=True, slots=True)
 class Activation:
-    """Phase, newest epoch obeyed, and the liveliness key of the configurator that supervises, if one does."""
+    """Whether a component acts, for whom, and who waits for it."""
 
     phase: ActivationPhase = ActivationPhase.IDLE
-    epoch: int = 0
-    supervisor: str | None = None
+    holds: tuple[Hold, ...] = ()
+    waiting: tuple[Claim, ...] = ()
+    """The tasks that wait, in the order in which the component is offered to them."""
+    kept_for: str = ""
+    """The task that a component which is free is kept for."""
+    passed: frozenset[str] = frozenset()
+    """The tasks that wait and have been offered the component since it was held last."""
+    ended: tuple[tuple[str, int], ...] = ()
+    """The newest epoch obeyed for each task that holds the component no more."""
 
+    def hold(self, task: str) -> Hold | None:
+        """The hold of a task, if it has one."""
+        return next((hold for hold in self.holds if hold.claim.task == task), None)
+
+    @property
+    def first(self) -> Hold | None:
+        """The hold of the highest priority, then of the earliest beginning."""
+        return min(self.holds, key=lambda hold: _rank(hold.claim), default=None)
+
+    @property
+    def epoch(self) -> int:
+        """The newest epoch for which the component acts, or is held."""
+        return max((hold.claim.epoch for hold in self.holds), default=0)
+
+    def epoch_of(self, task: str) -> int:
+        """The newest epoch that was obeyed for a task."""
+        hold = self.hold(task)
+        return hold.claim.epoch if hold is not None else dict(self.ended).get(task, 0)
+
+
+Reaction = tuple[Activation, Verdict, ActivationStep]
+"""The activation after a call, the verdict to answer, and what it means to the component's code."""
 
 _START = {
     ActivationPhase.IDLE: ActivationStep.START,
@@ -58,21 +117,93 @@ _START = {
 }
 
 
-def obey(activation: Activation, call: Apply | SetParameters | Release) -> tuple[Activation, Verdict, ActivationStep]:
-    """Return what a call makes of an activation, the verdict to answer, and what it means to the component's code."""
-    if call.epoch < activation.epoch:
+def obey(
+    activation: Activation,
+    call: Reserve | Apply | Release,
+    *,
+    shareable: bool = False,
+    actuator: bool = False,
+    gone: frozenset[str] = frozenset(),
+) -> Reaction:
+    """Return what a call makes of an activation; `gone` are the supervisors whose life was seen to end.
+
+    `shareable` and `actuator` say what kind of component it is.
+    """
+    own = activation.hold(call.task)
+    if call.epoch < activation.epoch_of(call.task):
         return activation, Verdict.STALE, ActivationStep.NONE
-    if activation.supervisor is not None and call.supervisor != activation.supervisor:
+    if own is not None and own.claim.supervisor not in (call.supervisor, *gone):
         return activation, Verdict.BUSY, ActivationStep.NONE
-    if isinstance(call, Apply):
-        if activation.phase is ActivationPhase.FAILED and call.epoch == activation.epoch:
-            return activation, Verdict.REFUSED, ActivationStep.NONE
-        active = Activation(ActivationPhase.ACTIVE, call.epoch, call.supervisor)
-        return active, Verdict.DONE, _START[activation.phase]
-    if isinstance(call, SetParameters):
-        verdict = Verdict.REFUSED if activation.phase is ActivationPhase.IDLE else Verdict.DONE
-        return replace(activation, epoch=call.epoch), verdict, ActivationStep.NONE
-    return Activation(ActivationPhase.IDLE, call.epoch, None), Verdict.DONE, _stop(activation)
+    if isinstance(call, Release):
+        after, step = drop(activation, (call.task,), call.epoch)
+        return _no_longer_waiting(after, call.task), Verdict.DONE, step
+    if _blocked(activation, call, shareable, gone) or (isinstance(call, Reserve) and call.waits):
+        return _wait(activation, call), Verdict.BUSY, ActivationStep.NONE
+    served = _no_longer_waiting(activation, call.task)
+    if isinstance(call, Reserve):
+        return _reserve(served, own, call), Verdict.DONE, ActivationStep.NONE
+    if own is None and actuator:
+        return activation, Verdict.NOT_HELD, ActivationStep.NONE
+    if served.phase is ActivationPhase.FAILED and own is not None and own.active and call.epoch == own.claim.epoch:
+        return activation, Verdict.REFUSED, ActivationStep.NONE
+    others = tuple(hold for hold in served.holds if hold is not own and hold.claim.supervisor not in gone)
+    active = replace(
+        served,
+        phase=ActivationPhase.ACTIVE,
+        holds=(*others, Hold(call, True)),
+        ended=_ended(served, call),
+        passed=frozenset(),
+    )
+    return active, Verdict.DONE, _START[served.phase]
+
+
+def _reserve(activation: Activation, own: Hold | None, call: Reserve) -> Activation:
+    """Hold the component; one that acts already goes on as it is, until it is applied to."""
+    others = tuple(hold for hold in activation.holds if hold is not own)
+    claim = call if own is None or not own.active else replace(own.claim, epoch=call.epoch, supervisor=call.supervisor)
+    held = Hold(claim, own is not None and own.active)
+    return replace(activation, holds=(*others, held), ended=_ended(activation, call), passed=frozenset())
+
+
+def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gone: frozenset[str]) -> bool:
+    """Whether another task stands in the way: one that holds the component, or one that it is kept for."""
+    if any(one.task == activation.kept_for != call.task and _rank(one) < _rank(call) for one in activation.waiting):
+        return True
+    others = (h for h in activation.holds if h.claim.task != call.task and h.claim.supervisor not in gone)
+    return any(not shareable or hold.wants != (call.inputs, call.values) for hold in others)
+
+
+def _wait(activation: Activation, call: Reserve | Apply) -> Activation:
+    """Let a task wait, in its place; a call that it has made before is forgotten."""
+    rest = [claim for claim in activation.waiting if claim.task != call.task]
+    return replace(activation, waiting=tuple(sorted([*rest, call], key=_rank)[:MOST_WAITING]))
+
+
+def _no_longer_waiting(activation: Activation, task: str) -> Activation:
+    waiting = tuple(claim for claim in activation.waiting if claim.task != task)
+    kept_for = "" if activation.kept_for == task else activation.kept_for
+    return replace(activation, waiting=waiting, kept_for=kept_for, passed=activation.passed - {task})
+
+
+def _rank(claim: Claim) -> tuple[int, float, str]:
+    """The order in which tasks are served: the higher priority first, then the earlier beginning."""
+    return -claim.priority, claim.beginning, claim.task
+
+
+def _ended(activation: Activation, call: Reserve | Apply) -> tuple[tuple[str, int], ...]:
+    return tuple(one for one in activation.ended if one[0] != call.task)
+
+
+def drop(activation: Activation, tasks: Iterable[str], epoch: int = 0) -> tuple[Activation, ActivationStep]:
+    """Return what becomes of an activation when tasks hold it no more; `epoch` is that of the release, if it is one."""
+    dropped = dict.fromkeys(tasks)
+    newest = {task: max(epoch, activation.epoch_of(task)) for task in dropped}
+    ended = (*(one for one in activation.ended if one[0] not in dropped), *newest.items())[-MOST_ENDED:]
+    holds = tuple(hold for hold in activation.holds if hold.claim.task not in dropped)
+    after = replace(activation, holds=holds, ended=ended)
+    if any(hold.active for hold in holds) or activation.phase is ActivationPhase.IDLE:
+        return after, ActivationStep.NONE
+    return replace(after, phase=ActivationPhase.IDLE), ActivationStep.STOP
 
 
 def fail(activation: Activation) -> tuple[Activation, ActivationStep]:
@@ -82,10 +213,29 @@ def fail(activation: Activation) -> tuple[Activation, ActivationStep]:
     return activation, ActivationStep.NONE
 
 
-def orphan(activation: Activation) -> tuple[Activation, ActivationStep]:
-    """Return what becomes of an activation when the supervisor has been gone for the grace period."""
-    return replace(activation, phase=ActivationPhase.IDLE, supervisor=None), _stop(activation)
+def orphan(activation: Activation, supervisor: str) -> tuple[Activation, ActivationStep]:
+    """Return what becomes of an activation when a supervisor has been gone for the grace period."""
+    return drop(activation, [hold.claim.task for hold in activation.holds if hold.claim.supervisor == supervisor])
 
 
-def _stop(activation: Activation) -> ActivationStep:
-    return ActivationStep.NONE if activation.phase is ActivationPhase.IDLE else ActivationStep.STOP
+def outranked(activation: Activation) -> tuple[str, ...]:
+    """The tasks that hold a component although one of higher priority than all of them waits for it."""
+    if not activation.waiting:
+        return ()
+    lower = [hold.claim for hold in activation.holds if hold.claim.priority < activation.waiting[0].priority]
+    return tuple(claim.task for claim in lower) if len(lower) == len(activation.holds) else ()
+
+
+def offer(activation: Activation) -> tuple[Activation, Claim | None]:
+    """Keep a component that no task holds for the first that waits, and return the claim of that task."""
+    if activation.holds or activation.kept_for:
+        return activation, None
+    first = next((claim for claim in activation.waiting if claim.task not in activation.passed), None)
+    if first is None:
+        return activation, None
+    return replace(activation, kept_for=first.task, passed=activation.passed | {first.task}), first
+
+
+def withdraw(activation: Activation, task: str) -> Activation:
+    """Keep the component no longer for a task that has not reserved it."""
+    return replace(activation, kept_for="") if activation.kept_for == task else activation

@@ -19,12 +19,15 @@ from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
     Cause,
+    End,
     Fail,
+    Free,
     Message,
     Page,
     Release,
-    SetParameters,
+    Reserve,
     Stamp,
+    StateOf,
     Status,
     Verdict,
     Wake,
@@ -33,12 +36,15 @@ from selfconf.protocol.messages import (
 
 M = TypeVar("M", bound=Message)
 KINDS: dict[type, str] = {
+    Reserve: "reserve",
     Apply: "apply",
-    SetParameters: "setparameters",
     Release: "release",
+    StateOf: "state",
     CallAnswer: "answer",
     Fail: "fail",
+    Free: "free",
     Wake: "wake",
+    End: "end",
     Page: "page",
     Stamp: "stamp",
     Status: "status",
@@ -53,7 +59,7 @@ def encode(message: Message) -> bytes:
     body: dict[str, Any] = {"kind": KINDS[type(message)]}
     for name, _, _ in _FIELDS[type(message)]:
         body[name] = getattr(message, name)
-    if isinstance(message, SetParameters):
+    if isinstance(message, Reserve | Apply):
         body["values"] = {name: encode_term(value) for name, value in message.values.items()}
     return _JSON.encode(body).encode()
 
@@ -208,14 +214,19 @@ def _verdict(value: object) -> Verdict:
 
 
 _READERS: dict[tuple[type, str], Any] = {
-    **{(kind, "epoch"): _whole for kind in (Apply, SetParameters, Release, CallAnswer, Fail, Status)},
-    **{(kind, "supervisor"): _text for kind in (Apply, SetParameters, Release, CallAnswer)},
-    **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Wake, Stamp)},
-    **{(kind, "life"): _text for kind in (CallAnswer, Fail, Stamp)},
+    **{(kind, "epoch"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Fail, Status)},
+    **{(kind, "supervisor"): _text for kind in (Reserve, Apply, Release, CallAnswer)},
+    **{(kind, "task"): _text for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Free, Status)},
+    **{(kind, "priority"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Status)},
+    **{(kind, "beginning"): _number for kind in (Reserve, Apply, Release, CallAnswer, Status)},
+    **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Free, Wake, End, Stamp)},
+    **{(kind, "life"): _text for kind in (Reserve, Apply, Release, CallAnswer, Fail, Free, End, Stamp)},
     **{(kind, "detail"): _text for kind in (CallAnswer, Fail)},
-    (Apply, "inputs"): _inputs,
+    **{(kind, "inputs"): _inputs for kind in (Reserve, Apply)},
+    **{(kind, "values"): _values for kind in (Reserve, Apply)},
     (Apply, "standby"): _inputs,
-    (SetParameters, "values"): _values,
+    (Reserve, "waits"): _truth,
+    (CallAnswer, "place"): _text,
     (CallAnswer, "verdict"): _verdict,
     (CallAnswer, "active"): _truth,
     (Fail, "cause"): _cause,
@@ -235,6 +246,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (Status, "process"): _whole,
     (Status, "components"): _iris,
     (Status, "lost"): _object,
+    (Status, "owed"): _iris,
 }
 
 _FIELDS: dict[type, tuple[tuple[str, Any, bool], ...]] = {

@@ -4,10 +4,12 @@
     selfconf/{ecology}/site/{site}/ads/{component}          an advertisement (queryable, one reply each)
     selfconf/{ecology}/site/{site}/changed                  its advertisements have changed (put)
     selfconf/{ecology}/site/{site}/@ctl/wake                start a dormant component (call)
+    selfconf/{ecology}/site/{site}/@ctl/end                 end a component that does not obey (call)
     selfconf/{ecology}/c/{shard}/{component}/live/{life}    a component is alive (liveliness token)
     selfconf/{ecology}/c/{shard}/{component}/out/{port}     what an output issues (put)
     selfconf/{ecology}/c/{shard}/{component}/fail           FAIL (put)
-    selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    apply, set, release, state (call)
+    selfconf/{ecology}/c/{shard}/{component}/free           it is free, and for whom (put)
+    selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    reserve, apply, release, state (call)
     selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
     selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (queryable)
     selfconf/{ecology}/conf/{name}/@ctl/{call}              status, stop (call)
@@ -86,6 +88,9 @@ class Keys:
     def wake(self, site: str) -> str:
         return self._site(site, "@ctl/wake")
 
+    def end(self, site: str) -> str:
+        return self._site(site, "@ctl/end")
+
     def _component(self, component: IRI, rest: str) -> str:
         return f"selfconf/{self.ecology}/c/{_place(component)}/{rest}"
 
@@ -101,11 +106,20 @@ class Keys:
     def output(self, component: IRI, port: str) -> str:
         return self._component(component, f"out/{quote(port, safe='')}")
 
+    def outputs(self, component: IRI) -> str:
+        return self._component(component, "out/*")
+
     def fail(self, component: IRI) -> str:
         return self._component(component, "fail")
 
     def any_fail(self) -> str:
         return f"selfconf/{self.ecology}/c/*/*/fail"
+
+    def free(self, component: IRI) -> str:
+        return self._component(component, "free")
+
+    def any_free(self) -> str:
+        return f"selfconf/{self.ecology}/c/*/*/free"
 
     def call(self, component: IRI, call: str = "*") -> str:
         return self._component(component, f"@ctl/{call}")
@@ -159,6 +173,22 @@ def owner_of(key: str) -> str:
     if len(chunks) < 3 or chunks[-2] != "live":
         raise PeerError(f"{key!r} is no liveliness key")
     return chunks[-3]
+
+
+def task_identity(name: str, token: str) -> str:
+    """The identity of a task: its name, and a text that no other task of that name has."""
+    return f"{checked_name(name, 'a task')}~{token}"
+
+
+def safe_name(text: str) -> str:
+    """A text as a name that a key can hold: what cannot stand in one becomes a hyphen."""
+    name = re.sub(r"[^A-Za-z0-9._-]+", "-", text).lstrip("._-")[:64]
+    return name or "task"
+
+
+def task_name(identity: str) -> str:
+    """The name of a task, as its user knows it, by its identity."""
+    return identity.partition("~")[0]
 
 
 def owner_of_fail(key: str) -> str:

@@ -25,6 +25,12 @@ class Cause(str, Enum):
     """An output that promised a rate has stopped."""
     REFUSED = "refused"
     """It refused to be activated, or could not be."""
+    HUNG = "hung"
+    """Its code has not returned within its deadline."""
+    MALFORMED = "malformed"
+    """It emitted what is not a signal of the type that its output promises."""
+    YIELD = "yield"
+    """A task of higher priority asks for it; it is not broken, and free for that task once it is released."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,35 +43,56 @@ class Wire:
 
 
 @dataclass(frozen=True, slots=True)
-class Apply:
-    """Be active, and let each input follow exactly these outputs.
-
-    Outputs that stand by are listened to as well, but what they issue is passed over, until a later call makes them
-    inputs: then no time is lost with connecting.
-    """
+class Claim:
+    """What every call says of the task that makes it, and of the component that it means."""
 
     epoch: int
     supervisor: str
-    """The liveliness key of the configurator that supervises this configuration."""
-    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
-    standby: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    """The liveliness key of the configurator that supervises the configuration now."""
+    task: str = ""
+    """The identity of the task, which stays when another configurator goes on with it; empty from an older peer."""
+    life: str = ""
+    """Which life of the component is meant; empty for whichever answers, as an older peer has it."""
+    priority: int = 0
+    beginning: float = 0.0
+    """When the task began, in seconds of the Unix epoch by the clock of its configurator."""
 
 
 @dataclass(frozen=True, slots=True)
-class SetParameters:
-    """Take these values for operational parameters, by name."""
+class Reserve(Claim):
+    """Be held for a task, without acting for it: none of its components acts before it has reserved them all.
 
-    epoch: int
-    supervisor: str
+    A task that cannot begin now only waits: it is remembered, and told when the component is free.
+    """
+
+    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    values: Mapping[str, Term] = field(default_factory=dict)
+    waits: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Apply(Claim):
+    """Be active with these values of the operational parameters, and let each input follow exactly these outputs.
+
+    Outputs that stand by are listened to as well, but what they issue is passed over, until a later call makes them
+    inputs: then no time is lost with connecting. A component that is free is reserved by the same call.
+    """
+
+    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    standby: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
-class Release:
-    """Stop, follow no output any more, and be free for others."""
+class Release(Claim):
+    """Act for this task no more; the component is off when no task is left for which it acts."""
 
-    epoch: int
-    supervisor: str
+
+@dataclass(frozen=True, slots=True)
+class StateOf:
+    """What goes with a question for a component's state: of which task it is."""
+
+    task: str
 
 
 class Verdict(str, Enum):
@@ -75,9 +102,13 @@ class Verdict(str, Enum):
     STALE = "stale"
     """The epoch is older than the newest one the component has obeyed."""
     BUSY = "busy"
-    """Another configurator that is alive holds the component."""
+    """Another task holds the component; it is remembered who asked, and told when the component is free."""
     REFUSED = "refused"
     """The component itself refuses, or its code broke; `detail` says why."""
+    NOT_HELD = "not held"
+    """The component is an actuator, and the task that applies to it has not reserved it, or not since it was let go."""
+    OTHER_LIFE = "another life"
+    """The call means another life of the component than the one that answers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +123,12 @@ class CallAnswer:
     detail: str = ""
     supervisor: str = ""
     """The liveliness key of the configurator that holds the component; empty if none does, or if it is left out."""
+    task: str = ""
+    """The identity of the task that holds the component, of the highest priority if there are several."""
+    priority: int = 0
+    beginning: float = 0.0
+    place: str = ""
+    """The process and the host of the component, for people."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +143,30 @@ class Fail:
 
 
 @dataclass(frozen=True, slots=True)
+class Free:
+    """To those that wait for a component: it is free, and kept for a moment for the task that goes first.
+
+    Without a task: it begins to act for the one that holds it, so waiting for it may last.
+    """
+
+    component: IRI
+    life: str
+    task: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Wake:
     """Start the process of a dormant component."""
 
     component: IRI
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """End the process of a component that does not obey, if it still lives the life that is meant."""
+
+    component: IRI
+    life: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +193,7 @@ class Stamp:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """What a configurator has deployed."""
+    """What a configurator has deployed, and for which task."""
 
     configurator: str
     phase: str
@@ -147,6 +204,12 @@ class Status:
     process: int = 0
     components: tuple[IRI, ...] = ()
     lost: Mapping[str, Any] = field(default_factory=dict)
+    task: str = ""
+    """The identity of the task."""
+    priority: int = 0
+    beginning: float = 0.0
+    owed: tuple[IRI, ...] = ()
+    """The components that were turned off and have not obeyed yet."""
 
 
-Message = Apply | SetParameters | Release | CallAnswer | Fail | Wake | Page | Stamp | Status
+Message = Reserve | Apply | Release | StateOf | CallAnswer | Fail | Free | Wake | End | Page | Stamp | Status

@@ -22,6 +22,7 @@ SENTENCES: Mapping[str, str] = {
     "composed": "act 3  {found} in {milliseconds:.1f} ms",
     "watching": "act 4  listening to FAIL of {component}",
     "waking": "act 4  {component} is dormant; site {site} starts it",
+    "awaiting": "act 4  {component} is held by another task; waiting for it",
     "connecting": "act 4  {source} {output} -> {sink} {input}",
     "activating": "",
     "activated": "act 4  {component} is active",

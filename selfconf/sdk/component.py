@@ -46,9 +46,9 @@ class Component:
     def started(self) -> None:
         """The component has been activated. Raise Refused if it cannot act.
 
-        It should return soon, for nothing else reaches the component meanwhile: after 8 seconds without an answer the
-        configurator looks for another component. What takes longer belongs on a thread of its own, which calls `fail`
-        if it comes to nothing.
+        It should return soon, for nothing else reaches the component meanwhile: after 8 seconds the component counts as
+        hung, unless it asks for more by `sc:deadline`. What takes longer belongs on a thread of its own, which calls
+        `fail` if it comes to nothing. Parameters have their values, and whoever feeds this component has started.
         """
 
     def stopped(self) -> None:
@@ -57,8 +57,21 @@ class Component:
     def received(self, port: str, signal: Signal) -> None:
         """A signal has arrived on an input."""
 
+    def unfed(self, port: str) -> None:
+        """An input has lost its last source: what was received on it last is not true any more.
+
+        A component without outputs, an actuator, is stopped when this has lasted for as long as it tolerates
+        (`sc:tolerates`, 1 second by default), and started again once the input is fed.
+        """
+
+    def fed(self, port: str) -> None:
+        """An input that had lost its last source has another, whose first signal is received next."""
+
     def parameter_set(self, name: str, value: Any) -> None:
-        """An operational parameter has been set: text for strings and IRIs, else a number or a truth value."""
+        """An operational parameter has a value: text for strings and IRIs, else a number or a truth value.
+
+        It is called before `started` for every parameter of the task, and later for one that changes.
+        """
 
     def emit(self, port: str, value: Any, time: float | None = None) -> None:
         """Issue a signal on an output: any value that JSON has, or bytes. Nothing happens while not active.

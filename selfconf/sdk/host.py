@@ -1,44 +1,161 @@
-"""Several components in one process with one session, as a simulated world or a robot's computer has them."""
+"""Several components in one process with one session, as a simulated world or a robot's computer has them.
+
+The code of all of them runs on the thread that calls `run` or `poll`; the bus has a thread of its own, so that neither
+a call of a configurator nor the end of its life waits for that code, and so that code that hangs is noticed.
+"""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
 
 from selfconf import files
-from selfconf.bus.port import Bus
-from selfconf.errors import AuthorError, ProgrammerError
+from selfconf.bus.port import Bus, Replies
+from selfconf.errors import AuthorError, NetworkError, PeerError, ProgrammerError
 from selfconf.model.profile import Profile
+from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import CallAnswer
+from selfconf.sdk.code_thread import CodeThread, RunningCode
 from selfconf.sdk.component import Component
 from selfconf.sdk.runtime import ComponentRuntime
+
+CODE_CHECK = 0.1
+"""How often, in seconds, it is looked whether the code that runs is within its deadline."""
+JOINING = 1.0
+"""Seconds that a component of the same IRI may take to say that it lives."""
+LEAVING = 2.5
+"""Seconds that the code of the components may take to come to rest when the host is closed."""
+Kind = TypeVar("Kind", bound=Component)
+Heard = TypeVar("Heard")
 
 
 class Host:
     """Components that share one session and one thread: the thread that calls `run` or `poll`."""
 
-    def __init__(self, bus: Bus, ecology: str) -> None:
+    def __init__(self, bus: Bus, ecology: str, hung: Callable[[str], None] = lambda what: None) -> None:
+        """`hung` is called, on the bus's thread, when code of a component does not return within its deadline."""
         self.bus, self.keys = bus, Keys(ecology)
         self.runtimes: list[ComponentRuntime] = []
+        self.superseded: str | None = None
+        """Why a component had to leave, where another process is the same one."""
+        self.code = CodeThread(inline=not bus.run_aside())
+        self._hung, self._overdue = hung, None
+        if not self.code.inline:
+            bus.wake_up(self._watch_code)
 
-    def add(self, component: Component, life: str = "") -> Component:
-        """Let a component join the ecology. Raises AuthorError for an advertisement that cannot be read."""
-        self.runtimes.append(ComponentRuntime(self.bus, self.keys, profile_of(type(component)), component, life))
+    def add(self, component: Kind, life: str = "") -> Kind:
+        """Let a component join the ecology.
+
+        Raises AuthorError for an advertisement that cannot be read, and NetworkError if the component lives already.
+        """
+        profile = profile_of(type(component))
+        self._check_alone(profile)
+
+        def join() -> ComponentRuntime:
+            return ComponentRuntime(
+                self.bus, self.keys, profile, component, life, self.code, superseded=self._be_superseded
+            )
+
+        self.runtimes.append(self._on_bus_thread(lambda done: done(join())))
         return component
 
     def poll(self, seconds: float = 0.0) -> None:
         """Let the components hear everything there is to hear; wait up to that long if there is nothing."""
-        self.bus.poll(seconds)
+        if self.code.inline:
+            self.bus.poll(seconds)
+        else:
+            self.code.poll(seconds)
 
     def run(self, until: Callable[[], bool]) -> None:
-        """Let the components hear everything, until `until` holds."""
-        self.bus.run(until)
+        """Let the components hear everything, until `until` holds; `code.wake_up` has it asked at once.
+
+        Raises NetworkError if another process is the same component, and this one has to leave.
+        """
+        if self.code.inline:
+            self.bus.run(until)
+        else:
+            self.code.run(lambda: until() or self.superseded is not None)
+        if self.superseded is not None:
+            raise NetworkError(self.superseded)
 
     def close(self) -> None:
         """Turn every component off and leave the ecology."""
+        closed: list[ComponentRuntime] = []
         for runtime in self.runtimes:
-            runtime.close()
+            self.bus.wake_up(partial(runtime.close, partial(closed.append, runtime)))
+        deadline = self.bus.now() + LEAVING
+        self._poll_until(lambda: len(closed) == len(self.runtimes) or self.bus.now() > deadline)
         self.runtimes.clear()
         self.bus.close()
+
+    def _poll_until(self, until: Callable[[], bool]) -> None:
+        if self.code.inline:
+            self.bus.run(until)
+            return
+        while not until():
+            self.code.poll(0.01)
+
+    def _on_bus_thread(self, action: Callable[[Callable[[Heard], None]], None]) -> Heard:
+        """Do something on the thread of the bus that hears of a result, and wait for that. What it raises is raised."""
+        heard: list[Heard] = []
+        raised: list[BaseException] = []
+        there = threading.Event()
+
+        def hear(result: Heard) -> None:
+            heard.append(result)
+            there.set()
+
+        def act() -> None:
+            try:
+                action(hear)
+            except BaseException as error:  # it is raised again, in the thread that waits
+                raised.append(error)
+                there.set()
+
+        self.bus.wake_up(act)
+        if self.code.inline:
+            self.bus.run(there.is_set)
+        else:
+            there.wait()
+        if raised:
+            raise raised[0]
+        return heard[0]
+
+    def _check_alone(self, profile: Profile) -> None:
+        """Raise NetworkError if a process is this component already."""
+        component = profile.component
+        lives: tuple[str, ...] = self._on_bus_thread(partial(self.bus.roll_call, self.keys.lives(component), JOINING))
+        if not lives:
+            return
+        ask = partial(self.bus.ask, self.keys.call(component, "state"), b"", JOINING)
+        replies: Replies = self._on_bus_thread(ask)
+        places = []
+        for sample in replies.samples:
+            try:
+                places.append(decode(sample.payload, CallAnswer).place)
+            except PeerError:
+                continue
+        where = ", ".join(place for place in places if place) or "a process that does not answer"
+        raise NetworkError(f"{component} is alive already: {where}; end that one first")
+
+    def _be_superseded(self, reason: str) -> None:
+        self.superseded = reason
+        self.code.wake_up()
+
+    def _watch_code(self) -> None:
+        """Look at intervals whether the code that runs is within its deadline; once for each piece of code."""
+        self.bus.later(CODE_CHECK, self._watch_code)
+        overdue = self.code.overdue()
+        if overdue is None or overdue is self._overdue:
+            return
+        self._overdue: RunningCode | None = overdue
+        for runtime in self.runtimes:
+            if runtime.code is overdue.owner:
+                runtime.hung(overdue.what, overdue.limit)
+                self._hung(f"{runtime.profile.component}: `{overdue.what}` has not returned within {overdue.limit:g} s")
 
 
 def profile_of(kind: type[Component]) -> Profile:

@@ -1,22 +1,38 @@
-"""The inputs of a component: which outputs they follow, and whether these keep their promises.
+"""The inputs of a component: which outputs they follow, whether these keep their promises, and what waits to be read.
+
+*Queues.* What arrives waits in a queue of its own for each output that an input follows, until the component's code
+has time. The queue is bounded: the newest signal counts of an output that promises a rate, and `EVENTS` signals are
+kept of one that does not; `sc:depth` of the input says otherwise. What is dropped is counted.
 
 *Silence.* An input that follows an output with a promised rate reports when no signal has come for `PATIENCE` of the
 promised periods, and again as long as none comes.
+
+*Blindness.* An input is unfed when the life of the last of its outputs has ended, or that output's component has raised
+FAIL or has fallen silent, or another output has taken its place and has not issued anything yet. It is fed again by
+the first signal that comes.
+
+*Latching.* An input asks each output that it begins to follow for its last signal, whoever else follows that output.
 """
 
 from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Callable
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 
-from selfconf.bus.port import Bus, Sample, Undo
+from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError
+from selfconf.model.profile import Profile
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Stamp, Wire
+from selfconf.protocol.messages import Apply, Fail, Stamp, Wire
+from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
-from selfconf.sdk.outputs import RAW
+from selfconf.sdk.outputs import RAW, SIGNALS_FIRST
 
 log = logging.getLogger(__name__)
 
@@ -28,19 +44,33 @@ BEGINNING = 20.0
 """Seconds that an output may take to issue its first signal: its component may have to be started by its site."""
 JUST_COME = 0.5
 """Seconds for which the newest signal of an output that stood by counts when the output becomes an input's own."""
+EVENTS = 1000
+"""How many signals of an output that promises no rate wait at most, unless the input says otherwise."""
+LAST_SIGNAL = 1.0
+"""Seconds that an output may take to say its last signal; a later one comes by itself."""
 
-Deliver = Callable[[str, Signal], None]
-"""Hands a signal that has arrived on an input to the component."""
-ReportSilence = Callable[[Wire, float], None]
-"""Hears of an output that has promised a rate and has issued nothing for so many seconds."""
+
+@dataclass(frozen=True, slots=True)
+class InputEvents:
+    """What the inputs of a component report: on the code's thread what arrives, on the bus's thread the rest."""
+
+    deliver: Callable[[str, Signal], None]
+    """A signal has arrived on an input; called on the thread of the component's code."""
+    silent: Callable[[Wire, float], None]
+    """An output that has promised a rate has issued nothing for so many seconds."""
+    unfed: Callable[[str], None]
+    """An input has lost its last source."""
 
 
 class Inputs:
     """The subscriptions of one component, by input and output."""
 
-    def __init__(self, bus: Bus, keys: Keys, deliver: Deliver, report_silence: ReportSilence) -> None:
-        self._bus, self._keys, self._deliver, self._report_silence = bus, keys, deliver, report_silence
+    def __init__(self, bus: Bus, keys: Keys, code: CodeThread, profile: Profile, events: InputEvents) -> None:
+        self._bus, self._keys, self._code, self._events = bus, keys, code, events
+        self._depths = {port.name: port.depth for port in profile.inputs}
         self._subscriptions: dict[tuple[str, Wire], InputSubscription] = {}
+        self.dropped = 0
+        """How many signals were dropped because the component's code was too slow, of subscriptions that have ended."""
 
     def follow(self, message: Apply) -> None:
         """Follow exactly the outputs that a call names, and listen to those that stand by.
@@ -48,13 +78,16 @@ class Inputs:
         New connections are made first, because others wait for what flows over them; the old ones end when the call
         has been answered.
         """
+        before = self._followed_by_port()
         wanted = dict.fromkeys((port, wire) for port, wires in message.inputs.items() for wire in wires)
         spare = dict.fromkeys((port, wire) for port, wires in message.standby.items() for wire in wires)
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
-                self._subscriptions[port, wire] = InputSubscription(
-                    self._bus, self._keys, port, wire, self._deliver, self._report_silence
-                )
+                self._subscriptions[port, wire] = self._subscription(port, wire)
+        fresh = {port for port, wires in message.inputs.items() if before.get(port) and not before[port] & {*wires}}
+        waiting = {port for port in fresh if not any(self._subscriptions[port, w].heard for w in message.inputs[port])}
+        for port in sorted(waiting):
+            self._events.unfed(port)
         for key, subscription in list(self._subscriptions.items()):
             if key in wanted:
                 subscription.unmute()
@@ -63,11 +96,13 @@ class Inputs:
             if key not in spare:
                 del self._subscriptions[key]
                 self._bus.wake_up(subscription.end)
+                self.dropped += subscription.dropped
 
     def end(self) -> None:
         """Follow nothing."""
         for subscription in self._subscriptions.values():
             subscription.end()
+            self.dropped += subscription.dropped
         self._subscriptions.clear()
 
     @property
@@ -75,52 +110,117 @@ class Inputs:
         """Which output each input follows, those that only stand by left out."""
         return {key for key, subscription in self._subscriptions.items() if not subscription.muted}
 
+    def _subscription(self, port: str, wire: Wire) -> InputSubscription:
+        depth = self._depths.get(port) or (1 if wire.period is not None else EVENTS)
+        return InputSubscription(self._bus, self._keys, self._code, port, wire, depth, self._events, self._lost)
+
+    def _lost(self, port: str) -> None:
+        """One output that an input follows is lost; the input is unfed if that was the last one."""
+        if all(s.lost for (one, _), s in self._subscriptions.items() if one == port and not s.muted):
+            self._events.unfed(port)
+
+    def _followed_by_port(self) -> Mapping[str, set[Wire]]:
+        ports: dict[str, set[Wire]] = {}
+        for port, wire in self.followed:
+            ports.setdefault(port, set()).add(wire)
+        return ports
+
 
 class InputSubscription:
-    """One input's subscription to one output, with a watch for silence where a rate is promised.
+    """One input's subscription to one output, with a watch for its end, and for silence where a rate is promised.
 
     While it is muted, because the output only stands by or the connection is about to end, it passes over what it
     receives, but for the newest signal: that counts if it is unmuted right after.
     """
 
     def __init__(
-        self, bus: Bus, keys: Keys, port: str, wire: Wire, deliver: Deliver, report_silence: ReportSilence
+        self,
+        bus: Bus,
+        keys: Keys,
+        code: CodeThread,
+        port: str,
+        wire: Wire,
+        depth: int,
+        events: InputEvents,
+        lost: Callable[[str], None],
     ) -> None:
-        self._bus, self._port, self._wire = bus, port, wire
-        self._deliver, self._report_silence = deliver, report_silence
+        self._bus, self._keys, self._code, self._port, self._wire = bus, keys, code, port, wire
+        self._events, self._report_lost = events, lost
         self.muted = True
+        self.lost = False
+        """Whether the output can issue nothing any more, as far as is known."""
+        self.dropped = 0
+        """How many signals were dropped because the component's code was too slow."""
         self._life, self._sequence = "", 0
         """The newest signal that was delivered, by the life of its source and its number in it."""
-        self._newest: tuple[float, Sample] | None = None
-        """The newest signal that came while muted, and when."""
+        self._queue: deque[Sample] = deque(maxlen=depth)
+        self._lock = threading.Lock()
+        self._heard_at = -JUST_COME
+        """When the newest signal came, in seconds of the bus's clock."""
+        self._lives: set[str] = set()
+        self._ended = False
         self._deadline: Undo | None = None
-        self._undo = bus.subscribe(keys.output(wire.component, wire.output), self._received)
+        self._declared = [bus.subscribe(keys.output(wire.component, wire.output), self._received, direct=True)]
+        bus.later(SIGNALS_FIRST, self._watch)
+
+    @property
+    def heard(self) -> bool:
+        """Whether the output has just issued a signal, so that the input that follows it from now on is fed."""
+        return bool(self._queue) and self._bus.now() - self._heard_at < JUST_COME
 
     def unmute(self) -> None:
         """Deliver what is received, from the newest signal on if that has only just come."""
         if not self.muted:
             return
-        self.muted = False
+        with self._lock:
+            newest = self._queue.pop() if self.heard else None
+            self._queue.clear()
+            if newest is not None:
+                self._queue.append(newest)
+            self.muted = False
         self._expect()
-        if self._newest is not None and self._bus.now() - self._newest[0] < JUST_COME:
-            self._received(self._newest[1])
-        self._newest = None
+        if newest is not None:
+            self._code.signal(self._read)
 
     def mute(self) -> None:
         """Pass over what is received."""
-        self.muted = True
+        with self._lock:
+            self.muted = True
+            self._queue.clear()
         if self._deadline is not None:
             self._deadline()
+            self._deadline = None
 
     def end(self) -> None:
         """Follow the output no more."""
         self.mute()
-        self._undo()
+        self._ended = True
+        for undo in self._declared:
+            undo()
+        self._declared.clear()
+
+    # What arrives: on whatever thread it does.
 
     def _received(self, sample: Sample) -> None:
+        self._heard_at = self._bus.now()
+        with self._lock:
+            full = len(self._queue) == self._queue.maxlen
+            self._queue.append(sample)
         if self.muted:
-            self._newest = self._bus.now(), sample
             return
+        if full:  # as many reads are due as there are signals
+            self.dropped += 1
+        else:
+            self._code.signal(self._read)
+
+    # What the component's code gets, on its thread.
+
+    def _read(self) -> None:
+        """Deliver the oldest signal that waits; none may be left, as the queue keeps the newest only."""
+        with self._lock:
+            if self.muted or not self._queue:
+                return
+            sample = self._queue.popleft()
         raw = sample.attachment.startswith(RAW)
         try:
             stamp = decode(sample.attachment[len(RAW) :] if raw else sample.attachment, Stamp)
@@ -132,9 +232,46 @@ class InputSubscription:
             return
         if stamp.life == self._life and stamp.sequence <= self._sequence:
             return  # late, doubled, or a latched signal that was issued again for another input
-        self._life, self._sequence = stamp.life, stamp.sequence
-        self._expect()
-        self._deliver(self._port, Signal(value, stamp.component, stamp.time, stamp.sequence))
+        self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
+        self._events.deliver(self._port, Signal(value, stamp.component, stamp.time, stamp.sequence))
+
+    # What is noticed of the output, on the bus's thread.
+
+    def _watch(self) -> None:
+        """Ask for the last signal, and follow the life of the component; not before the signals that wait flow."""
+        if self._ended:
+            return
+        key = self._keys.output(self._wire.component, self._wire.output)
+        self._bus.ask(key, b"", LAST_SIGNAL, self._latched)
+        self._declared.append(self._bus.watch(self._keys.lives(self._wire.component), self._life_changed))
+        self._declared.append(self._bus.subscribe(self._keys.fail(self._wire.component), self._failed))
+
+    def _latched(self, replies: Replies) -> None:
+        for sample in () if self._ended else replies.samples:
+            if not self._queue:
+                self._received(sample)
+
+    def _life_changed(self, key: str, alive: bool) -> None:
+        if alive:
+            self._lives.add(key)
+            return
+        self._lives.discard(key)
+        if not self._lives:
+            self._bus.later(0.0, partial(self._lose, self._heard_at))
+
+    def _failed(self, sample: Sample) -> None:
+        try:
+            fail = decode(sample.payload, Fail)
+        except PeerError:
+            return
+        if fail.component == self._wire.component and fail.life:
+            self._lose(self._heard_at)
+
+    def _lose(self, heard: float) -> None:
+        """The output is lost, unless it has issued a signal after that time."""
+        if not self.lost and not self.muted and self._heard_at <= heard:
+            self.lost = True
+            self._report_lost(self._port)
 
     def _expect(self) -> None:
         """Expect a signal within the promised time, from now on."""
@@ -144,9 +281,16 @@ class InputSubscription:
             self._deadline()
         usual = max(PATIENCE * self._wire.period, LEAST_PATIENCE)
         seconds = usual if self._sequence else max(usual, BEGINNING)
+        began = self._bus.now()
 
-        def silent() -> None:
-            self._report_silence(self._wire, seconds)
+        def look() -> None:
+            heard = max(self._heard_at, began)
+            left = heard + (usual if self._heard_at >= began else seconds) - self._bus.now()
+            if left > 0:
+                self._deadline = self._bus.later(left, look)
+                return
+            self._events.silent(self._wire, seconds)
+            self._lose(self._heard_at)
             self._expect()
 
-        self._deadline = self._bus.later(seconds, silent)
+        self._deadline = self._bus.later(usual if self._sequence else min(seconds, usual), look)

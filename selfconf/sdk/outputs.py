@@ -1,7 +1,8 @@
 """The outputs of a component: what it emits goes out, and the last signal is kept.
 
 *Outputs are latched.* An output that is followed anew issues its last signal of this activation again, so that a new
-connection carries a signal at once; inputs pass over what they have had already.
+connection carries a signal at once; and it answers with it whoever asks, for that it is followed by one more input is
+not noticed. Inputs pass over what they have had already.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from selfconf.bus.port import Bus, Publisher, Urgency
+from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.protocol.codec import encode
@@ -44,6 +45,8 @@ class Outputs:
             )
             for port in profile.outputs
         }
+        self._names = {keys.output(profile.component, port.name): port.name for port in profile.outputs}
+        self._served: Undo = bus.serve(keys.outputs(profile.component), self._answer) if self._names else lambda: None
 
     def emit(self, port: str, value: Any, moment: float | None) -> None:
         """Issue a signal; may be called from any thread. Raises ProgrammerError for what cannot be issued."""
@@ -66,6 +69,7 @@ class Outputs:
 
     def close(self) -> None:
         """Take the declarations back."""
+        self._served()
         for output in self._publishers.values():
             output.undeclare()
 
@@ -76,6 +80,15 @@ class Outputs:
         except (TypeError, ValueError, RecursionError) as error:
             name = self._profile.component.short
             raise ProgrammerError(f"JSON cannot say what {name} emits on {port!r}: {error}") from None
+
+    def _answer(self, request: Request) -> None:
+        """Answer the question for an output with its last signal of this activation, if there is one."""
+        try:
+            last = self._last.get(self._names.get(request.key, ""))
+            if self._active() and last is not None:
+                request.reply(request.key, *last)
+        finally:
+            request.finish()
 
     def _matched(self, port: str) -> Callable[[bool], None]:
         """Issue the last signal again when an output begins to be followed."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import logging
+import os
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
@@ -13,7 +14,14 @@ from selfconf.bus.zenoh_bus import client
 from selfconf.errors import SelfconfError
 from selfconf.sdk.component import Component
 from selfconf.sdk.host import Host
-from selfconf.termination import Termination
+from selfconf.termination import Termination, started_by_another
+
+HUNG_ENDS = 0.2
+"""Seconds from the FAIL of code that hangs to the end of its process, if a site started it and can start it again."""
+ENDING = 2.5
+"""Seconds that a program may take to end on SIGINT or SIGTERM; code that does not return is not waited for longer."""
+HUNG_EXIT_CODE = 70
+"""The exit code of a program that was ended because its code hung: EX_SOFTWARE of sysexits.h."""
 
 
 def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
@@ -53,12 +61,28 @@ def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
 def open_host(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
     """A host for components, in the ecology that `selfconf.rendezvous.find` finds. Raises NetworkError."""
     name, endpoints = rendezvous.find(ecology, connect)
-    return Host(client(endpoints), name)
+    bus = client(endpoints)
+
+    def hung(what: str) -> None:
+        print(what, file=sys.stderr, flush=True)
+        if started_by_another():
+            bus.later(HUNG_ENDS, lambda: os._exit(HUNG_EXIT_CODE))
+
+    return Host(bus, name, hung)
 
 
 def run_until_ended(host: Host) -> None:
-    """Run a host until SIGINT or SIGTERM, or until the site that started this program is gone; then close it."""
-    ending = Termination(host.bus)
+    """Run a host until SIGINT or SIGTERM, or until the site that started this program is gone; then close it.
+
+    Raises NetworkError if another process is the same component, and this one has to leave.
+    """
+
+    def then() -> None:
+        host.code.wake_up()
+        if not host.code.inline:
+            host.bus.later(ENDING, lambda: os._exit(HUNG_EXIT_CODE))
+
+    ending = Termination(host.bus, then)
     try:
         host.run(ending)
     finally:

@@ -1,16 +1,20 @@
 """The runtime of one component: what joins the code of a component to the bus.
 
-It holds the liveliness token, answers control calls by the table in `selfconf.protocol.activation`, and calls the
-component's code. Outputs, inputs and supervision have modules of their own.
+It holds the liveliness token, answers control calls by the table in `selfconf.protocol.activation`, and has the
+component's code run what they ask for, on the thread of that code. Everything else, supervision and the watch over the
+code included, happens on the thread of the bus, so that it never waits for the code. `ComponentCode` calls the code;
+outputs, inputs, supervision and blindness have modules of their own.
 """
 
 from __future__ import annotations
 
 import itertools
 import logging
+import os
 import secrets
+import socket
 from collections.abc import Callable
-from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from selfconf.bus.port import Bus, Request, Undo, Urgency
@@ -19,51 +23,90 @@ from selfconf.model.profile import Profile
 from selfconf.protocol import activation as table
 from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys, call_of, owner_of
-from selfconf.protocol.messages import Apply, CallAnswer, Cause, Fail, Release, SetParameters, Verdict, Wire
-from selfconf.sdk.component import Component, Refused, Signal
-from selfconf.sdk.inputs import Inputs
+from selfconf.protocol.keys import Keys, call_of, life_of, owner_of, task_name
+from selfconf.protocol.messages import Apply, CallAnswer, Cause, Claim, Fail, Free, Release, Reserve, StateOf, Verdict, Wire
+from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.component import Component, Signal
+from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.inputs import InputEvents, Inputs
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
 from selfconf.sdk.supervision import Supervision
-from selfconf.sdk.values import as_python
 
 log = logging.getLogger(__name__)
 
-_MESSAGES: dict[str, type[Apply] | type[SetParameters] | type[Release]] = {
+_MESSAGES: dict[str, type[Reserve] | type[Apply] | type[Release]] = {
+    "reserve": Reserve,
     "apply": Apply,
-    "set": SetParameters,
     "release": Release,
 }
 """The message that each call carries, apart from `state`, which carries none."""
+OFFER = 0.2
+"""Seconds for which a component that has become free is kept for the task that has waited for it first."""
+YIELDING = 2.0
+"""Seconds that a task has to let go of a component that a task of higher priority asks for."""
+LOOKS_FOR_OTHERS = (0.0, 1.0)
+"""Seconds after the beginning of a life at which it is looked whether another process began to be the same component."""
+ROLL_CALL = 3.0
+"""Seconds that this may take."""
+Reply = Callable[[CallAnswer], None]
 
 
 class ComponentRuntime:
-    """Joins a component to the bus; everything but `emit` and `fail` happens on the bus's thread."""
+    """Joins a component to the bus."""
 
-    def __init__(self, bus: Bus, keys: Keys, profile: Profile, component: Component, life: str = "") -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        profile: Profile,
+        component: Component,
+        life: str = "",
+        code_thread: CodeThread | None = None,
+        superseded: Callable[[str], None] = lambda reason: None,
+    ) -> None:
+        """`superseded` is called when another process is the same component, and this one has to go."""
         self.bus, self.keys, self.profile, self.component = bus, keys, profile, component
         self.life = life or secrets.token_hex(4)
         """Which incarnation of the component this is."""
         self.activation = Activation()
-        self.active = False
-        """Whether the component acts: unlike `activation` it ends in the thread and the moment of a FAIL."""
+        self._superseded = superseded
+        thread = code_thread or CodeThread(inline=True)
+        self.code = ComponentCode(bus, thread, profile, component, self.fail)
         self._timers: dict[int, Undo] = {}
         self._timer_numbers = itertools.count()
+        self._asked_to_yield = self._closed = False
+        self._after_start: list[Callable[[str | None], None]] = []
+        """What waits for the code to have started."""
+        self._after_stop: list[Callable[[], None]] = []
+        """What waits for the code to be at rest."""
         component._runtime = self
         self.outputs = Outputs(bus, keys, profile, self.life, lambda: self.active)
-        self.inputs = Inputs(bus, keys, self._deliver, self._report_silence)
+        heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
+        self.inputs = Inputs(bus, keys, thread, profile, heard)
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
         self._served = bus.serve(keys.call(profile.component), self._call)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
+        for seconds in LOOKS_FOR_OTHERS:
+            bus.later(seconds, self._look_for_others)
 
-    def close(self) -> None:
-        """Turn the component off and leave the ecology."""
-        self._become(*table.orphan(self.activation))
+    @property
+    def active(self) -> bool:
+        """Whether the component acts: unlike `activation` it ends in the thread and the moment of a FAIL."""
+        return self.code.active
+
+    def close(self, closed: Callable[[], None] = lambda: None) -> None:
+        """Turn the component off and leave the ecology; `closed` is called when its code is at rest."""
+        if self._closed:
+            closed()
+            return
+        self._closed = True
+        self._drop([hold.claim.task for hold in self.activation.holds])
         self._served()
         self._token()
         self.outputs.close()
         self._fail.undeclare()
+        self._when_at_rest(closed)
 
     # What the component does.
 
@@ -71,169 +114,270 @@ class ComponentRuntime:
         """Issue a signal; may be called from any thread."""
         self.outputs.emit(port, value, moment)
 
-    def fail(self, reason: str) -> None:
+    def fail(self, reason: str, cause: Cause = Cause.FAIL) -> None:
         """Raise FAIL, at once; may be called from any thread."""
         if self.active:
-            self.active = False
-            self._fail.put(encode(Fail(self.profile.component, self.life, self.activation.epoch, Cause.FAIL, reason)))
+            self.code.active = False
+            self._put_fail(cause, reason)
             self.bus.wake_up(self._failed)
 
+    def hung(self, what: str, limit: float) -> None:
+        """Raise FAIL for code that has not returned; called on the bus's thread."""
+        self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
+
     def every(self, seconds: float, action: Callable[[], None]) -> None:
-        """Call `action` at that interval until the component stops or fails."""
-        number = next(self._timer_numbers)
+        """Call `action` at that interval until the component stops or fails; a call that is late is not made up for."""
+        number, turn = next(self._timer_numbers), self.code.turn
+        due = False
 
         def tick() -> None:
-            if self.active:
-                self._timers[number] = self.bus.later(seconds, tick)
-                self._guarded(action)
-            else:
-                del self._timers[number]
+            nonlocal due
+            if not self.active or turn != self.code.turn:
+                self._timers.pop(number, None)
+                return
+            self._timers[number] = self.bus.later(seconds, tick)
+            if not due:
+                due = True
+                self.code.tick(run)
 
-        self._timers[number] = self.bus.later(seconds, tick)
+        def run() -> None:
+            nonlocal due
+            due = False
+            action()
+
+        def begin() -> None:
+            if turn == self.code.turn:
+                self._timers[number] = self.bus.later(seconds, tick)
+
+        if self.code.on_bus_thread:
+            begin()
+        else:
+            self.bus.wake_up(begin)
 
     def _failed(self) -> None:
         """What `fail` leaves for the bus's thread."""
         self._become(*table.fail(self.activation))
 
+    def _put_fail(self, cause: Cause, detail: str) -> None:
+        self._fail.put(encode(Fail(self.profile.component, self.life, self.activation.epoch, cause, detail)))
+
     # Control calls.
 
     def _call(self, request: Request) -> None:
         call = call_of(request.key)
+
+        def reply(answer: CallAnswer) -> None:
+            request.reply(self.keys.call(self.profile.component, call), encode(answer))
+            request.finish()
+
         try:
-            answer = self._answer(call, request.payload)
+            self._answer(call, request.payload, reply)
         except PeerError as error:
             log.warning("%s: refused a call: %s", self.profile.component.short, error)
             request.refuse(str(error))
             request.finish()
-            return
 
-        def reply() -> None:
-            request.reply(self.keys.call(self.profile.component, call), encode(answer))
-            request.finish()
-
-        if call == "apply":
-            self.bus.later(SIGNALS_FIRST, reply)
-        else:
-            reply()
-
-    def _answer(self, call: str, payload: bytes) -> CallAnswer:
-        """Obey a call, if the table says so, and return the answer. Raises PeerError for what is no call."""
+    def _answer(self, call: str, payload: bytes, reply: Reply) -> None:
+        """Obey a call, if the table says so, and reply when that is done. Raises PeerError for what is no call."""
         if call == "state":
-            return self._verdict(Verdict.DONE)
+            reply(self._verdict(Verdict.DONE, decode(payload, StateOf).task if payload else ""))
+            return
         if call not in _MESSAGES:
             raise PeerError(f"there is no call {call!r}")
-        message: Apply | SetParameters | Release = decode(payload, _MESSAGES[call])
-        if isinstance(message, Apply):
+        message: Reserve | Apply | Release = decode(payload, _MESSAGES[call])
+        if not message.task:
+            raise PeerError(f"{call!r} names no task: the program that calls speaks an older protocol; update it")
+        if not isinstance(message, Release):
             unknown = sorted(set(message.inputs) - {port.name for port in self.profile.inputs})
             if unknown:
-                return self._verdict(Verdict.REFUSED, f"it has no input {unknown[0]!r}")
+                reply(self._verdict(Verdict.REFUSED, message.task, f"it has no input {unknown[0]!r}"))
+                return
             if not self.keys.is_configurator_life(message.supervisor):
                 raise PeerError(f"{message.supervisor!r} is no life of a configurator")
-        return self._obey(message)
+        if message.life not in ("", self.life):
+            reply(self._verdict(Verdict.OTHER_LIFE, message.task))
+        else:
+            self._when_at_rest(lambda: self._obey(message, reply))
 
-    def _obey(self, message: Apply | SetParameters | Release) -> CallAnswer:
-        # Within the grace period another configurator may take the component over, but not set its parameters.
-        free = self.supervision.gone and not isinstance(message, SetParameters)
-        before = replace(self.activation, supervisor=None) if free else self.activation
-        after, verdict, step = table.obey(before, message)
-        if verdict is Verdict.BUSY and self.activation.supervisor is not None:
-            return self._verdict(verdict, f"the configurator {owner_of(self.activation.supervisor)} holds it")
+    def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
+        after, verdict, step = table.obey(
+            self.activation,
+            message,
+            shareable=self.profile.is_shareable,
+            actuator=not self.profile.outputs,
+            gone=self.supervision.gone,
+        )
         if verdict is not Verdict.DONE:
-            return self._verdict(verdict)
-        trouble = self._become(after, step) or self._carry_out(message)
-        if trouble is None:
-            return self._verdict(Verdict.DONE)
-        if isinstance(message, Apply) and before.phase is not ActivationPhase.ACTIVE:
-            self._become(*table.orphan(self.activation))
-        return self._verdict(Verdict.REFUSED, trouble)
-
-    def _carry_out(self, message: Apply | SetParameters | Release) -> str | None:
-        """Do what a call asks for besides the change of the activation; a text if that cannot be done."""
+            self.activation = after
+            reply(self._busy(message.task) if verdict is Verdict.BUSY else self._verdict(verdict, message.task))
+            self._ask_to_yield()
+            self._offer()
+            return
+        self._become(after, step)
         if isinstance(message, Apply):
-            self.inputs.follow(message)
-            self.supervision.begin(message.supervisor)
-        elif isinstance(message, SetParameters):
-            return self._set(message)
-        return None
+            self._apply(message, step, reply)
+        elif isinstance(message, Release):
+            self._when_at_rest(lambda: reply(self._verdict(Verdict.DONE, message.task)))
+            self._when_at_rest(self._offer)
+        else:
+            reply(self._verdict(Verdict.DONE, message.task))
 
-    def _verdict(self, verdict: Verdict, detail: str = "") -> CallAnswer:
-        """The answer with a verdict; it always says how things are with the component."""
-        activation = self.activation
-        holder = activation.supervisor or ""
-        return CallAnswer(verdict, self.profile.component, self.life, activation.epoch, self.active, detail, holder)
+    def _apply(self, message: Apply, step: ActivationStep, reply: Reply) -> None:
+        """Have the code start, or take what has changed, and connect the inputs meanwhile."""
 
-    def _become(self, activation: Activation, step: ActivationStep) -> str | None:
-        """Take on an activation and let the component's code take its step; a text if the code refuses or breaks."""
+        def started(trouble: str | None) -> None:
+            if trouble is None and self.activation.hold(message.task) is None:
+                trouble = "it was turned off again"
+            if trouble is None:
+                reply(self._verdict(Verdict.DONE, message.task))
+                return
+            if step is not ActivationStep.NONE:
+                self._drop([message.task], message.epoch)
+            reply(self._verdict(Verdict.REFUSED, message.task, trouble))
+
+        def answer(trouble: str | None) -> None:
+            self.bus.later(SIGNALS_FIRST, partial(started, trouble))
+
+        if step is ActivationStep.NONE and self._after_start:  # it is still starting, for an earlier call
+            self.code.change(message.values, lambda trouble: None)
+            self._after_start.append(answer)
+        elif step is ActivationStep.NONE:
+            self.code.change(message.values, answer)
+        else:
+            self.outputs.forget()
+            self._after_start = [answer]
+            self.code.start(message.values, partial(self._started, self._after_start))
+            if self.activation.waiting:
+                self._tell_waiting("")
+        self.inputs.follow(message)
+
+    def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
+        if self._after_start is waiting:
+            self._after_start = []
+        for answer in waiting:
+            answer(trouble)
+
+    def _verdict(self, verdict: Verdict, task: str, detail: str = "") -> CallAnswer:
+        """The answer with a verdict; it says how things are with the component for a task, else for who holds it."""
+        hold = self.activation.hold(task) if verdict is not Verdict.BUSY else None
+        hold = hold or self.activation.first
+        claim: Claim = hold.claim if hold is not None else Claim(0, "")
+        return CallAnswer(
+            verdict,
+            self.profile.component,
+            self.life,
+            self.activation.epoch_of(task),
+            self.active and hold is not None and hold.active,
+            detail,
+            claim.supervisor,
+            claim.task,
+            claim.priority,
+            claim.beginning,
+            f"process {os.getpid()} on {socket.gethostname()}",
+        )
+
+    def _busy(self, task: str) -> CallAnswer:
+        """Who stands in the way: a task that holds the component, or one for which it is kept."""
+        first = self.activation.first
+        if first is None and not self.activation.kept_for:
+            return self._verdict(Verdict.BUSY, task, "it is free, and tells so")
+        claim = first.claim if first is not None else self.activation.waiting[0]
+        who = f"the task {task_name(claim.task)} (priority {claim.priority}, configurator {owner_of(claim.supervisor)})"
+        return self._verdict(Verdict.BUSY, task, f"{who} holds it")
+
+    # Becoming free for another task.
+
+    def _ask_to_yield(self) -> None:
+        """Tell those that hold the component that a task of higher priority asks for it, once."""
+        if self._asked_to_yield or not table.outranked(self.activation):
+            return
+        self._asked_to_yield = True
+        claim = self.activation.waiting[0]
+        self._put_fail(Cause.YIELD, f"the task {task_name(claim.task)} of priority {claim.priority} asks for it")
+        self.bus.later(YIELDING, self._preempt)
+
+    def _preempt(self) -> None:
+        """Take the component from tasks that have not let go of it in time."""
+        self._asked_to_yield = False
+        outranked = table.outranked(self.activation)
+        if outranked:
+            log.warning("%s: taken from %s", self.profile.component.short, ", ".join(map(task_name, outranked)))
+            self._drop(outranked)
+            self._when_at_rest(self._offer)
+
+    def _offer(self) -> None:
+        """Keep the component, if it is free, for the first task that waits, and tell it."""
+        self.activation, claim = table.offer(self.activation)
+        if claim is not None and not self._closed:
+            self._tell_waiting(claim.task)
+            self.bus.later(OFFER, partial(self._withdraw, claim.task))
+
+    def _withdraw(self, task: str) -> None:
+        if self.activation.kept_for == task:
+            self.activation = table.withdraw(self.activation, task)
+            self._offer()
+
+    def _tell_waiting(self, task: str) -> None:
+        notice = self.bus.publisher(self.keys.free(self.profile.component), Urgency.EVENT)
+        notice.put(encode(Free(self.profile.component, self.life, task)))
+        notice.undeclare()
+
+    # Being on and off.
+
+    def _become(self, activation: Activation, step: ActivationStep) -> None:
+        """Take on an activation; the code stops if it says so, and is started by whoever called for it."""
         self.activation = activation
         if step in (ActivationStep.STOP, ActivationStep.RESTART):
             self._stop()
         if step is ActivationStep.RAISE_FAIL:
-            self.active = False  # again: another thread's FAIL may have been overtaken by a release and an apply
-        if step in (ActivationStep.START, ActivationStep.RESTART):
-            return self._start()
-        return None
+            self.code.active = False  # again: another thread's FAIL may have been overtaken by a release and an apply
+        self.supervision.watch({hold.claim.supervisor for hold in activation.holds})
 
-    def _start(self) -> str | None:
-        self.outputs.forget()
-        self.active = True  # before `started`, which may emit
-        try:
-            self.component.started()
-        except Refused as refusal:
-            self.active = False
-            return str(refusal) or "it refuses"
-        except Exception as error:
-            self.active = False
-            log.exception("%s broke when it was started", self.profile.component.short)
-            return f"it broke when it was started: {type(error).__name__}: {error}"
-        return None
+    def _drop(self, tasks: list[str] | tuple[str, ...], epoch: int = 0) -> None:
+        self._become(*table.drop(self.activation, tasks, epoch))
 
     def _stop(self) -> None:
-        """Be off: no timers, no inputs, no supervisor, and the component's code at rest."""
-        self.active = False
+        """Be off: no timers, no inputs, and the component's code at rest."""
         for undo in self._timers.values():
             undo()
         self._timers.clear()
         self.inputs.end()
-        self.supervision.end()
-        try:
-            self.component.stopped()
-        except Exception:  # it is off all the same
-            log.exception("%s broke when it was stopped", self.profile.component.short)
+        self.code.stop(self._at_rest)
 
-    def _set(self, message: SetParameters) -> str | None:
-        known = {parameter.name for parameter in self.profile.parameters}
-        for name, value in message.values.items():
-            if name not in known:
-                return f"it declares no parameter {name!r}"
-            try:
-                self.component.parameter_set(name, as_python(value))
-            except Refused as refusal:
-                return str(refusal) or f"it refuses {name} = {value}"
-            except Exception as error:
-                log.exception("%s broke when %s was set", self.profile.component.short, name)
-                return f"it broke when {name!r} was set: {type(error).__name__}: {error}"
-        return None
-
-    # What arrives.
-
-    def _deliver(self, port: str, signal: Signal) -> None:
-        """Hand a signal to the component."""
-        if self.active:
-            self._guarded(lambda: self.component.received(port, signal))
-
-    def _guarded(self, action: Callable[[], None]) -> None:
-        """Run the component's code; what breaks there is the component's failure, not that of its runtime."""
-        try:
+    def _when_at_rest(self, action: Callable[[], None]) -> None:
+        """Do something once the code that was stopped is at rest; at once if it is."""
+        if self.code.stopping:
+            self._after_stop.append(action)
+        else:
             action()
-        except Exception as error:
-            log.exception("%s broke", self.profile.component.short)
-            self.fail(f"{type(error).__name__}: {error}")
+
+    def _at_rest(self) -> None:
+        waiting, self._after_stop = self._after_stop, []
+        for action in waiting:
+            self._when_at_rest(action)
+
+    def _orphaned(self, supervisor: str) -> None:
+        tasks = [hold.claim.task for hold in self.activation.holds if hold.claim.supervisor == supervisor]
+        log.warning("%s: its configurator is gone; letting go of %s", self.profile.component.short, ", ".join(tasks))
+        self._drop(tasks)
+        self._when_at_rest(self._offer)
+
+    def _look_for_others(self) -> None:
+        """Of two processes that are one component, as both began at once, the one with the smaller life stays."""
+
+        def called(keys: tuple[str, ...]) -> None:
+            others = [life for life in map(life_of, keys) if life < self.life]
+            if others and not self._closed:
+                reason = f"{self.profile.component} is alive already, in the life {min(others)}; this process leaves"
+                log.error("%s", reason)
+                self.close(partial(self._superseded, reason))
+
+        if not self._closed:
+            self.bus.roll_call(self.keys.lives(self.profile.component), ROLL_CALL, called)
+
+    # What is noticed of the inputs.
 
     def _report_silence(self, wire: Wire, seconds: float) -> None:
         """Raise FAIL for a component whose output has stopped: on the own key, as a report."""
         detail = f"no signal on {wire.output!r} for {seconds:.2f} s"
         self._fail.put(encode(Fail(wire.component, "", self.activation.epoch, Cause.SILENCE, detail)))
-
-    def _orphaned(self) -> None:
-        log.warning("%s: its configurator is gone; turning off", self.profile.component.short)
-        self._become(*table.orphan(self.activation))

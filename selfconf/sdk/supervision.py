@@ -1,12 +1,13 @@
-"""The supervision of a component: it obeys a configurator only as long as that is alive.
+"""The supervision of a component: it acts for a task only as long as the configurator of that task is alive.
 
-When the configurator's liveliness token has been gone for `GRACE` seconds, or this node is cut off from it for that
-long, the component turns itself off. Meanwhile another configurator may take it over.
+When a configurator's liveliness token has been gone for `GRACE` seconds, or this node is cut off from it for that long,
+the component acts for its task no more. Meanwhile another configurator may go on with the task, and another task may
+have the component. All of this happens on the thread of the bus, whatever the component's code does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from selfconf.bus.port import Bus, Undo
 from selfconf.sdk.outputs import SIGNALS_FIRST
@@ -16,38 +17,48 @@ GRACE = 1.0
 
 
 class Supervision:
-    """Watches the life of the configurator that supervises one component."""
+    """Watches the lives of the configurators for which one component is held."""
 
-    def __init__(self, bus: Bus, orphaned: Callable[[], None]) -> None:
-        """`orphaned` is called when the supervisor has been gone for the grace period."""
+    def __init__(self, bus: Bus, orphaned: Callable[[str], None]) -> None:
+        """`orphaned` is called with the liveliness key of a supervisor that has been gone for the grace period."""
         self._bus, self._orphaned = bus, orphaned
-        self._supervisor = ""
-        """The liveliness key that is watched; empty for none."""
-        self._watch: Undo | None = None
-        self._grace: Undo | None = None
-        self.gone = False
-        """Whether the supervisor's life was seen to end."""
+        self._watched: dict[str, _Watched] = {}
 
-    def begin(self, supervisor: str) -> None:
-        """Watch the life of a supervisor, given by its liveliness key, instead of the one before."""
-        if supervisor == self._supervisor:
-            return
-        self.end()
-        self._supervisor = supervisor
+    @property
+    def gone(self) -> frozenset[str]:
+        """The supervisors whose life was seen to end."""
+        return frozenset(supervisor for supervisor, watched in self._watched.items() if watched.gone)
+
+    def watch(self, supervisors: Collection[str]) -> None:
+        """Watch exactly these supervisors, given by their liveliness keys."""
+        for supervisor in [one for one in self._watched if one not in supervisors]:
+            self._watched.pop(supervisor).end()
+        for supervisor in supervisors:
+            if supervisor not in self._watched:
+                self._watched[supervisor] = _Watched(self._bus, supervisor, self._orphaned)
+
+
+class _Watched:
+    """One supervisor: whether it is alive, and how long it may be gone."""
+
+    def __init__(self, bus: Bus, supervisor: str, orphaned: Callable[[str], None]) -> None:
+        self._bus, self._supervisor, self._orphaned = bus, supervisor, orphaned
+        self.gone = False
+        """Whether its life was seen to end."""
+        self._grace: Undo | None = None
+        self._watch: Undo | None = None
         self._begin_grace()  # until its life is seen for the first time
-        self._bus.later(SIGNALS_FIRST, lambda: self._begin_watch(supervisor))
+        self._undo_begin = bus.later(SIGNALS_FIRST, self._begin)
 
     def end(self) -> None:
-        """Watch nothing."""
+        """Watch it no more."""
+        self._undo_begin()
         if self._watch is not None:
             self._watch()
-        self._watch, self._supervisor, self.gone = None, "", False
         self._end_grace()
 
-    def _begin_watch(self, supervisor: str) -> None:
-        """Watch the supervisor's life, unless the component was turned off or taken over meanwhile."""
-        if self._supervisor == supervisor and self._watch is None:
-            self._watch = self._bus.watch(supervisor, self._changed)
+    def _begin(self) -> None:
+        self._watch = self._bus.watch(self._supervisor, self._changed)
 
     def _changed(self, _: str, alive: bool) -> None:
         self.gone = not alive
@@ -67,4 +78,4 @@ class Supervision:
 
     def _end_of_grace(self) -> None:
         self._grace = None
-        self._orphaned()
+        self._orphaned(self._supervisor)

@@ -115,8 +115,9 @@ class History:
         """What is wrong with a component that acts for a configurator."""
         runtime, configuration = self.lab.runtimes[name], agent.configuration
         assert configuration is not None
-        if runtime.activation.supervisor != agent.supervisor:
-            yield f"{name} obeys {runtime.activation.supervisor}"
+        hold = runtime.activation.hold(agent.identity.task)
+        if hold is None or hold.claim.supervisor != agent.supervisor:
+            yield f"{name} obeys {hold}"
         wires = wiring(configuration)[runtime.profile.component]
         wanted = {(port, wire.component, wire.output) for port, followed in wires.items() for wire in followed}
         followed = {(port, wire.component, wire.output) for port, wire in runtime.inputs.followed}
@@ -125,7 +126,7 @@ class History:
         said = self.lab.components[name].said
         for setting in configuration.settings:
             if setting.component == runtime.profile.component:
-                since = len(said) - said[::-1].index(("started",))
+                since = len(said) - said[::-1].index(("stopped",)) if ("stopped",) in said else 0
                 if (setting.name, str(setting.value)) not in said[since:]:
                     yield f"{name} was not told its {setting.name}"
 
@@ -138,7 +139,7 @@ class History:
         if not isinstance(agent.request.compose(found, frozenset(agent.state.lost), None), Refusal):
             yield f"{agent.name} has given up, although there is a configuration"
         free = {
-            runtime.profile.component for runtime in self.lab.runtimes.values() if runtime.activation.supervisor is None
+            runtime.profile.component for runtime in self.lab.runtimes.values() if not runtime.activation.holds
         }
         for component, loss in agent.state.lost.items():
             if component in alive and loss.cause is Cause.CRASH:

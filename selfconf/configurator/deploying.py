@@ -1,0 +1,186 @@
+"""Act 4 as a transaction: wake, reserve, then activate; each function gives the next state and what is to be done.
+
+All components of the target are woken at once, those that live are awake. Then each that is not held yet is reserved,
+one after the other in the order of their IRIs. When all are held, each is applied to as soon as everything before it in
+the starting order has confirmed. A component that acts already, and gets other inputs, is applied to at once if a
+source of it is lost, else not before its new sources have confirmed: make before break. What is not needed any more is
+released when everything has confirmed.
+
+Why in the order of the IRIs: whoever waits for a component holds none that comes later, so tasks cannot wait for each
+other in a circle (Havender 1968). In a repair, which holds components already, one that is held by another task counts
+as taken, unless that task is of lower priority: it is made to let go.
+
+A deployment that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
+reservation, and everything else is held already.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from selfconf.configurator.effects import (
+    ApplyTo,
+    AwaitRelease,
+    Effect,
+    ReleaseFrom,
+    ReserveOf,
+    Running,
+    Unwatch,
+    WakeUp,
+    Watch,
+)
+from selfconf.configurator.events import Answered, Call, Holder
+from selfconf.configurator.order import parameter_values, starting_order, wiring
+from selfconf.configurator.state import Held, Phase, State
+from selfconf.model.term import IRI
+
+Reaction = tuple[State, tuple[Effect, ...]]
+"""The next state, and what is to be done."""
+
+
+def then(effects: Iterable[Effect], following: Reaction) -> Reaction:
+    """A reaction with other effects before its own."""
+    state, more = following
+    return state, (*effects, *more)
+
+
+def deploy(state: State) -> Reaction:
+    """Watch every component of the target, and wake those that are not held yet."""
+    target = state.target
+    assert target is not None
+    epoch = state.epoch + 1
+    wires, values = wiring(target), parameter_values(target)
+    held = dict(state.held)
+    for component, inputs in wires.items():
+        before = held.get(component, Held({}))
+        same = before.confirmed and before.inputs == inputs and before.values == values[component]
+        held[component] = before if same else replace(before, confirmed=False)
+    asleep = sorted(component for component in wires if not held[component].reserved)
+    effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
+    effects += [WakeUp(component, epoch) for component in asleep]
+    effects += [Unwatch(component) for component in sorted(state.watched - wires.keys() - held.keys())]
+    deployed = replace(
+        state,
+        phase=Phase.RESERVING,
+        order=starting_order(target),
+        epoch=epoch,
+        held=held,
+        pending=frozenset((component, Call.WAKE) for component in asleep),
+        owed={component: since for component, since in state.owed.items() if component not in wires},
+        watched=state.watched & held.keys() | wires.keys(),
+    )
+    return then(effects, proceed(deployed))
+
+
+def proceed(state: State) -> Reaction:
+    """Go on once nothing is pending: reserve the next component, or begin to activate."""
+    if state.pending:
+        return state, ()
+    if state.phase is Phase.RESERVING:
+        assert state.target is not None and state.order is not None
+        free = sorted(component for component in state.target.components if not state.held[component].reserved)
+        if free and not (len(free) == 1 and free[0] not in state.order.actuators):
+            return _reserve(state, free[0])
+        return apply_to(replace(state, phase=Phase.DEPLOYING), state.target.components)
+    return complete(state)
+
+
+def _reserve(state: State, component: IRI) -> Reaction:
+    target = state.target
+    assert target is not None
+    reserve = ReserveOf(component, state.epoch, wiring(target)[component], parameter_values(target)[component])
+    return replace(state, pending=state.pending | {(component, Call.RESERVE)}), (reserve,)
+
+
+def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
+    """Apply to those components that may be started, or changed, by now."""
+    target = state.target
+    assert target is not None
+    wires, values = wiring(target), parameter_values(target)
+    effects: list[Effect] = []
+    held, pending = dict(state.held), set(state.pending)
+    for component in candidates:
+        before = held[component]
+        if before.confirmed or (component, Call.APPLY) in pending or not _may_begin(state, component, wires):
+            continue
+        pending.add((component, Call.APPLY))
+        held[component] = replace(before, inputs=wires[component], values=values[component], active=True)
+        effects.append(ApplyTo(component, state.epoch, wires[component], values[component]))
+    return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
+
+
+def _may_begin(state: State, component: IRI, wires: Mapping[IRI, Mapping[str, object]]) -> bool:
+    """Whether everything is confirmed that must be before a component is applied to."""
+    order, held = state.order, state.held
+    assert order is not None
+    mine = held[component]
+    if mine.active:
+        changed = [port for port, followed in mine.inputs.items() if followed != wires[component].get(port)]
+        sources = {wire.component for port in changed for wire in mine.inputs[port]}
+        if not sources or not all(source in held for source in sources):
+            return True
+    elif component in order.actuators and any(not held[c].confirmed for c in order.before if c not in order.actuators):
+        return False
+    return all(held[source].confirmed for source in order.before[component])
+
+
+def confirmed(state: State, answer: Answered) -> Reaction:
+    """A component has done what it was asked: reserve the next one, or apply to those that wait for it."""
+    held = state.held[answer.component]
+    if answer.call is Call.WAKE:
+        return proceed(state)
+    if answer.call is Call.RESERVE:
+        known = replace(held, life=answer.life, reserved=True)
+        return proceed(replace(state, held={**state.held, answer.component: known}))
+    known = replace(held, life=answer.life, reserved=True, confirmed=True)
+    done = replace(state, held={**state.held, answer.component: known})
+    assert done.order is not None
+    waiting: Iterable[IRI] = done.order.after[answer.component]
+    if not done.pending:  # the last of a wave: actuators may be waiting for it
+        waiting = (*waiting, *done.order.actuators)
+    return apply_to(done, dict.fromkeys(waiting))
+
+
+def complete(state: State) -> Reaction:
+    """Everything acts: release what is not needed any more."""
+    assert state.target is not None
+    wanted = set(state.target.components)
+    surplus = [component for component in state.held if component not in wanted]
+    effects: list[Effect] = [Running(state.target)]
+    effects += [ReleaseFrom(component, state.epoch) for component in (*surplus, *sorted(state.queued - wanted))]
+    effects += [Unwatch(component) for component in sorted(state.watched - wanted)]
+    running = replace(
+        state,
+        phase=Phase.RUNNING,
+        fallback=None,
+        queued=frozenset(),
+        held={component: held for component, held in state.held.items() if component in wanted},
+        owed={**state.owed, **dict.fromkeys(surplus, state.epoch)},
+        watched=state.watched & wanted,
+    )
+    return running, tuple(effects)
+
+
+def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:
+    """Whether it is safe and of use to wait until another task lets go of a component.
+
+    A task that acts may do so for long: then everything else is let go of, instead of being held for nothing.
+    """
+    if holder is None:
+        return False
+    if holder.priority < state.priority:
+        return True  # it is asked to yield, and made to
+    return state.patient and not holder.acting and not any(one > component for one in state.held if state.held[one].reserved)
+
+
+def await_release(state: State, component: IRI) -> Reaction:
+    """Wait for a component that another task holds; it tells when it is free, and is asked again if it does not."""
+    return state, (AwaitRelease(component, state.epoch),)
+
+
+def ask_again(state: State, component: IRI) -> Reaction:
+    """Ask once more for a component that is waited for."""
+    if (component, Call.RESERVE) not in state.pending:
+        return state, ()
+    return _reserve(state, component)

@@ -1,0 +1,56 @@
+"""What a component does that is blind: it is told, and an actuator rests until it sees again.
+
+An input is unfed from the loss of its last source to the first signal of the next. An actuator, a component without
+outputs, of which an input has been unfed for longer than it tolerates is stopped, and started again by that signal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from selfconf.bus.port import Bus, Undo
+
+TOLERATES = 1.0
+"""Seconds for which an actuator acts on with an unfed input, unless its advertisement says otherwise."""
+
+
+class Blindness:
+    """The unfed inputs of one component, and whether it rests because of them."""
+
+    def __init__(self, bus: Bus, tolerates: float | None, rest: Callable[[], None]) -> None:
+        """`rest` is called on the bus's thread when an input has been unfed for too long; None: for as long as it likes."""
+        self._bus, self._tolerates, self._rest = bus, tolerates, rest
+        self.unfed: set[str] = set()
+        self._timer: Undo | None = None
+
+    def begin(self, port: str) -> bool:
+        """Note on the bus's thread that an input is unfed; whether that is new."""
+        if port in self.unfed:
+            return False
+        self.unfed.add(port)
+        if self._timer is None and self._tolerates is not None:
+            self._timer = self._bus.later(self._tolerates, self._too_long)
+        return True
+
+    def end(self, port: str) -> bool:
+        """Note on the thread of the component's code that an input is fed; whether it was unfed."""
+        if port not in self.unfed:
+            return False
+        self.unfed.discard(port)
+        self._bus.wake_up(self._look)
+        return True
+
+    def forget(self) -> None:
+        """Forget everything: the component is off."""
+        self.unfed.clear()
+        self._look()
+
+    def _look(self) -> None:
+        if not self.unfed and self._timer is not None:
+            self._timer()
+            self._timer = None
+
+    def _too_long(self) -> None:
+        self._timer = None
+        if self.unfed:
+            self._rest()

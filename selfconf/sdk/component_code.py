@@ -1,0 +1,202 @@
+"""The code of one component, as its runtime has it run: guarded, within its deadline, in the right order.
+
+`start`, `change`, `stop`, `rest` and `unfed` are called on the thread of the bus and report there; `deliver` and what
+the component itself does is called on the thread of its code. Everything that was handed over before a stop, and has
+not begun by then, is not run any more.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping
+
+from selfconf.bus.port import Bus
+from selfconf.model.profile import Profile
+from selfconf.model.term import Term
+from selfconf.sdk.blindness import TOLERATES, Blindness
+from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.values import as_python
+
+log = logging.getLogger(__name__)
+
+DEADLINE = 2.0
+"""Seconds that a method of a component may take, unless its advertisement says otherwise."""
+STARTING_DEADLINE = 8.0
+"""Seconds that `started` may take, unless its advertisement asks for more."""
+Done = Callable[["str | None"], None]
+"""Hears, on the bus's thread, why something did not come about, or None."""
+
+
+class ComponentCode:
+    """Calls the methods of one component."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        thread: CodeThread,
+        profile: Profile,
+        component: Component,
+        fail: Callable[[str], None],
+    ) -> None:
+        """`fail` raises FAIL for what breaks."""
+        self._bus, self._thread, self._component, self._fail = bus, thread, component, fail
+        self._parameters = {parameter.name for parameter in profile.parameters}
+        self._name = profile.component.short
+        self._deadline = DEADLINE if profile.deadline is None else profile.deadline
+        self._start_deadline = max(STARTING_DEADLINE, self._deadline)
+        self.active = False
+        """Whether the component acts; ended by a FAIL in whatever thread raises it."""
+        self.stopping = False
+        """Whether the code was told to stop, and is not at rest yet."""
+        self.turn = 0
+        """Counts starts and stops: what belongs to an earlier one is not run any more."""
+        self._on = self._resting = False
+        tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
+        self._blindness = Blindness(bus, None if profile.outputs else tolerates, self._rest)
+        self._values: dict[str, Term] = {}
+
+    @property
+    def on_bus_thread(self) -> bool:
+        """Whether there is no other thread."""
+        return self._thread.inline
+
+    # What the runtime asks for.
+
+    def start(self, values: Mapping[str, Term], done: Done) -> None:
+        """Set the parameters, then start."""
+        self.turn += 1
+        turn = self.turn
+
+        def start() -> None:
+            self._resting = False
+            trouble = "it was turned off again" if turn != self.turn else self._set(values) or self._start()
+            if turn != self.turn:
+                self.active = False
+            self._report(done, trouble)
+
+        self._values = dict(values)
+        self._thread.call(start)
+
+    def change(self, values: Mapping[str, Term], done: Done) -> None:
+        """Set the parameters that have others values than before."""
+        changed = {name: value for name, value in values.items() if self._values.get(name) != value}
+        self._values |= values
+        if changed:
+            self._thread.call(lambda: self._report(done, self._set(changed)))
+        else:
+            done(None)
+
+    def stop(self, done: Callable[[], None]) -> None:
+        """Be inactive at once, and at rest as soon as what runs now has returned."""
+        self.turn += 1
+        self.active = False
+        self.stopping = True
+        self._blindness.forget()
+
+        def at_rest() -> None:
+            self.stopping = False
+            done()
+
+        def stop() -> None:
+            self._stop()
+            self._report(lambda _: at_rest(), None)
+
+        self._thread.call(stop)
+
+    def unfed(self, port: str) -> None:
+        """Tell the component that an input has lost its last source; an actuator rests if that lasts."""
+        if self.active and self._blindness.begin(port):
+            self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
+
+    def tick(self, action: Callable[[], None]) -> None:
+        """Run what the component wants done at intervals."""
+        self._thread.call(lambda: None if self._resting else self._guarded("every", action))
+
+    def deliver(self, port: str, signal: Signal) -> None:
+        """Hand a signal to the component; called on the thread of its code."""
+        if not self.active:
+            return
+        if self._blindness.end(port):
+            if self._resting and not self._blindness.unfed:
+                self._wake()
+            self._guarded("fed", lambda: self._component.fed(port))
+        if not self._resting:
+            self._guarded("received", lambda: self._component.received(port, signal))
+
+    def _rest(self) -> None:
+        """Be stopped until all inputs are fed again: the component is blind for longer than it tolerates."""
+        turn = self.turn
+
+        def rest() -> None:
+            if turn == self.turn and self.active and self._blindness.unfed:
+                log.warning("%s: an input is unfed; at rest until it is fed", self._name)
+                self._stop()
+                self._resting = True
+
+        self._thread.call(rest)
+
+    # What runs on the thread of the code.
+
+    def _wake(self) -> None:
+        self._resting = False
+        trouble = self._set(self._values) or self._start()
+        if trouble is not None:
+            self.active = True  # so that the failure is reported
+            self._fail(trouble)
+
+    def _start(self) -> str | None:
+        self.active = self._on = True  # before `started`, which may emit
+        trouble = self._carried_out("started", self._start_deadline, self._component.started, "it refuses")
+        if trouble is not None:
+            self.active = False
+        return trouble
+
+    def _stop(self) -> None:
+        if not self._on:
+            return
+        self._on = False
+        try:
+            self._thread.limited(self, "stopped", self._deadline, self._component.stopped)
+        except Exception:  # it is off all the same
+            log.exception("%s broke when it was stopped", self._name)
+
+    def _set(self, values: Mapping[str, Term]) -> str | None:
+        for name, value in values.items():
+            if name not in self._parameters:
+                return f"it declares no parameter {name!r}"
+
+            def set_value(name: str = name, value: Term = value) -> None:
+                self._component.parameter_set(name, as_python(value))
+
+            trouble = self._carried_out(f"parameter {name}", self._deadline, set_value, f"it refuses {name} = {value}")
+            if trouble is not None:
+                return trouble
+        return None
+
+    def _carried_out(self, what: str, limit: float, action: Callable[[], None], refusal: str) -> str | None:
+        """Run code of the component that may refuse; a text if it does, or if it breaks."""
+        try:
+            self._thread.limited(self, what, limit, action)
+        except Refused as refused:
+            return str(refused) or refusal
+        except Exception as error:
+            log.exception("%s broke in %s", self._name, what)
+            return f"it broke in {what}: {type(error).__name__}: {error}"
+        return None
+
+    def _guarded(self, what: str, action: Callable[[], None]) -> None:
+        """Run code of the component while it acts; what breaks there is its failure, not that of its runtime."""
+        if not self.active:
+            return
+        try:
+            self._thread.limited(self, what, self._deadline, action)
+        except Exception as error:
+            log.exception("%s broke", self._name)
+            self._fail(f"{type(error).__name__}: {error}")
+
+    def _report(self, done: Done, trouble: str | None) -> None:
+        if self._thread.inline:
+            done(trouble)
+        else:
+            self._bus.wake_up(lambda: done(trouble))
