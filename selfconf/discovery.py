@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from selfconf.bus.port import Bus, Replies, Sample
+from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
@@ -61,6 +61,7 @@ class EcologyView:
         """The life of each living component, by the component's chunk."""
         self.discovery = Discovery()
         self._followed = False
+        self._undo: list[Undo] = []
 
     def life(self, component: IRI) -> str | None:
         """The life of a component, or None if it does not live."""
@@ -79,8 +80,16 @@ class EcologyView:
         """
         if not self._followed:
             self._followed = True
-            self.bus.watch(self.keys.any_life(), changed)
-            self.bus.watch(self.keys.any_site_life(), site_changed)
+            self._undo = [
+                self.bus.watch(self.keys.any_life(), changed),
+                self.bus.watch(self.keys.any_site_life(), site_changed),
+            ]
+
+    def unfollow(self) -> None:
+        """Follow no life any more."""
+        for undo in self._undo:
+            undo()
+        self._undo.clear()
 
     def discover(self, done: Callable[[Discovery], None]) -> None:
         """Ask all sites what they advertise; `done` is called once, when all have answered or time is up."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from types import TracebackType
 from typing import TypeVar
@@ -10,6 +11,7 @@ from typing import TypeVar
 from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, configure
 from selfconf.api.arguments import Paths, option
+from selfconf.api.detached import task_record
 from selfconf.api.ecology import Ecology
 from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.task import TaskSpecification
@@ -20,9 +22,9 @@ from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import NetworkError, PeerError, TurtleError
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode
-from selfconf.protocol.keys import owner_of
-from selfconf.protocol.messages import Status
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import owner_of, task_name
+from selfconf.protocol.messages import Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
@@ -32,6 +34,52 @@ ROLL_CALL = 3.0
 ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
 _Result = TypeVar("_Result")
+
+
+@dataclass(frozen=True, slots=True)
+class LivingTask:
+    """A task of an ecology: who runs it, since when, and with which components."""
+
+    name: str
+    priority: int
+    beginning: float
+    """When it began, in seconds of the Unix epoch."""
+    phase: str
+    template: IRI
+    configurator: str
+    """The name of the configurator that runs it; empty if no site has begun to."""
+    detached: bool
+    """Whether it lives in the sites: else in the command that runs it."""
+    components: tuple[IRI, ...] = ()
+
+    @classmethod
+    def of(cls, status: Status, detached: bool) -> LivingTask:
+        """A task that a configurator runs."""
+        name = task_name(status.task)
+        phase, template, components = status.phase, status.template, status.components
+        return cls(
+            name, status.priority, status.beginning, phase, template, status.configurator, detached, components
+        )
+
+    @classmethod
+    def kept(cls, record: TaskRecord) -> LivingTask:
+        """A task that the sites keep and that none runs now."""
+        return cls(
+            task_name(record.task), record.priority, record.beginning, "kept", IRI(record.wanted), "", detached=True
+        )
+
+    def body(self) -> dict[str, object]:
+        """The task as JSON."""
+        return {
+            "task": self.name,
+            "priority": self.priority,
+            "beginning": self.beginning,
+            "phase": self.phase,
+            "template": self.template,
+            "configurator": self.configurator,
+            "detached": self.detached,
+            "components": list(self.components),
+        }
 
 
 class LivingEcology(Ecology):
@@ -51,6 +99,8 @@ class LivingEcology(Ecology):
         self._view = EcologyView(self._bus, name)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
+        self.silent: tuple[str, ...] = ()
+        """The configurators that live, but did not answer when they were asked for their `tasks`, sorted."""
         try:
             if not self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL)):
                 raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
@@ -105,6 +155,7 @@ class LivingEcology(Ecology):
         found: list[Status] = []
         rejected: list[str] = []
         keys = self._view.keys
+        living = {owner_of(key) for key in self._wait(partial(self._bus.roll_call, keys.any_configurator_life(), ROLL_CALL))}
         for sample in self._ask(keys.configurator_call("*", "status")).samples:
             try:
                 status = decode(sample.payload, Status)
@@ -115,8 +166,19 @@ class LivingEcology(Ecology):
                 found.append(status)
             else:
                 rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
+        self.silent = tuple(sorted(living - {status.configurator for status in found}))
+        rejected += [f"the configurator {name!r} lives, but does not answer" for name in self.silent]
         self.complaints = tuple(rejected)
         return tuple(sorted(found, key=lambda status: status.configurator))
+
+    def all_tasks(self) -> tuple[LivingTask, ...]:
+        """The tasks that run and those that live in the sites, sorted by name."""
+        running = self.tasks
+        kept = {record.task: record for record in self._kept()}
+        found = [LivingTask.of(status, status.task in kept) for status in running]
+        known = {status.task for status in running}
+        found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
+        return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
 
     def dataset(self) -> Dataset:
         """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
@@ -166,27 +228,88 @@ class LivingEcology(Ecology):
         ontologies: Paths = (),
         steps: int | None = None,
         seconds: float | None = None,
+        name: str = "",
+        priority: int | None = None,
+        upgrade: float | None = None,
     ) -> Run:
         """A run of a task: configured, deployed, watched and configured again until it is left; use it in a `with`.
 
         `policy` says what to do with the rest when a component is lost, `repair` or `dismantle`; `wait` waits for the
-        ecology to change where there is no configuration.
+        ecology to change where there is no configuration. A task of higher `priority` gets the components that one of
+        lower priority holds. `upgrade` are the seconds after which a component that the strategy would rather have is
+        changed to; without it, none is.
         """
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
-        return Run(task, method, self.name, self.endpoints, option(Policy, "policy", policy), wait)
+        chosen = option(Policy, "policy", policy)
+        return Run(
+            task, method, self.name, self.endpoints, chosen, wait, name=name, priority=priority, upgrade=upgrade
+        )
 
-    def stop(self, configurator: str | None = None) -> tuple[str, ...]:
-        """Take down what one configurator has deployed, or all of them; the names of those that were stopped.
+    def detach(
+        self,
+        task: TaskSpecification,
+        *,
+        policy: str = "repair",
+        strategy: str = "first",
+        reasoning: str = "syntactic",
+        ontologies: Paths = (),
+        steps: int | None = None,
+        seconds: float | None = None,
+        name: str = "",
+        priority: int | None = None,
+        upgrade: float | None = None,
+    ) -> str:
+        """Hand a task to the sites of the ecology, one of which runs it until it is stopped; returns its name.
 
-        Raises NetworkError if the one that is named does not answer, or if one does not end in time.
+        The arguments are those of `run`; the task waits where there is no configuration. Raises NetworkError if no
+        site keeps it, or if a task of that name lives.
         """
-        found = [s.configurator for s in self.tasks if configurator in (None, s.configurator)]
-        if configurator is not None and not found:
-            raise NetworkError(f"no configurator {configurator!r} answers; `selfconf status` shows those that do")
-        for name in found:
-            self._ask(self._view.keys.configurator_call(name, "stop"))
-        self._await_end(set(found))
-        return tuple(found)
+        method = Method.of(strategy, reasoning, ontologies, steps, seconds)
+        record = task_record(task.complete(), method, option(Policy, "policy", policy), name, priority, upgrade)
+        wanted = task_name(record.task)
+        if any(task_name(status.task) == wanted for status in self.tasks) or self._kept(wanted):
+            raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
+        self._keep(record)
+        return wanted
+
+    def stop(self, name: str | None = None) -> tuple[str, ...]:
+        """Take down a task, given by its name or that of its configurator, or all of them.
+
+        Returns the names of the configurators, and of tasks that live in the sites and that none was running. Raises NetworkError if there is none of that name, if one does not answer or does not end in time, or if a
+        component does not obey.
+        """
+        running = [s for s in self.tasks if name in (None, s.configurator, task_name(s.task))]
+        silent = [one for one in self.silent if name in (None, one)]
+        kept = [record for record in self._kept() if name in (None, task_name(record.task))]
+        if silent:
+            raise NetworkError(f"the configurator {silent[0]!r} lives, but does not answer")
+        if name is not None and not running and not kept:
+            raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
+        for record in kept:
+            self._keep(replace(record, revision=record.revision + 1, ended=True))
+        for status in running:
+            self._ask(self._view.keys.configurator_call(status.configurator, "stop"))
+        self._await_end({status.configurator for status in running})
+        idle = {task_name(record.task) for record in kept if all(record.task != status.task for status in running)}
+        return tuple(sorted({status.configurator for status in running} | idle))
+
+    def _kept(self, name: str | None = None) -> list[TaskRecord]:
+        """The tasks that live in the sites, each by its newest record."""
+        newest: dict[str, TaskRecord] = {}
+        for sample in self._ask(self._view.keys.kept_tasks()).samples:
+            try:
+                record = decode(sample.payload, TaskRecord)
+            except PeerError:
+                continue
+            known = newest.get(record.task)
+            if known is None or known.revision < record.revision:
+                newest[record.task] = record
+        return [r for r in newest.values() if not r.ended and name in (None, task_name(r.task))]
+
+    def _keep(self, record: TaskRecord) -> None:
+        replies = self._ask(self._view.keys.keep(), encode(record))
+        if not replies.samples:
+            raise NetworkError("; ".join(replies.errors) or "no site of the ecology keeps tasks")
 
     def _await_end(self, names: set[str]) -> None:
         """Wait until configurators have released everything and left."""

@@ -5,17 +5,24 @@ from __future__ import annotations
 import os
 import secrets
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from selfconf import rendezvous
+from selfconf.api.detached import request_of
 from selfconf.api.reading import existing
+from selfconf.api.run import WorkQueue
 from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, ZenohBus, router
+from selfconf.deployment import Keeper, TaskFolder
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.keys import checked_name
 from selfconf.render import count
 from selfconf.rendezvous import LocalSite
 from selfconf.site import Shelf, Site
 from selfconf.termination import Termination
+
+WORK_CHECK = 0.2
+"""How often, in seconds, a site looks whether it is to end."""
 
 
 def serve(
@@ -25,11 +32,13 @@ def serve(
     listen: str | None,
     connect: Sequence[str],
     complain: Callable[[str], None],
+    state: Path | None = None,
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
 
     Without a name it gets one of its own; without an endpoint it listens where a site of the ecology usually does.
-    `complain` hears what is left out, and where it listens. Raises AuthorError and NetworkError.
+    `complain` hears what is left out, and where it listens; `state` is the folder for the tasks that it keeps, by
+    default in the runtime folder. Raises AuthorError and NetworkError.
     """
     for path in paths:
         existing(path)
@@ -45,13 +54,19 @@ def serve(
         bus = _router(listen, ecology, list(dict.fromkeys([*connect, *others])))
         ended = Termination(bus)
         site = Site(bus, ecology, name, shelf, rendezvous.environment(ecology, bus.endpoint))
+        work = WorkQueue()
+        records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
+        keeper = Keeper(bus, ecology, name, records, partial(request_of, aside=work.work))
         announced = rendezvous.announce(LocalSite(ecology, name, bus.endpoint, os.getpid()))
     served = count(len(site.shelf.advertisements), "advertisement")
     complain(f"site {name} of ecology {ecology} serves {served} on {bus.endpoint}")
+    bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
     try:
-        bus.run(ended)
+        while not ended():
+            work.next(WORK_CHECK)
     finally:
         rendezvous.leave(announced)
+        bus.wake_up(keeper.close)
         site.close()
 
 

@@ -27,6 +27,7 @@ COMMANDS = {
     "discover": "show what is out there: every advertised component, its site, and whether it lives",
     "run": "configure, deploy, monitor and configure again, until Ctrl-C takes everything down",
     "status": "show what is deployed, by whom, and since when",
+    "tasks": "list the tasks: which ones run, with which priority, and which live in the sites",
     "stop": "take down what is deployed; components are turned off, not ended",
     "demo": "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over",
 }

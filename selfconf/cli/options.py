@@ -94,7 +94,7 @@ def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--steps", metavar="N", type=_steps, help="give up a search after so many steps, which all machines count alike"
     )
-    parser.add_argument("--seconds", metavar="S", type=_seconds, help="give up a search after so many seconds")
+    parser.add_argument("--seconds", metavar="S", type=seconds_option, help="give up a search after so many seconds")
 
 
 def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
@@ -120,7 +120,8 @@ def _steps(text: str) -> int:
     return int(text)
 
 
-def _seconds(text: str) -> float:
+def seconds_option(text: str) -> float:
+    """A number of seconds above zero, as an option takes it."""
     try:
         seconds = float(text)
     except ValueError:

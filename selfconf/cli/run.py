@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import queue
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -17,8 +19,10 @@ from selfconf.cli.options import (
     add_endpoint_argument,
     add_task_arguments,
     complain_of,
+    joined,
     method_of,
     one_ecology,
+    seconds_option,
     task_of,
 )
 from selfconf.cli.terminal import complain, silence
@@ -49,6 +53,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--wait", action="store_true", help="when there is no configuration, wait for the ecology to change"
     )
+    parser.add_argument("--name", metavar="NAME", help="the name of the task (default: that of its template)")
+    parser.add_argument(
+        "--priority",
+        metavar="N",
+        type=int,
+        help="a task of higher priority gets the components that one of lower priority holds (default: sc:priority, or 0)",
+    )
+    parser.add_argument(
+        "--upgrade",
+        action="store_true",
+        help="change to components that the strategy would rather have, when they appear or recover",
+    )
+    parser.add_argument(
+        "--settle",
+        metavar="SECONDS",
+        type=seconds_option,
+        default=5.0,
+        help="with --upgrade, for how long they have to be there first (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--detach",
+        action="store_true",
+        help="hand the task to the sites, which go on with it, and return; `selfconf stop NAME` ends it",
+    )
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_budget_arguments(parser)
     add_ecology_arguments(parser)
@@ -65,18 +93,18 @@ def run(given: argparse.Namespace) -> int:
 
     end_as_by_ctrl_c()
     task = task_of(given)
-    report = json_lines if given.format == "json" else TextLines(task)
+    if given.detach:
+        return _detach(given, task)
     with _begun(given, task) as (running, site):
         running.stop_on_signals()
+        printer = LinePrinter(json_lines if given.format == "json" else TextLines(task), running.stop)
         for event in running.events():
-            try:
-                report(event)
-            except OSError:  # the reader of the lines is gone, or the disk is full: end rather than run unseen
-                for stream in (sys.stdout, sys.stderr):
-                    silence(stream)
-                running.stop()
+            printer.put(event)
+        printer.end()
     if site is not None and site.exit_code_before_end is not None:
         raise NetworkError(f"its own site has ended with code {site.exit_code_before_end}; everything is taken down")
+    if printer.trouble is not None:
+        raise NetworkError(f"its lines cannot be written ({printer.trouble}); everything is taken down")
     if isinstance(running.refusal, Undecided):
         complain(undecided_text(running.refusal, task.iri, task.names))
         return 2
@@ -94,16 +122,54 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     from selfconf.configurator.state import Policy
 
     policy, method = Policy(given.policy), method_of(given, task)
+    upgrade = given.settle if given.upgrade else None
+    begun = partial(Run, task, method, policy=policy, wait=given.wait, priority=given.priority, upgrade=upgrade)
     with ExitStack() as stack:
         paths = given.ads if given.endpoint is None else [stack.enter_context(_fetched(given, task, method))]
         if paths is None:
             ecology, endpoints = rendezvous.find(given.ecology, given.connect)
-            yield stack.enter_context(Run(task, method, ecology, endpoints, policy, given.wait)), None
+            if given.name is not None:
+                _check_name(given)
+            yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
             return
         site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect))
         described = partial(_described, given.ads or ())
-        running = Run(task, method, site.ecology, site.endpoints, policy, given.wait, site.running, described)
+        running = begun(
+            site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described
+        )
         yield stack.enter_context(running), site
+
+
+def _check_name(given: argparse.Namespace) -> None:
+    """Raises NetworkError if a task of that name lives already."""
+    with joined(given) as ecology:
+        if any(task.name == given.name for task in ecology.all_tasks()):
+            raise NetworkError(f"a task {given.name!r} lives already; give another name, or `selfconf stop {given.name}`")
+
+
+def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
+    """Hand the task to the sites of the living ecology."""
+    if given.ads is not None or given.endpoint is not None:
+        raise AuthorError("a detached task lives in the sites that there are: start them with `selfconf site`, without --ads")
+    method = method_of(given, task)
+    with joined(given) as ecology:
+        name = ecology.detach(
+            task,
+            policy=given.policy,
+            strategy=given.strategy,
+            reasoning=given.reasoning,
+            ontologies=method.ontologies,
+            steps=method.steps,
+            seconds=method.seconds,
+            name=given.name or "",
+            priority=given.priority,
+            upgrade=given.settle if given.upgrade else None,
+        )
+    if given.format == "json":
+        print(json.dumps({"ecology": ecology.name, "task": name}))
+    else:
+        print(f"the sites of ecology {ecology.name} run {name}; `selfconf tasks` shows it, `selfconf stop {name}` ends it")
+    return 0
 
 
 @contextmanager
@@ -147,6 +213,42 @@ def _explain(running: Run, task: TaskSpecification) -> None:
         )
     if any(not loss.busy for loss in losses):
         complain("start it again and run again, or run with --wait, which goes on when it is back")
+
+
+class LinePrinter:
+    """Reports events on a thread of its own: a terminal that is held must not hold up the task."""
+
+    END = 2.0
+    """Seconds for which the lines that are left are waited for at the end."""
+
+    def __init__(self, report: Callable[[RunEvent], None], broken: Callable[[], None]) -> None:
+        """`broken` is called when a line cannot be written."""
+        self._report, self._broken = report, broken
+        self.trouble: OSError | None = None
+        """Why a line could not be written; None also where only the reader of the lines has gone."""
+        self._events: queue.SimpleQueue[RunEvent | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._print, daemon=True, name="lines")
+        self._thread.start()
+
+    def put(self, event: RunEvent) -> None:
+        """Report an event, soon."""
+        self._events.put(event)
+
+    def end(self) -> None:
+        """Report what is left, unless that takes too long."""
+        self._events.put(None)
+        self._thread.join(self.END)
+
+    def _print(self) -> None:
+        while (event := self._events.get()) is not None:
+            try:
+                self._report(event)
+            except OSError as error:  # the reader of the lines is gone, or the disk is full: end rather than run unseen
+                self.trouble = None if isinstance(error, BrokenPipeError) else error
+                for stream in (sys.stdout, sys.stderr):
+                    silence(stream)
+                self._broken()
+                return
 
 
 class TextLines:

@@ -37,11 +37,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
         " are found by themselves",
     )
+    parser.add_argument(
+        "--state",
+        metavar="DIR",
+        type=Path,
+        help="where the tasks that live in the ecology are kept (default: in the runtime folder of this machine)",
+    )
 
 
 def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT or SIGTERM; then 0."""
     from selfconf.api.site_program import serve
 
-    serve(given.paths, given.ecology, given.name, given.listen, given.connect, complain)
+    serve(given.paths, given.ecology, given.name, given.listen, given.connect, complain, given.state)
     return 0

@@ -22,8 +22,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 once the ecology has answered, also if nothing is deployed."""
+    """0 once every configurator has answered, also if nothing is deployed; 2 if one lives and does not answer."""
     from selfconf.rdf.sparql import QUERY_PREFIXES
+    from selfconf.protocol.keys import task_name
     from selfconf.render import Names
 
     with joined(given) as ecology:
@@ -31,22 +32,27 @@ def run(given: argparse.Namespace) -> int:
         complain_of(ecology)
     if given.format == "json":
         print(json.dumps([_body(status) for status in found], indent=2))
-        return 0
-    if not found:
+        return 2 if ecology.silent else 0
+    if not found and not ecology.silent:
         print(f"nothing is deployed in ecology {ecology.name}")
     names = Names(QUERY_PREFIXES)
     for status in found:
         seconds = max(0.0, time.time() - status.since)
         print(f"{names(status.template)}: {status.phase} for {seconds:.0f} s, epoch {status.epoch}")
+        print(f"  task {task_name(status.task)}, priority {status.priority}")
         print(f"  configurator {status.configurator}, process {status.process} on {status.host}")
         for component in status.components:
             print(f"  {names(component)}")
         for lost, cause in status.lost.items():
             print(f"  lost: {lost} ({cause})")
-    return 0
+        for component in status.owed:
+            print(f"  out of control: {names(component)} was turned off and has not obeyed")
+    return 2 if ecology.silent else 0
 
 
 def _body(status: Status) -> dict[str, object]:
+    from selfconf.protocol.keys import task_name
+
     return {
         "configurator": status.configurator,
         "phase": status.phase,
@@ -57,4 +63,8 @@ def _body(status: Status) -> dict[str, object]:
         "process": status.process,
         "components": list(status.components),
         "lost": dict(status.lost),
+        "task": task_name(status.task),
+        "priority": status.priority,
+        "beginning": status.beginning,
+        "owed": list(status.owed),
     }

@@ -1,4 +1,4 @@
-"""`stop`: takes down what is deployed; components are turned off, not ended."""
+"""`stop`: takes down what is deployed, one task or all; components are turned off, not ended."""
 
 from __future__ import annotations
 
@@ -12,15 +12,18 @@ EXAMPLE = """  selfconf stop"""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    parser.add_argument("--configurator", metavar="NAME", help="only this one; by default all of the ecology")
+    parser.add_argument("task", metavar="TASK", nargs="?", help="only this task; by default all of the ecology")
+    parser.add_argument("--configurator", metavar="NAME", help="only what this configurator has deployed")
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
     """0 when nothing is deployed any more."""
+    if given.task is not None and given.configurator is not None:
+        given.misused("a task and --configurator both say what to stop; give one of them")
     with joined(given) as ecology:
-        found = ecology.stop(given.configurator)
+        found = ecology.stop(given.task if given.task is not None else given.configurator)
         complain_of(ecology)
     if given.format == "json":
         print(json.dumps({"ecology": ecology.name, "stopped": found}, indent=2))

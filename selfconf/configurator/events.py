@@ -43,11 +43,15 @@ class Accepted:
 
 @dataclass(frozen=True, slots=True)
 class Adopted:
-    """A task that runs already is to be gone on with, whose configurator is gone; `lives` by component."""
+    """A task that runs already is to be gone on with, whose configurator is gone."""
 
     epoch: int
     configuration: Configuration
-    lives: Mapping[IRI, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class HandedOver:
+    """Another configurator is to go on with this task."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +134,7 @@ class Stopped:
 Event = (
     Accepted
     | Adopted
+    | HandedOver
     | Discovered
     | Composed
     | Answered

@@ -34,7 +34,7 @@ from dataclasses import replace
 
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import Reaction, then
-from selfconf.configurator.effects import Compose, Discover, Effect, Finish, QueueFor, ReleaseFrom, Unwatch
+from selfconf.configurator.effects import Compose, Discover, Effect, Finish, QueueFor, ReleaseFrom, Unwatch, Watch
 from selfconf.configurator.events import (
     Accepted,
     Adopted,
@@ -46,6 +46,7 @@ from selfconf.configurator.events import (
     Event,
     Failed,
     Freed,
+    HandedOver,
     Improvable,
     Reconnected,
     Stopped,
@@ -71,6 +72,8 @@ def step(state: State, event: Event) -> Reaction:
             return _discover(replace(state, epoch=event.epoch)) if state.phase is Phase.IDLE else (state, ())
         case Adopted():
             return _adopted(state, event)
+        case HandedOver():
+            return (state, ()) if state.phase is Phase.STOPPED else _stand_down(state)
         case Discovered():
             return _discovered(state, event)
         case Composed():
@@ -95,15 +98,13 @@ def step(state: State, event: Event) -> Reaction:
 
 
 def _adopted(state: State, event: Adopted) -> Reaction:
-    """Go on with what runs: every component keeps what it does, and hears whom it does it for."""
+    """Go on with what runs: every component keeps what it does, and hears for whom it does that from now on."""
     if state.phase is not Phase.IDLE:
         return state, ()
     wires, values = wiring(event.configuration), parameter_values(event.configuration)
-    held = {
-        component: Held(inputs, values[component], event.lives.get(component, ""), reserved=True, active=True)
-        for component, inputs in wires.items()
-    }
-    return deploying.deploy(replace(state, epoch=event.epoch, target=event.configuration, held=held))
+    held = {c: Held(inputs, values[c], reserved=True, active=True) for c, inputs in wires.items()}
+    adopted = replace(state, epoch=event.epoch, target=event.configuration, held=held, watched=frozenset(wires))
+    return then([Watch(component) for component in wires], _discover(adopted))
 
 
 def _discover(state: State) -> Reaction:

@@ -2,9 +2,14 @@
 
 A `RunRequest` says which task to run, and how; a `TaskRunner` runs it. Inside, `calls` makes the calls to components,
 `liveness` decides when a component is believed to be dead, and `record` answers questions about what is deployed.
+A `Keeper` runs the tasks that live in the sites, which keep their records in a `TaskFolder`.
 """
 
+from selfconf.deployment.holders import holders_in
+from selfconf.deployment.identity import TaskIdentity
+from selfconf.deployment.keeper import Keeper
 from selfconf.deployment.run_request import RunRequest
 from selfconf.deployment.runner import TaskRunner
+from selfconf.deployment.task_folder import TaskFolder
 
-__all__ = ["RunRequest", "TaskRunner"]
+__all__ = ["Keeper", "RunRequest", "TaskFolder", "TaskIdentity", "TaskRunner", "holders_in"]

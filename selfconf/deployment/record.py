@@ -34,8 +34,15 @@ class DeploymentRecord:
         """The configuration before the deployed one; earlier ones are not kept."""
         self._failures: dict[IRI, tuple[IRI, str, str, float]] = {}
         """The newest failure of each component, the newest last: a task that runs for months has many of each."""
-        bus.serve(keys.configuration(name), self._serve_configuration)
-        bus.serve(keys.configurator_call(name), self._serve_call)
+        self._served = [
+            bus.serve(keys.configuration(name), self._serve_configuration),
+            bus.serve(keys.configurator_call(name), self._serve_call),
+        ]
+
+    def close(self) -> None:
+        """Answer no question any more."""
+        for undo in self._served:
+            undo()
 
     def deployed(self, configuration: Configuration, epoch: int, time: float) -> None:
         """Note a configuration that is complete."""

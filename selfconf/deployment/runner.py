@@ -31,12 +31,14 @@ from selfconf.configurator.effects import (
 )
 from selfconf.configurator.events import (
     Accepted,
+    Adopted,
     Appeared,
     Composed,
     Discovered,
     Event,
     Failed,
     Freed,
+    HandedOver,
     Holder,
     Improvable,
     Reconnected,
@@ -95,14 +97,22 @@ class TaskRunner:
     """Runs one task: acts 1 to 4, then watches and configures again, until it is stopped or refused."""
 
     def __init__(
-        self, bus: Bus, ecology: str, request: RunRequest, name: str = "", clock: Callable[[], float] = time.time
+        self,
+        bus: Bus,
+        ecology: str,
+        request: RunRequest,
+        name: str = "",
+        clock: Callable[[], float] = time.time,
+        task: str = "",
+        beginning: float | None = None,
     ) -> None:
+        """`task` and `beginning` are those of a task that another configurator has begun; by default it is a new one."""
         self.bus, self.request, self.clock = bus, request, clock
         self.ecology = EcologyView(bus, ecology)
         self.keys = self.ecology.keys
         self.name = name or f"c{secrets.token_hex(4)}"
-        task = task_identity(request.name or safe_name(request.task.template.iri.short), self.name)
-        self.identity = TaskIdentity(task, request.priority, clock())
+        task = task or task_identity(request.name or safe_name(request.task.template.iri.short), self.name)
+        self.identity = TaskIdentity(task, request.priority, clock() if beginning is None else beginning)
         self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
         self.state = State(
             policy=request.policy, patient=request.patient, task=task, priority=self.identity.priority
@@ -123,15 +133,27 @@ class TaskRunner:
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
-        bus.subscribe(self.keys.any_fail(), self._received_fail, Urgency.EVENT)
-        bus.subscribe(self.keys.any_free(), self._received_free, Urgency.EVENT)
-        bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})))
+        self._subscriptions = [
+            bus.subscribe(self.keys.any_fail(), self._received_fail, Urgency.EVENT),
+            bus.subscribe(self.keys.any_free(), self._received_free, Urgency.EVENT),
+            bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
+        ]
 
     def start(self) -> None:
         """Begin with act 1."""
         self._calls.audit()
         self._pulse()
         self._step(Accepted(int(self.clock() * 1000)))
+
+    def adopt(self, configuration: Configuration, epoch: int) -> None:
+        """Go on with a task that runs, in that configuration since that epoch, and whose configurator is gone."""
+        self._calls.audit()
+        self._pulse()
+        self._step(Adopted(epoch, configuration))
+
+    def hand_over(self) -> None:
+        """Leave everything as it runs to another configurator of the same task."""
+        self._step(HandedOver())
 
     def stop(self) -> None:
         """Take the configuration down; `request.ended` is called when that is done."""
@@ -307,6 +329,10 @@ class TaskRunner:
             self._report_all()
         finally:  # the end of a task must not depend on what receives the reports
             self._leave()  # a component that could not be released turns itself off now
+            for undo in self._subscriptions:
+                undo()
+            self._record.close()
+            self.ecology.unfollow()
             self.request.ended(effect.refusal)
 
     def _discover(self) -> None:

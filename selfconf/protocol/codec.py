@@ -29,6 +29,7 @@ from selfconf.protocol.messages import (
     Stamp,
     StateOf,
     Status,
+    TaskRecord,
     Verdict,
     Wake,
     Wire,
@@ -48,6 +49,7 @@ KINDS: dict[type, str] = {
     Page: "page",
     Stamp: "stamp",
     Status: "status",
+    TaskRecord: "task",
 }
 """What each message is called on the wire; programs in other languages rely on it, whatever a class is called here."""
 LARGEST = 1 << 20
@@ -61,6 +63,8 @@ def encode(message: Message) -> bytes:
         body[name] = getattr(message, name)
     if isinstance(message, Reserve | Apply):
         body["values"] = {name: encode_term(value) for name, value in message.values.items()}
+    if isinstance(message, TaskRecord):
+        body["bindings"] = {name: encode_term(value) for name, value in message.bindings.items()}
     return _JSON.encode(body).encode()
 
 
@@ -213,12 +217,16 @@ def _verdict(value: object) -> Verdict:
         raise PeerError(f"{value!r} is no verdict") from None
 
 
+def _texts(value: object) -> tuple[str, ...]:
+    return tuple(_text(item) for item in _list(value))
+
+
 _READERS: dict[tuple[type, str], Any] = {
-    **{(kind, "epoch"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Fail, Status)},
+    **{(kind, "epoch"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Fail, Status, TaskRecord)},
     **{(kind, "supervisor"): _text for kind in (Reserve, Apply, Release, CallAnswer)},
-    **{(kind, "task"): _text for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Free, Status)},
-    **{(kind, "priority"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Status)},
-    **{(kind, "beginning"): _number for kind in (Reserve, Apply, Release, CallAnswer, Status)},
+    **{(kind, "task"): _text for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Free, Status, TaskRecord)},
+    **{(kind, "priority"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
+    **{(kind, "beginning"): _number for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Free, Wake, End, Stamp)},
     **{(kind, "life"): _text for kind in (Reserve, Apply, Release, CallAnswer, Fail, Free, End, Stamp)},
     **{(kind, "detail"): _text for kind in (CallAnswer, Fail)},
@@ -247,6 +255,15 @@ _READERS: dict[tuple[type, str], Any] = {
     (Status, "components"): _iris,
     (Status, "lost"): _object,
     (Status, "owed"): _iris,
+    (TaskRecord, "revision"): _whole,
+    (TaskRecord, "ended"): _truth,
+    (TaskRecord, "document"): _text,
+    (TaskRecord, "source"): _text,
+    (TaskRecord, "wanted"): _text,
+    (TaskRecord, "bindings"): _values,
+    (TaskRecord, "ontologies"): _texts,
+    (TaskRecord, "options"): _object,
+    (TaskRecord, "configuration"): _object,
 }
 
 _FIELDS: dict[type, tuple[tuple[str, Any, bool], ...]] = {

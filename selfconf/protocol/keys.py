@@ -5,6 +5,9 @@
     selfconf/{ecology}/site/{site}/changed                  its advertisements have changed (put)
     selfconf/{ecology}/site/{site}/@ctl/wake                start a dormant component (call)
     selfconf/{ecology}/site/{site}/@ctl/end                 end a component that does not obey (call)
+    selfconf/{ecology}/site/{site}/@ctl/keep                keep a task, or hear that it has ended (call)
+    selfconf/{ecology}/site/{site}/tasks/{task}             a task that the site keeps (queryable, one reply each)
+    selfconf/{ecology}/task/{task}                          what has become of a task that the sites keep (put)
     selfconf/{ecology}/c/{shard}/{component}/live/{life}    a component is alive (liveliness token)
     selfconf/{ecology}/c/{shard}/{component}/out/{port}     what an output issues (put)
     selfconf/{ecology}/c/{shard}/{component}/fail           FAIL (put)
@@ -90,6 +93,18 @@ class Keys:
 
     def end(self, site: str) -> str:
         return self._site(site, "@ctl/end")
+
+    def keep(self, site: str = "*") -> str:
+        return self._site(site, "@ctl/keep")
+
+    def kept_task(self, site: str, task: str) -> str:
+        return self._site(site, f"tasks/{task}")
+
+    def kept_tasks(self, site: str = "*") -> str:
+        return self._site(site, "tasks/*")
+
+    def task(self, task: str = "*") -> str:
+        return f"selfconf/{self.ecology}/task/{task}"
 
     def _component(self, component: IRI, rest: str) -> str:
         return f"selfconf/{self.ecology}/c/{_place(component)}/{rest}"

@@ -212,4 +212,33 @@ class Status:
     """The components that were turned off and have not obeyed yet."""
 
 
-Message = Reserve | Apply | Release | StateOf | CallAnswer | Fail | Free | Wake | End | Page | Stamp | Status
+@dataclass(frozen=True, slots=True)
+class TaskRecord:
+    """A task that lives in the ecology: what the sites keep of it, and by which one of them goes on with it."""
+
+    task: str
+    """Its identity."""
+    revision: int
+    """Of two records of one task the one with the higher revision counts."""
+    ended: bool = False
+    """Whether it is to run no more; kept so that a site that was away hears of it."""
+    priority: int = 0
+    beginning: float = 0.0
+    document: str = ""
+    """The Turtle document that holds its template."""
+    source: str = ""
+    """Where the document was read from, for people."""
+    wanted: str = ""
+    """The IRI of the template or task, in case the document holds several."""
+    bindings: Mapping[str, Term] = field(default_factory=dict)
+    ontologies: tuple[str, ...] = ()
+    """Turtle documents of further ontologies."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """How it is configured: `policy`, `strategy`, `reasoning`, `steps`, `seconds`, `upgrade`, as on the command line."""
+    epoch: int = 0
+    """The newest epoch in which it was deployed; zero: never yet."""
+    configuration: Mapping[str, Any] = field(default_factory=dict)
+    """What is deployed, as `selfconf configure --format json` prints it; empty if nothing is."""
+
+
+Message = Reserve | Apply | Release | StateOf | CallAnswer | Fail | Free | Wake | End | Page | Stamp | Status | TaskRecord

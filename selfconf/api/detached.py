@@ -1,0 +1,102 @@
+"""Tasks that live in the ecology: handed to its sites, run by one of them, and ended by name."""
+
+from __future__ import annotations
+
+import secrets
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from selfconf.api.answer import Method
+from selfconf.api.task import TaskSpecification
+from selfconf.composition import TimeLimit, composed
+from selfconf.configurator.state import Policy
+from selfconf.deployment import RunRequest
+from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
+from selfconf.model.refusal import Outcome
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import checked_name, safe_name, task_identity
+from selfconf.protocol.messages import TaskRecord
+from selfconf.rdf import tasks, turtle
+from selfconf.rdf.advertisements import Advertisement
+
+Aside = Callable[[Callable[[], None]], None]
+"""Runs what takes long apart from the bus."""
+
+
+def task_record(
+    task: TaskSpecification,
+    method: Method,
+    policy: Policy,
+    name: str = "",
+    priority: int | None = None,
+    upgrade: float | None = None,
+) -> TaskRecord:
+    """What the sites are given of a task that is to live in the ecology. Raises AuthorError for a name that is none."""
+    document = task.document.document
+    name = checked_name(name, "a task") if name else safe_name(task.iri.short)
+    options: dict[str, Any] = {
+        "policy": policy.value,
+        "strategy": method.strategy.value,
+        "reasoning": method.reasoning.value,
+        "steps": method.steps,
+        "seconds": method.seconds,
+        "upgrade": upgrade,
+    }
+    return TaskRecord(
+        task=task_identity(name, secrets.token_hex(4)),
+        revision=1,
+        priority=task.document.task.priority if priority is None else priority,
+        beginning=time.time(),
+        document=turtle.to_turtle(document.triples()),
+        source=document.source,
+        wanted=str(task.document.task.iri or task.iri),
+        bindings=dict(task.bindings),
+        ontologies=tuple(text for path in method.ontologies for text in _texts(path)),
+        options=options,
+    )
+
+
+def _texts(path: Path) -> list[str]:
+    files = sorted(path.rglob("*.ttl")) if path.is_dir() else [path]
+    return [file.read_text(encoding="utf-8") for file in files]
+
+
+def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
+    """The request by which a site runs a task that it keeps. Raises SelfconfError for what cannot be read."""
+    options = record.options
+    with tempfile.TemporaryDirectory(prefix="selfconf-task-") as folder:
+        paths = []
+        for number, text in enumerate(record.ontologies):
+            path = Path(folder) / f"{number}.ttl"
+            path.write_text(text, encoding="utf-8")
+            paths.append(path)
+        method = Method.of(
+            options.get("strategy") or "first",
+            options.get("reasoning") or "syntactic",
+            paths,
+            options.get("steps"),
+            options.get("seconds"),
+        )
+        document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI(record.wanted))
+        task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
+        composer = method.composer(task)
+
+    def compose(found: dict[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+        answer = composed(composer, found, lost, running, TimeLimit(method.seconds))
+        return answer.configuration if isinstance(answer, Optimum) else answer
+
+    return RunRequest(
+        task=task.document.task,
+        compose=compose,
+        standby=composer.standby,
+        passed_over=composer.passed_over,
+        policy=Policy(options.get("policy") or "repair"),
+        patient=True,
+        priority=record.priority,
+        upgrade=options.get("upgrade"),
+        aside=aside,
+    )

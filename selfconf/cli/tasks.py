@@ -1,0 +1,46 @@
+"""`tasks`: the tasks of an ecology, those that run and those that live in its sites."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+
+from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+
+EXAMPLE = """  selfconf tasks --format json"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_ecology_arguments(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 once every configurator has answered, also if there is no task; else 2."""
+    from selfconf.render.tables import table
+
+    with joined(given) as ecology:
+        found = ecology.all_tasks()
+        complain_of(ecology)
+    if given.format == "json":
+        print(json.dumps([task.body() for task in found], indent=2))
+    elif not found:
+        print(f"there is no task in ecology {ecology.name}")
+    else:
+        rows = [
+            [
+                task.name,
+                str(task.priority),
+                task.phase,
+                f"{max(0.0, time.time() - task.beginning):.0f} s",
+                task.configurator or "-",
+                "sites" if task.detached else "command",
+                ", ".join(component.short for component in task.components),
+            ]
+            for task in found
+        ]
+        head = ["task", "priority", "phase", "since", "configurator", "lives in", "components"]
+        print(table(head, rows))
+    return 2 if ecology.silent else 0

@@ -1,0 +1,36 @@
+"""A configuration as a JSON object and back, for the record of a task that lives in the ecology."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from selfconf.errors import PeerError
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode_term, encode_term
+
+
+def configuration_record(configuration: Configuration) -> dict[str, Any]:
+    """A configuration as a JSON object."""
+    return {
+        "template": configuration.template,
+        "roles": [[one.role, list(one.components)] for one in configuration.assignments],
+        "connections": [[one.source, one.output, one.sink, one.input] for one in configuration.connections],
+        "parameters": [[one.component, one.name, encode_term(one.value)] for one in configuration.settings],
+        "bindings": {name: encode_term(value) for name, value in configuration.bindings.items()},
+    }
+
+
+def recorded_configuration(record: Mapping[str, Any]) -> Configuration:
+    """The configuration that a record speaks of. Raises PeerError for what is none."""
+    try:
+        return Configuration(
+            IRI(record["template"]),
+            tuple(Assignment(IRI(role), tuple(map(IRI, components))) for role, components in record["roles"]),
+            tuple(Connection(IRI(a), output, IRI(b), port) for a, output, b, port in record["connections"]),
+            tuple(ParameterSetting(IRI(c), name, decode_term(value)) for c, name, value in record["parameters"]),
+            {name: decode_term(value) for name, value in record["bindings"].items()},
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise PeerError(f"not the record of a configuration: {error!r}") from None

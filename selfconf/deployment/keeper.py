@@ -1,0 +1,180 @@
+"""Tasks that live in the sites: every site keeps all of them, and one living site runs each.
+
+Which one is the same for all who see the same sites: the site whose name gives the highest hash with the task's
+identity (rendezvous hashing, Thaler and Ravishankar 1998). When it goes, the next one goes on with what runs: no
+component is stopped or started, each only hears whose life to watch from now on. When a site comes that is to have a
+task, the one that has it lets go first; until then the components do not listen to the other.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
+from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
+from selfconf.deployment.run_request import RunRequest
+from selfconf.deployment.runner import TaskRunner
+from selfconf.deployment.task_folder import TaskFolder
+from selfconf.errors import PeerError, SelfconfError
+from selfconf.model.run_event import RunEvent, TaskRunning
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, owner_of
+from selfconf.protocol.messages import TaskRecord
+
+log = logging.getLogger(__name__)
+
+LOOK = 1.0
+"""Seconds between two looks at which tasks this site is to run."""
+OTHERS = 2.0
+"""Seconds that the other sites may take to say what they keep."""
+
+
+def keeper_of(task: str, sites: Iterable[str]) -> str:
+    """The site that is to run a task; empty if there is none."""
+    return max(sites, key=lambda site: (hashlib.blake2s(f"{site} {task}".encode()).digest(), site), default="")
+
+
+class Keeper:
+    """Keeps the tasks of an ecology at one site, and runs those that it is to run."""
+
+    def __init__(
+        self, bus: Bus, ecology: str, site: str, folder: TaskFolder, request_for: Callable[[TaskRecord], RunRequest]
+    ) -> None:
+        """`request_for` reads a task; it raises SelfconfError for one that cannot be read."""
+        self.bus, self.ecology, self.keys, self.site = bus, ecology, Keys(ecology), site
+        self.folder, self._request_for = folder, request_for
+        self.runners: dict[str, TaskRunner] = {}
+        self._requests: dict[str, RunRequest | None] = {}
+        self._living: dict[str, set[str]] = {site: {""}}
+        bus.serve(self.keys.keep(site), self._keep)
+        bus.serve(self.keys.kept_tasks(site), self._answer)
+        bus.subscribe(self.keys.task(), self._heard, Urgency.EVENT)
+        bus.watch(self.keys.any_site_life(), self._site_changed)
+        bus.ask(self.keys.kept_tasks(), b"", OTHERS, self._others_answered)
+
+    def close(self) -> None:
+        """Leave the tasks as they run to whichever site is next."""
+        for runner in list(self.runners.values()):
+            runner.hand_over()
+
+    # What is kept.
+
+    def _keep(self, request: Request) -> None:
+        """A task is handed over, or its end is asked for."""
+        try:
+            record = decode(request.payload, TaskRecord)
+            self._learn(record)
+            request.reply(self.keys.keep(self.site), encode(self.folder.records[record.task]))
+        except (PeerError, OSError) as error:
+            request.refuse(f"site {self.site} cannot keep the task: {error}")
+        finally:
+            request.finish()
+
+    def _answer(self, request: Request) -> None:
+        try:
+            for record in self.folder.records.values():
+                request.reply(self.keys.kept_task(self.site, record.task), encode(record))
+        finally:
+            request.finish()
+
+    def _heard(self, sample: Sample) -> None:
+        self._take(sample)
+
+    def _others_answered(self, replies: Replies) -> None:
+        for sample in replies.samples:
+            self._take(sample)
+        self._look()
+
+    def _take(self, sample: Sample) -> None:
+        try:
+            self._learn(decode(sample.payload, TaskRecord))
+        except (PeerError, OSError) as error:
+            log.warning("passed over a task on %s: %s", sample.key, error)
+
+    def _learn(self, record: TaskRecord) -> None:
+        if self.folder.learn(record):
+            if record.task not in self._requests and not record.ended:
+                self._requests[record.task] = self._read(record)
+            self.bus.wake_up(self._assign)
+
+    def _read(self, record: TaskRecord) -> RunRequest | None:
+        """Read a task in advance, so that going on with it takes no time; one that cannot be read is never run."""
+        try:
+            request = self._request_for(record)
+        except SelfconfError as error:
+            log.error("the task %s cannot be run: %s", record.task, error)
+            return None
+        return replace(request, report=lambda event: self._report(record.task, event))
+
+    # Who runs what.
+
+    def _site_changed(self, key: str, alive: bool) -> None:
+        site, lives = owner_of(key), self._living
+        if site == self.site:
+            return
+        if alive:
+            lives.setdefault(site, set()).add(key)
+        elif site in lives:
+            lives[site].discard(key)
+            if not lives[site]:
+                del lives[site]
+        self._assign()
+
+    def _look(self) -> None:
+        """Look from time to time, as what was to be handed over may be free by now."""
+        self.bus.later(LOOK, self._look)
+        for record in list(self.folder.records.values()):
+            if record.task not in self._requests and not record.ended:
+                self._requests[record.task] = self._read(record)
+        self._assign()
+
+    def _assign(self) -> None:
+        """Run the tasks that this site is to run, and no others."""
+        for task, record in list(self.folder.records.items()):
+            mine = keeper_of(task, self._living) == self.site
+            runner = self.runners.get(task)
+            if runner is not None and record.ended:
+                runner.stop()
+            elif runner is not None and not mine:
+                runner.hand_over()
+            elif runner is None and mine and not record.ended:
+                self._run(record)
+
+    def _run(self, record: TaskRecord) -> None:
+        request = self._requests.get(record.task)
+        if request is None:
+            return
+
+        def ended(_: object) -> None:
+            self.runners.pop(record.task, None)
+
+        runner = TaskRunner(
+            self.bus, self.ecology, replace(request, ended=ended), task=record.task, beginning=record.beginning
+        )
+        self.runners[record.task] = runner
+        if record.configuration:
+            try:
+                runner.adopt(recorded_configuration(record.configuration), record.epoch)
+                return
+            except PeerError as error:
+                log.warning("the record of %s: %s", record.task, error)
+        runner.start()
+
+    def _report(self, task: str, event: RunEvent) -> None:
+        """Let every site know what runs, so that the next one can go on with it."""
+        log.info("%s: %s", task, event.act)
+        if isinstance(event, TaskRunning) and task in self.runners:
+            known = self.folder.records[task]
+            record = replace(
+                known,
+                revision=known.revision + 1,
+                epoch=event.epoch,
+                configuration=configuration_record(event.configuration),
+            )
+            self._learn(record)
+            notice = self.bus.publisher(self.keys.task(task), Urgency.EVENT)
+            notice.put(encode(record))
+            notice.undeclare()
