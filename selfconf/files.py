@@ -7,7 +7,7 @@ file has one meaning, whether a command, a site or a component reads it.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 from selfconf.errors import AuthorError, TurtleError
 
 if TYPE_CHECKING:
+    from selfconf.model.signal_fields import SignalFields
+    from selfconf.model.term import IRI
     from selfconf.rdf.advertisements import Advertisement, MalformedAdvertisement, SegmentCache
 
 STDIN = Path("-")
@@ -56,6 +58,19 @@ def advertisements(
     from selfconf.rdf.advertisements import read_advertisements  # loads a parser, which a list of files does not need
 
     return read_advertisements(text(octets(path), str(path)), str(path), base(path), segments)
+
+
+def signal_fields(paths: Iterable[Path], signals: Iterable[IRI]) -> dict[IRI, SignalFields]:
+    """The fields of those kinds of signals of which some Turtle files say what they consist of.
+
+    Raises AuthorError for what is not there, cannot be read, or is not Turtle.
+    """
+    from selfconf.rdf.signal_fields import SAYING, fields_of  # loads a parser
+    from selfconf.rdf.turtle import parse
+
+    documents = [parse(text(octets(path), str(path)), str(path), base(path), SAYING) for path in paths]
+    found = {signal: fields_of(documents, signal) for signal in signals}
+    return {signal: fields for signal, fields in found.items() if fields is not None}
 
 
 def octets(path: Path) -> bytes:
