@@ -25,6 +25,8 @@ ECOLOGY_VARIABLE = "SELFCONF_ECOLOGY"
 """The variable that names the ecology of a program to which none is given."""
 CONNECT_VARIABLE = "SELFCONF_CONNECT"
 """The variable with the endpoints, apart by spaces, that a program connects to when none are given."""
+LIFE_VARIABLE = "SELFCONF_LIFE"
+"""The variable with the life that a site gives to the components of a program that it starts, so that it knows them."""
 ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
 USUAL_PORTS = range(20000, 32768)

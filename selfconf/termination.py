@@ -59,6 +59,11 @@ def start_time(process: int) -> str:
     return b"".join(_status(process)[19:20]).decode()
 
 
+def stopped(process: int) -> bool:
+    """Whether a process of this machine was stopped by a signal such as SIGSTOP; a debugger's stop is none."""
+    return _status(process)[:1] == [b"T"]
+
+
 def _zombie(process: int) -> bool:
     return _status(process)[:1] in ([b"Z"], [b"X"])
 

@@ -18,7 +18,7 @@ from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.keys import checked_name
 from selfconf.render import count
 from selfconf.rendezvous import LocalSite
-from selfconf.site import Shelf, Site
+from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
 
 WORK_CHECK = 0.2
@@ -33,12 +33,14 @@ def serve(
     connect: Sequence[str],
     complain: Callable[[str], None],
     state: Path | None = None,
+    log: Path | None = None,
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
 
     Without a name it gets one of its own; without an endpoint it listens where a site of the ecology usually does.
-    `complain` hears what is left out, and where it listens; `state` is the folder for the tasks that it keeps, by
-    default in the runtime folder. Raises AuthorError and NetworkError.
+    `complain` hears what is left out, and where it listens. In the folder `state` are the tasks that it keeps, in the
+    folder `log` what the components print that it starts; by default both are folders of the runtime folder.
+    Raises AuthorError and NetworkError.
     """
     for path in paths:
         existing(path)
@@ -53,9 +55,11 @@ def serve(
         others = [site.endpoint for site in rendezvous.local_sites(ecology)]
         bus = _router(listen, ecology, list(dict.fromkeys([*connect, *others])))
         ended = Termination(bus)
-        site = Site(bus, ecology, name, shelf, rendezvous.environment(ecology, bus.endpoint))
         work = WorkQueue()
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
+        site = Site(
+            bus, ecology, name, shelf, rendezvous.environment(ecology, bus.endpoint), _log_path(log, ecology, name)
+        )
         keeper = Keeper(bus, ecology, name, records, partial(request_of, aside=work.work))
         announced = rendezvous.announce(LocalSite(ecology, name, bus.endpoint, os.getpid()))
     served = count(len(site.shelf.advertisements), "advertisement")
@@ -68,6 +72,14 @@ def serve(
         rendezvous.leave(announced)
         bus.wake_up(keeper.close)
         site.close()
+
+
+def _log_path(folder: Path | None, ecology: str, name: str) -> Path:
+    """The log of a site. In the folder of all sites of this user, those of sites that have ended become fewer."""
+    if folder is None:
+        folder = rendezvous.runtime_folder() / "log"
+        forget_oldest(folder, {f"{site.ecology}@{site.site}.log" for site in rendezvous.local_sites()})
+    return folder / f"{ecology}@{name}.log"
 
 
 def _router(listen: str | None, ecology: str, connect: list[str]) -> ZenohBus:

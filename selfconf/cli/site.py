@@ -43,11 +43,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="where the tasks that live in the ecology are kept (default: in the runtime folder of this machine)",
     )
+    parser.add_argument(
+        "--log",
+        metavar="DIR",
+        type=Path,
+        help="where to keep what the components print that this site starts: lines with time, stream and component, in"
+        " ECOLOGY@SITE.log, which rotates (default: log in the runtime folder)",
+    )
 
 
 def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT or SIGTERM; then 0."""
     from selfconf.api.site_program import serve
 
-    serve(given.paths, given.ecology, given.name, given.listen, given.connect, complain, given.state)
+    serve(given.paths, given.ecology, given.name, given.listen, given.connect, complain, given.state, given.log)
     return 0

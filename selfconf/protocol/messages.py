@@ -163,10 +163,11 @@ class Wake:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """End the process of a component that does not obey, if it still lives the life that is meant."""
+    """End the process of a component that does not obey."""
 
     component: IRI
-    life: str
+    life: str = ""
+    """The life that is meant; empty: whichever the site has started."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,11 @@
 """A site: the init-component of a host (section 2.1 of the paper).
 
 `Shelf` reads the advertisements of the host from their files; `Site` serves them to an ecology, and starts and ends the
-processes of the host's dormant components.
+processes of the host's dormant components. `forget_oldest` removes logs of sites that have ended.
 """
 
+from selfconf.site.log_file import forget_oldest
 from selfconf.site.shelf import Shelf
 from selfconf.site.site import Site
 
-__all__ = ["Shelf", "Site"]
+__all__ = ["Shelf", "Site", "forget_oldest"]

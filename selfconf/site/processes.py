@@ -1,96 +1,110 @@
 """The processes of dormant components: started when a configurator asks for one, ended with their site.
 
-The command line comes from the local advertisement (`sc:grounding [ sc:command ... ]`), never from the network.
+The command line comes from the local advertisement (`sc:grounding [ sc:command ... ]`), never from the network. A
+command is started once, however many components of its folder share it.
 """
 
 from __future__ import annotations
 
-import logging
-import os
-import shlex
-import subprocess
-import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from selfconf.bus.port import Bus, Urgency
-from selfconf.errors import PeerError, reason
+from selfconf.bus.port import Bus
+from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Cause, Fail
-from selfconf.termination import parent_environment
-
-log = logging.getLogger(__name__)
+from selfconf.site.component_program import ComponentProgram
+from selfconf.site.log_file import LogFile
+from selfconf.site.printed_lines import PrintedLines
 
 ENDING = 3.0
-"""How long, in seconds, the processes of a site may take to end before they are killed."""
-PROCESS_CHECK = 0.2
-"""How often, in seconds, it is looked whether a started process still runs."""
-STDERR = 2
-"""Where components print: stdout is for the results of the command that started them."""
+"""How long, in seconds, the processes of a site may take to end before they are killed, when the site ends."""
+Started = tuple[Path, str]
+"""What is started once: a command, in the folder of the advertisement that has it."""
 
 
 class ComponentProcesses:
     """The processes that one site has started, by component."""
 
-    def __init__(self, bus: Bus, keys: Keys, environment: Mapping[str, str] | None) -> None:
-        """`environment` is what a started component finds its ecology by; None: no process is ever started."""
-        self._bus, self._keys, self._environment = bus, keys, environment
-        self.by_component: dict[IRI, subprocess.Popen[bytes]] = {}
+    def __init__(
+        self, bus: Bus, keys: Keys, environment: Mapping[str, str] | None, log_path: Path | None = None
+    ) -> None:
+        """`environment` is what a started component finds its ecology by; None: no process is ever started.
 
-    def start(self, profile: Profile) -> None:
-        """Start the process of a component, unless it runs. Raises PeerError if that cannot be done."""
-        component, command = profile.component, profile.command
-        if command is None or self._environment is None:
+        `log_path` is the file that keeps what components print; None: it is only shown.
+        """
+        self._bus, self._keys, self._environment, self._log_path = bus, keys, environment, log_path
+        self._programs: dict[Started, ComponentProgram] = {}
+        self._printed: PrintedLines | None = None
+        self.by_component: dict[IRI, ComponentProgram] = {}
+        """The program that each component was started by last."""
+
+    def start(self, profile: Profile, sharing: Iterable[Profile] = ()) -> None:
+        """Start the process of a component, unless it runs. Raises PeerError if that cannot be done.
+
+        `sharing` are the components with the same command in the same folder.
+        """
+        component, started = profile.component, started_once(profile)
+        if started is None or self._environment is None:
             raise cannot_start(component)
-        running = self.by_component.get(component)
-        if running is not None and running.poll() is None:
-            return
-        folder = Path(profile.place.source).parent if profile.place else Path()
-        environment = {**os.environ, **self._environment, **parent_environment(), "PATH": _path()}
-        try:
-            words = shlex.split(command) or [""]
-            process = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=STDERR)
-        except OSError as error:
-            raise PeerError(f"the command of {component} does not start: {reason(error)}") from None
-        except ValueError as error:
-            raise PeerError(f"the command of {component} cannot be read: {error}") from None
-        log.info("started %s: %s", component, command)
-        self.by_component[component] = process
-        self._watch(component, process)
+        program = self.by_component.get(component)
+        if program is None or not program.running:  # the command of one that runs may have changed since
+            program = self._programs.get(started)
+        if program is None:
+            folder, command = started
+            program = ComponentProgram(self._bus, self._keys, command, folder, self._environment, self._printing)
+            self._programs[started] = program
+        program.start(profile, sharing)
+        for one in (*sharing, profile):
+            self.by_component[one.component] = program
+
+    def end(self, component: IRI, life: str = "", ended: Callable[[], None] = lambda: None) -> None:
+        """End the process of a component, and call `ended` once it is gone; it can be started again.
+
+        With it end the other components of the process. Raises PeerError if this site has not started it, or if `life`
+        is not the life that it has started.
+        """
+        program = self.by_component.get(component)
+        if program is None:
+            raise PeerError(f"this site has not started {component}")
+        if life and not program.is_life(component, life):
+            raise PeerError(f"this site has not started the life {life} of {component}")
+        program.end(ended)
 
     def close(self) -> None:
         """End every process: those that still run after `ENDING` seconds, all in all, are killed."""
-        for process in self.by_component.values():
-            process.terminate()
+        groups = []
+        for program in self._programs.values():
+            program.close()
+            if program.group is not None:
+                program.group.terminate()
+                groups.append(program.group)
         deadline = time.monotonic() + ENDING
-        for process in self.by_component.values():
-            try:
-                process.wait(max(0.0, deadline - time.monotonic()))
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+        for group in groups:
+            if not group.frozen():
+                group.wait(max(0.0, deadline - time.monotonic()))
+            group.kill()  # what it has left behind, too
+            group.wait(ENDING)
+        if self._printed is not None:
+            self._printed.close()
+            self._printed = None
 
-    def _watch(self, component: IRI, process: subprocess.Popen[bytes]) -> None:
-        """Look at a process until it ends, and then raise FAIL for its component: a configurator may wait for it."""
-        code = process.poll()
-        if code is None:
-            self._bus.later(PROCESS_CHECK, lambda: self._watch(component, process))
-            return
-        detail = f"the process that its site started for it has ended with code {code}"
-        notice = self._bus.publisher(self._keys.fail(component), Urgency.EVENT)
-        notice.put(encode(Fail(component, "", 0, Cause.CRASH, detail)))
-        notice.undeclare()
+    def _printing(self) -> PrintedLines:
+        """Who reads what the processes print, from the first process on."""
+        if self._printed is None:
+            self._printed = PrintedLines(None if self._log_path is None else LogFile(self._log_path))
+        return self._printed
+
+
+def started_once(profile: Profile) -> Started | None:
+    """The command of a component with its folder; None if it has none."""
+    if profile.command is None:
+        return None
+    return Path(profile.place.source).parent if profile.place else Path(), profile.command
 
 
 def cannot_start(component: IRI) -> PeerError:
     """The error of a configurator that asks for a component that this site cannot start."""
     return PeerError(f"this site cannot start {component}: its advertisement has no sc:command")
-
-
-def _path() -> str:
-    """The search path with this program's own Python first, so that `python` in a command is the same one."""
-    return os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)))

@@ -1,7 +1,7 @@
 """A site: the init-component of a host (section 2.1 of the paper).
 
 It serves the advertisements of its host, dormant components included, watches their files, announces that it is
-alive, and has the process of a dormant component started when a configurator asks for it.
+alive, and has the process of a dormant component started, and ended, when a configurator asks for it.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 from selfconf.bus.port import Bus, Request, Urgency
@@ -16,9 +17,9 @@ from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
-from selfconf.protocol.messages import Page, Wake
+from selfconf.protocol.messages import End, Page, Wake
 from selfconf.rdf.turtle import ntriples
-from selfconf.site.processes import ComponentProcesses, cannot_start
+from selfconf.site.processes import ComponentProcesses, Started, cannot_start, started_once
 from selfconf.site.shelf import Shelf
 
 log = logging.getLogger(__name__)
@@ -47,16 +48,21 @@ class Site:
         name: str,
         shelf: Shelf,
         environment: Mapping[str, str] | None = None,
+        log_path: Path | None = None,
     ) -> None:
-        """`environment` is what a started component finds its ecology by; None: this site starts none."""
+        """`environment` is what a started component finds its ecology by; None: this site starts none.
+
+        `log_path` is the file that keeps what components print; None: it is only shown.
+        """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
-        self.processes = ComponentProcesses(bus, self.keys, environment)
+        self.processes = ComponentProcesses(bus, self.keys, environment, log_path)
         self._revision = 1
         shelf.refresh()
         self._served = self._read_shelf()
         self._notify = bus.publisher(self.keys.changed(name), Urgency.EVENT)
         bus.serve(self.keys.advertisements(name), self._answer)
         bus.serve(self.keys.wake(name), self._wake)
+        bus.serve(self.keys.end(name), self._end)
         bus.announce(self.keys.site_life(name, secrets.token_hex(4)))  # last: from now on it is asked
         self._look()
 
@@ -70,10 +76,17 @@ class Site:
         advertisement = self.shelf.advertisements.get(component)
         if advertisement is None:
             raise cannot_start(component)
-        self.processes.start(advertisement.profile)
+        started = started_once(advertisement.profile)
+        sharing = () if started is None else self._sharing[started]
+        self.processes.start(advertisement.profile, [self.shelf.advertisements[one].profile for one in sharing])
 
     def _read_shelf(self) -> list[_ServedAdvertisement]:
         """What is replied, made once for all questions."""
+        self._sharing: dict[Started, list[IRI]] = {}
+        for component, advertisement in self.shelf.advertisements.items():
+            started = started_once(advertisement.profile)
+            if started is not None:
+                self._sharing.setdefault(started, []).append(component)
         return [
             _ServedAdvertisement(
                 self.keys.advertisement(self.name, component),
@@ -105,6 +118,20 @@ class Site:
                 empty = Page(0, 0, self._revision)
                 request.reply(self.keys.advertisements(self.name).replace("**", "none"), b"", encode(empty))
         finally:
+            request.finish()
+
+    def _end(self, request: Request) -> None:
+        """End the process of a component, and reply once it is gone."""
+
+        def ended() -> None:
+            request.reply(self.keys.end(self.name), b"ended")
+            request.finish()
+
+        try:
+            end = decode(request.payload, End)
+            self.processes.end(end.component, end.life, ended)
+        except PeerError as error:
+            request.refuse(str(error))
             request.finish()
 
     def _wake(self, request: Request) -> None:

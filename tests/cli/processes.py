@@ -193,10 +193,10 @@ class Home:
         """Start a command."""
         return self.program(sys.executable, "-m", "selfconf", *arguments)
 
-    def site(self, name: str, *paths: str, connect: tuple[str, ...] = ()) -> Program:
+    def site(self, name: str, *paths: str, connect: tuple[str, ...] = (), options: tuple[str, ...] = ()) -> Program:
         """Start a site, and wait until it listens."""
         self._meeting(name).unlink(missing_ok=True)
-        options = [option for endpoint in connect for option in ("--connect", endpoint)]
+        options = (*options, *(option for endpoint in connect for option in ("--connect", endpoint)))
         site = self.selfconf("site", *paths, "--ecology", self.ecology, "--name", name, *options)
         assert self.until(lambda: self._meeting(name).exists() or site.over), site.complaints
         assert not site.over, site.complaints
@@ -237,8 +237,8 @@ class Home:
 
     # Observing.
 
-    def state(self, component: IRI) -> CallAnswer | None:
-        """What a component says of itself, if it answers."""
+    def ask(self, key: str, payload: bytes = b"", seconds: float = 10.0) -> Replies:
+        """Ask the ecology something."""
         if self._bus is None or not self._bus.link:
             if self._bus is not None:
                 self._bus.close()
@@ -246,12 +246,16 @@ class Home:
                 [json.loads(path.read_text())["endpoint"] for path in sorted(self.runtime.glob("*.json"))]
             )
         replies: list[Replies] = []
-        self._bus.ask(self.keys.call(component, "state"), b"", 1.0, replies.append)
+        self._bus.ask(key, payload, seconds, replies.append)
         bus = self._bus
         deadline = time.monotonic() + PATIENCE
         while not replies and time.monotonic() < deadline:
             bus.poll(0.05)
-        for sample in replies[0].samples if replies else ():
+        return replies[0] if replies else Replies()
+
+    def state(self, component: IRI) -> CallAnswer | None:
+        """What a component says of itself, if it answers."""
+        for sample in self.ask(self.keys.call(component, "state"), seconds=1.0).samples:
             try:
                 return decode(sample.payload, CallAnswer)
             except PeerError:
@@ -294,9 +298,9 @@ def component_of(name: str) -> IRI:
     )
 
 
-def dormant(home: Home, name: str) -> None:
-    """Let the site of a component start it, in a process of its own."""
-    command = f"python {home.folder}/components.py {name}"
+def dormant(home: Home, name: str, names: str = "") -> None:
+    """Let the site of a component start it, in a process of its own, or of several components."""
+    command = f"python {home.folder}/components.py {names or name}"
     (home.folder / "ads" / f"{name}.ttl").write_text(
         PREFIXES + ADVERTISEMENTS[name].rstrip(" .") + f' ; sc:grounding [ sc:command "{command}" ] .\n'
     )

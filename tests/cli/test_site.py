@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 from pathlib import Path
 
 import pytest
 
 from selfconf.bus.zenoh_bus import ZenohBus, router
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import End, Wake
+from selfconf.termination import alive
 from tests.cli.command import run
-from tests.cli.processes import Home
+from tests.cli.processes import Home, component_of, dormant
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 pytestmark = pytest.mark.process
@@ -79,3 +83,68 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
     ):
         assert run(capsys, "site", *arguments).is_one_sentence(words)
     taken.close()
+
+
+def wake(home: Home, name: str) -> None:
+    """Have the site start a component."""
+    asked = home.ask(home.keys.wake("a"), encode(Wake(component_of(name))))
+    assert [sample.payload for sample in asked.samples] == [b"started"], asked.errors
+
+
+def test_a_component_that_crashes_lives_again_though_nobody_asked(home: Home) -> None:
+    dormant(home, "tracker")
+    site = home.site("a", "ads")
+    wake(home, "tracker")
+    killed: set[int] = set()
+
+    def lives_anew() -> bool:
+        return killed.isdisjoint(site.children()) and home.state(component_of("tracker")) is not None
+
+    for _ in range(2):
+        assert home.until(lives_anew)
+        (process,) = site.children()
+        killed.add(process)
+        os.kill(process, signal.SIGKILL)
+    assert home.until(lives_anew)
+
+
+def test_a_command_that_components_share_is_one_process(home: Home) -> None:
+    for name in ("tracker", "odometry"):
+        dormant(home, name, "tracker,odometry")
+    site = home.site("a", "ads")
+    for name in ("tracker", "odometry"):
+        wake(home, name)
+    assert home.until(lambda: all(home.state(component_of(name)) is not None for name in ("tracker", "odometry")))
+    assert len(site.children()) == 1
+
+
+def test_a_component_that_does_not_want_to_end_is_ended_and_can_be_started_again(home: Home) -> None:
+    dormant(home, "tracker")
+    site = home.site("a", "ads")
+    wake(home, "tracker")
+    assert home.until(lambda: home.state(component_of("tracker")) is not None)
+    state = home.state(component_of("tracker"))
+    (process,) = site.children()
+    os.kill(process, signal.SIGSTOP)
+    asked = home.ask(home.keys.end("a"), encode(End(component_of("tracker"), state.life if state else "")))
+    assert [sample.payload for sample in asked.samples] == [b"ended"], asked.errors
+    assert not alive(process)
+    wake(home, "tracker")
+    assert home.until(lambda: home.state(component_of("tracker")) is not None)
+
+
+def test_what_components_print_is_kept_and_ctrl_c_ends_them_with_their_site(home: Home, tmp_path: Path) -> None:
+    (home.folder / "sayer.py").write_text("import signal\nprint('hello')\nsignal.pause()\n")
+    dormant(home, "tracker")
+    advertisement = home.folder / "ads" / "tracker.ttl"
+    text = advertisement.read_text().replace("components.py tracker", "sayer.py")
+    advertisement.write_text(text)
+    site = home.site("a", "ads", options=("--log", str(tmp_path / "kept")))
+    wake(home, "tracker")
+    log = tmp_path / "kept" / f"{home.ecology}@a.log"
+    assert home.until(lambda: log.exists() and "hello" in log.read_text())
+    assert f" stdout {component_of('tracker')} hello\n" in log.read_text()
+    (process,) = site.children()
+    assert site.end(signal.SIGINT) == 0
+    assert not alive(process)
+    assert "hello\n" in site.complaints

@@ -19,11 +19,11 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Fail, Page, Release, Wake
 from selfconf.site import Site
-from tests.lab import PREFIXES, iri, write_advertisements
-from tests.site.served import KEYS, ask, serve
+from selfconf.site.process_group import ProcessGroup
+from tests.lab import iri, write_advertisements
+from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve
 
 pytestmark = pytest.mark.process
-SLEEPER = iri("sleeper")
 
 
 def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
@@ -34,14 +34,11 @@ def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
     return condition()
 
 
-def dormant(folder: Path, command: str) -> Path:
-    """An advertisement of a component that a site can start."""
-    folder.mkdir(parents=True, exist_ok=True)
-    quoted = command.replace("\\", "\\\\").replace('"', '\\"')
-    (folder / "sleeper.ttl").write_text(
-        PREFIXES + f':sleeper a sc:Component, rob:Encoder ; sc:grounding [ sc:command "{quoted}" ] .\n'
-    )
-    return folder
+def group_of(site: Site) -> ProcessGroup:
+    """The process that the site has started for the sleeper."""
+    group = site.processes.by_component[SLEEPER].group
+    assert group is not None
+    return group
 
 
 @pytest.fixture
@@ -56,11 +53,6 @@ def sites(network: Network) -> Iterator[Callable[[Path], Site]]:
     yield make
     for site in made:
         site.close()
-
-
-def python(code: str) -> str:
-    """A command that runs some Python and then waits to be ended."""
-    return f"{sys.executable} -c '{code}; import signal; signal.pause()'"
 
 
 def test_a_dormant_component_is_startable_and_an_ordinary_one_is_not(network: Network, tmp_path: Path) -> None:
@@ -93,10 +85,10 @@ def test_a_component_that_runs_is_not_started_twice_and_ends_with_its_site(
     site = sites(folder)
     for _ in range(3):
         ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
-    (process,) = site.processes.by_component.values()
-    assert until(lambda: (folder / str(process.pid)).exists())
+    group = group_of(site)
+    assert until(lambda: (folder / str(group.number)).exists())
     site.close()
-    assert process.poll() is not None
+    assert group.code() is not None
     assert len([path for path in folder.iterdir() if path.name.isdigit()]) == 1
 
 
@@ -107,14 +99,13 @@ def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_reported
     fails: list[Sample] = []
     network.node().subscribe(KEYS.any_fail(), fails.append)
     ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
-    (first,) = site.processes.by_component.values()
-    first.wait(10)
-    network.run(lambda: bool(fails), 5.0)
+    first = group_of(site)
+    assert live(network, lambda: bool(fails))
     assert b"ended with code 3" in fails[0].payload
     ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
-    (second,) = site.processes.by_component.values()
-    assert second.pid != first.pid
-    second.wait(10)
+    second = group_of(site)
+    assert second.number != first.number
+    assert second.wait(10)
 
 
 @pytest.mark.parametrize(
@@ -173,9 +164,9 @@ def test_a_process_that_does_not_want_to_end_is_killed(
     site = sites(folder)
     site.start(SLEEPER)
     assert until(lambda: (folder / "deaf").exists())
-    (process,) = site.processes.by_component.values()
+    group = group_of(site)
     site.close()
-    assert process.poll() == -9
+    assert group.code() == -9
 
 
 def test_processes_that_do_not_want_to_end_are_waited_for_together(
@@ -187,7 +178,9 @@ def test_processes_that_do_not_want_to_end_are_waited_for_together(
     site = sites(folder)
     (advertisement,) = site.shelf.advertisements.values()
     for number in range(6):
-        site.processes.start(replace(advertisement.profile, component=IRI(f"urn:sleeper:{number}")))
+        profile = advertisement.profile
+        command = f"{profile.command} {number}"
+        site.processes.start(replace(profile, component=IRI(f"urn:sleeper:{number}"), command=command))
         assert until((folder / "deaf").exists)
         (folder / "deaf").unlink()
     began = time.monotonic()
@@ -202,9 +195,7 @@ def test_each_end_of_a_process_that_is_started_again_at_once_is_reported_once(
     site = sites(dormant(tmp_path / "here", f"{sys.executable} -c '{code}'"))
     fails: list[Sample] = []
     network.node().subscribe(KEYS.any_fail(), fails.append)
-    for _ in range(3):
+    for number in range(3):
         site.start(SLEEPER)
-        (process,) = site.processes.by_component.values()
-        process.wait(10)
-    network.run(lambda: False, 5.0)
-    assert [decode(fail.payload, Fail).detail.split()[-1] for fail in fails] == ["1", "2", "3"]
+        assert live(network, lambda number=number: len(fails) > number)
+    assert [decode(fail.payload, Fail).detail.split(";")[0].split()[-1] for fail in fails] == ["1", "2", "3"]

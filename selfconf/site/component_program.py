@@ -1,0 +1,282 @@
+"""The program behind one `sc:command` of a site: one process, however many of the site's components share the command.
+
+    idle --start--> running --crash--> pausing --time, start--> running
+    running --end, trouble--> ending --gone--> idle, or pausing if it was for trouble
+
+A process that ends with 0 has wanted to, and one that ends with 2 has said why it cannot run (its component lives
+already, for one); every other end is a crash. After a crash the program is started again with a pause, until it has
+crashed too often (`selfconf.site.restart_limit`). What still runs of the process is ended first: there is never more
+than one.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import secrets
+import shlex
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from selfconf.bus.port import Bus, Urgency
+from selfconf.errors import PeerError, reason
+from selfconf.model.profile import Profile
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Cause, Fail
+from selfconf.rendezvous import LIFE_VARIABLE
+from selfconf.site.life_watch import LifeWatch
+from selfconf.site.printed_lines import PrintedLines
+from selfconf.site.process_group import ProcessGroup
+from selfconf.site.restart_limit import CRASH_WINDOW, DEFAULT_RESTARTS, RestartLimit
+from selfconf.termination import parent_environment
+
+log = logging.getLogger(__name__)
+
+PROCESS_CHECK = 0.2
+"""How often, in seconds, it is looked whether a started process still runs; its end is mostly heard of at once."""
+ENDING_CHECK = 0.02
+"""How often, in seconds, it is looked whether a process that is to end has ended."""
+TERMINATION = 2.0
+"""Seconds that a process may take to end before it is killed."""
+UNKILLABLE = 3.0
+"""Seconds after which a process counts as gone even so: it is killed, and nobody may have waited for its remains."""
+MOST_WATCHED = 8
+"""Of how many components of a process the lives are followed: they share a process, and if that hangs, they all do."""
+NO_CRASH = (0, 2)
+"""The codes of processes that have wanted to end, and of those that have said why they cannot run."""
+
+
+class ComponentProgram:
+    """One command in one folder, and the components that share it."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        command: str,
+        folder: Path,
+        environment: Mapping[str, str],
+        printed: Callable[[], PrintedLines],
+    ) -> None:
+        """`printed` is where its lines go, `environment` is what it finds its ecology by."""
+        self._bus, self._keys, self.command, self._folder = bus, keys, command, folder
+        self._environment, self._printed = environment, printed
+        self._profiles: dict[IRI, Profile] = {}
+        self._asked: set[IRI] = set()
+        """The components that it was started for."""
+        self._watches: dict[IRI, LifeWatch] = {}
+        """Of some components, whether they live, as long as there is a process."""
+        self._limit = RestartLimit()
+        self._life = ""
+        self.group: ProcessGroup | None = None
+        """The process, while there is anything left of it."""
+        self._ending_since: float | None = None
+        self._again = False
+        """Whether it is to be started again once it is gone."""
+        self._when_gone: list[Callable[[], None]] = []
+        self._undo_check: Callable[[], None] = lambda: None
+        self._undo_pause: Callable[[], None] = lambda: None
+
+    @property
+    def running(self) -> bool:
+        """Whether there is a process that is not to end."""
+        return self.group is not None and self._ending_since is None
+
+    def start(self, profile: Profile, sharing: Iterable[Profile]) -> None:
+        """Start the process for one of its components, unless it runs. Raises PeerError if that cannot be done."""
+        self._asked.add(profile.component)
+        self._profiles = {one.component: one for one in (profile, *sharing)}
+        if self.running:
+            self._follow_lives()
+            return
+        wait = self._limit.wait(self._bus.now(), self._restarts())
+        if wait > 0:
+            crashed = f"has crashed more than {self._restarts()} times within {CRASH_WINDOW:.0f} s"
+            raise PeerError(f"the command of {profile.component} {crashed}; it can be started in {wait:.0f} s")
+        if self.group is None:
+            self._launch()
+        else:
+            self._again = True  # one process at a time; the end of this one is near
+
+    def end(self, gone: Callable[[], None], again: bool = False) -> None:
+        """End the process: TERM, after `TERMINATION` seconds KILL; then call `gone`. It can be started again."""
+        self._undo_pause()
+        if self.group is None:
+            gone()
+            return
+        self._when_gone.append(gone)
+        self._again = again
+        if self._ending_since is None:
+            self._ending_since = self._bus.now()
+            if self.group.frozen():
+                self.group.kill()  # it would have to go on, and might act, before it could end by itself
+            else:
+                self.group.terminate()
+            self._check_in(ENDING_CHECK)
+
+    def is_life(self, component: IRI, life: str) -> bool:
+        """Whether a life of a component is that of the present process, as far as can be told."""
+        watch = self._watches.get(component)
+        return life == self._life or (watch is not None and watch.is_life(life))
+
+    def close(self) -> None:
+        """Watch and start nothing any more; the process is ended by whoever closes."""
+        self._undo_check()
+        self._undo_pause()
+        self._unwatch()
+
+    def _launch(self) -> None:
+        """Start the process. Raises PeerError."""
+        self._undo_pause()
+        self._life = secrets.token_hex(4)
+        environment = {
+            **os.environ,
+            **self._environment,
+            **parent_environment(),
+            LIFE_VARIABLE: self._life,
+            "PATH": _path(),
+            "PYTHONUNBUFFERED": "1",
+        }
+        first = next(iter(self._profiles))
+        try:
+            words = shlex.split(self.command) or [""]
+            self.group = ProcessGroup(words, self._folder, environment)
+        except OSError as error:
+            raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
+        except ValueError as error:
+            raise PeerError(f"the command of {first} cannot be read: {error}") from None
+        printed, group = self._printed(), self.group
+        for stream, pipe in group.pipes():
+            printed.follow(pipe, stream, self._source(), lambda: self._bus.wake_up(lambda: self._look(group)))
+        self._note(f"started as process {group.number}: {self.command}")
+        self._follow_lives()
+        self._check_in(PROCESS_CHECK)
+
+    def _follow_lives(self) -> None:
+        for component, profile in self._profiles.items():
+            if component not in self._watches and len(self._watches) < MOST_WATCHED:
+                self._watches[component] = LifeWatch(self._bus, self._keys, profile, self._life)
+
+    def _unwatch(self) -> None:
+        for watch in self._watches.values():
+            watch.close()
+        self._watches.clear()
+
+    def _check_in(self, seconds: float) -> None:
+        self._undo_check()
+        self._undo_check = self._bus.later(seconds, self._check)
+
+    def _look(self, group: ProcessGroup) -> None:
+        """A pipe of a process has ended: mostly the process has too."""
+        if group is self.group:
+            self._check()
+
+    def _check(self) -> None:
+        """See how it is with the process."""
+        if self.group is None:
+            return
+        if self._ending_since is not None:
+            self._check_ending(self.group, self._ending_since)
+            return
+        code = self.group.code()
+        if code is not None:
+            self._ended(code)
+            return
+        trouble = self._trouble(self.group.frozen())
+        if trouble is None:
+            self._check_in(PROCESS_CHECK)
+        else:
+            self._end_for(trouble)
+
+    def _trouble(self, frozen: bool) -> str | None:
+        """Why the process has to be ended, in words: one component of it hangs, or none lives."""
+        found = [watch.trouble(frozen) for watch in self._watches.values()]
+        if any(watch.alive for watch in self._watches.values()):
+            return next(
+                (each for each, one in zip(found, self._watches.values(), strict=True) if one.alive and each), None
+            )
+        return next(iter(found), None)
+
+    def _check_ending(self, group: ProcessGroup, since: float) -> None:
+        waited = self._bus.now() - since
+        if waited > TERMINATION:
+            group.kill()
+        if not group.gone() and waited < UNKILLABLE:
+            self._check_in(ENDING_CHECK)
+            return
+        self._gone()
+        if self._again:
+            self._again = False
+            self._start_again()
+
+    def _gone(self) -> None:
+        """There is nothing left of the process."""
+        self._undo_check()
+        self.group, self._ending_since = None, None
+        self._unwatch()
+        waiting, self._when_gone = self._when_gone, []
+        for gone in waiting:
+            gone()
+
+    def _ended(self, code: int) -> None:
+        """The process has ended by itself."""
+        again = code not in NO_CRASH
+        if again:
+            self._limit.crashed(self._bus.now())
+        outlook = self._outlook() if again else ""
+        self._report(Cause.CRASH, f"the process that its site started for it has ended with code {code}{outlook}")
+        self.end(lambda: None, again)  # what it has started may still run
+        self._check()
+
+    def _end_for(self, trouble: str) -> None:
+        """End a process that cannot say itself that something is wrong with it."""
+        self._limit.crashed(self._bus.now())
+        self._report(Cause.CRASH, f"its process {trouble}; its site ends it{self._outlook()}")
+        self.end(lambda: None, again=True)
+
+    def _start_again(self) -> None:
+        """Start the program after a pause, if it has not crashed too often."""
+        pause = self._limit.pause(self._bus.now(), self._restarts())
+        if pause is not None:
+            self._undo_pause = self._bus.later(pause, self._launch_again)
+
+    def _launch_again(self) -> None:
+        if self.group is None:
+            try:
+                self._launch()
+            except PeerError as error:
+                self._note(str(error))
+
+    def _restarts(self) -> int:
+        """How often a minute it is started again: as often as the most demanding of its components says."""
+        said = [one.restarts for one in self._profiles.values()]
+        return max(DEFAULT_RESTARTS if one is None else one for one in said)
+
+    def _outlook(self) -> str:
+        """What comes after a crash, in words."""
+        if self._limit.pause(self._bus.now(), self._restarts()) is not None:
+            return "; it is started again"
+        return f", for the {self._restarts() + 1}. time within {CRASH_WINDOW:.0f} s; it is not started again"
+
+    def _report(self, cause: Cause, detail: str) -> None:
+        """Raise FAIL for what the process was started for: a configurator may wait for one that has no life yet."""
+        self._note(detail)
+        for component in sorted(self._asked):
+            notice = self._bus.publisher(self._keys.fail(component), Urgency.EVENT)
+            notice.put(encode(Fail(component, "", 0, cause, detail)))
+            notice.undeclare()
+
+    def _note(self, text: str) -> None:
+        log.info("%s: %s", self._source(), text)
+        self._printed().note(self._source(), text)
+
+    def _source(self) -> str:
+        return ",".join(sorted(self._asked))
+
+
+def _path() -> str:
+    """The search path with this program's own Python first, so that `python` in a command is the same one."""
+    return os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)))

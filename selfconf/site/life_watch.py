@@ -1,0 +1,108 @@
+"""Whether a component whose process runs takes part in the ecology: the watchdog of its site.
+
+A component that runs announces its life, and answers a question for its `state` even while it waits. One that has been
+frozen (SIGSTOP), that hangs before it announces itself, or whose whole process hangs can say nothing of it; its site
+can see it. The site asks rarely: the component's own watchdog notices a hung callback much sooner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from selfconf.bus.port import Bus, Replies, Sample
+from selfconf.errors import PeerError
+from selfconf.model.profile import Profile
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import Keys, life_of
+from selfconf.protocol.messages import CallAnswer
+
+FROZEN = 3.0
+"""Seconds that a process may be frozen while its component has no life."""
+WITHOUT_LIFE = 15.0
+"""Seconds that a process may take until its component has a life, as long as a configurator waits for it."""
+LONGEST_CALLBACK = 8.0
+"""Seconds that a callback may take at most, that of the start, where the advertisement states no deadline."""
+BEYOND_DEADLINE = 2.0
+"""Seconds beyond the deadline after which a component that does not answer counts as hung."""
+QUESTION_ACTIVE, QUESTION_IDLE = 1.0, 5.0
+"""Seconds between two questions for the state of a component that is active, and of one that is not."""
+
+
+class LifeWatch:
+    """Follows one component of a process, from the start of the process on."""
+
+    def __init__(self, bus: Bus, keys: Keys, profile: Profile, life: str) -> None:
+        """`life` is the name that the component was given for its life; it may choose another one."""
+        self._bus, self._profile, self._life = bus, profile, life
+        self._state = keys.call(profile.component, "state")
+        self._lives: set[str] = set()
+        self._lifeless_since = bus.now()
+        self._unanswered_since: float | None = None
+        self._closed = False
+        self._unwatch = bus.watch(keys.lives(profile.component), self._life_changed)
+        self._unask: Callable[[], None] = lambda: None
+        self._ask_later(QUESTION_ACTIVE)
+
+    def close(self) -> None:
+        """Watch no more."""
+        self._closed = True
+        self._unwatch()
+        self._unask()
+
+    @property
+    def alive(self) -> bool:
+        """Whether the component has a life."""
+        return bool(self._lives)
+
+    def is_life(self, life: str) -> bool:
+        """Whether a life of the component is that of the process, as far as can be told."""
+        return life == self._life or (life in self._lives and self._life not in self._lives)
+
+    def trouble(self, frozen: bool) -> str | None:
+        """Why the process has to be ended, in words; None while it need not. `frozen`: it is stopped by a signal."""
+        now = self._bus.now()
+        if not self._lives:
+            lifeless = now - self._lifeless_since
+            if frozen and lifeless > FROZEN:
+                return f"has been frozen for {lifeless:.0f} s (SIGSTOP)"
+            return f"has had no life for {lifeless:.0f} s" if lifeless > WITHOUT_LIFE else None
+        unanswered = 0.0 if self._unanswered_since is None else now - self._unanswered_since
+        if unanswered > (self._profile.deadline or LONGEST_CALLBACK) + BEYOND_DEADLINE:
+            return f"has not answered for {unanswered:.0f} s: it hangs"
+        return None
+
+    def _life_changed(self, key: str, alive: bool) -> None:
+        if alive:
+            self._lives.add(life_of(key))
+        else:
+            self._lives.discard(life_of(key))
+            self._lifeless_since = self._bus.now()
+        self._unanswered_since = None
+
+    def _ask_later(self, seconds: float) -> None:
+        if not self._closed:
+            self._unask = self._bus.later(seconds, self._ask)
+
+    def _ask(self) -> None:
+        if not self._lives:
+            self._ask_later(QUESTION_ACTIVE)
+            return
+        asked = self._bus.now()
+
+        def answered(replies: Replies) -> None:
+            own = [answer for answer in map(_answer, replies.samples) if answer and self.is_life(answer.life)]
+            if own:
+                self._unanswered_since = None
+                self._ask_later(QUESTION_ACTIVE if any(answer.active for answer in own) else QUESTION_IDLE)
+            else:
+                self._unanswered_since = asked if self._unanswered_since is None else self._unanswered_since
+                self._ask_later(max(0.0, asked + QUESTION_ACTIVE - self._bus.now()))
+
+        self._bus.ask(self._state, b"", QUESTION_ACTIVE, answered)
+
+
+def _answer(sample: Sample) -> CallAnswer | None:
+    try:
+        return decode(sample.payload, CallAnswer)
+    except PeerError:
+        return None

@@ -1,0 +1,189 @@
+"""What components print, line by line: kept in the log of their site, and shown where the site itself prints.
+
+A line of the log is a time (UTC), a stream (`stdout`, `stderr`, or `site` for what the site itself notes), the IRIs of
+the components of the process with commas between them, and the text, each apart by one space:
+
+    2026-11-22T06:30:12.345Z stdout https://example.org/my-home#clock 12:00:01
+
+One thread reads all pipes, so that no component waits for the site's own work, and the site for none. What is shown
+goes by way of a second thread: a terminal that is held (Ctrl-S) holds up nothing. What it could not take is counted
+there; the log has it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import selectors
+import socket
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime, timezone
+
+from selfconf.model.wording import plain
+from selfconf.site.log_file import LogFile
+
+LONGEST_LINE = 8192
+"""A line of more bytes is broken."""
+CHUNK = 1 << 13
+"""How many bytes are read at a time."""
+SHOWN_AT_ONCE = 1000
+"""How many pieces wait for a terminal before more are left out."""
+STDERR = 2
+"""Where components print: stdout is for the results of the command that started them."""
+LAST_LINES = 1.0
+"""Seconds that the last lines may take to be read and shown when a site ends."""
+
+
+@dataclass(slots=True)
+class _Pipe:
+    """One stream of one process."""
+
+    stream: str
+    source: str
+    ended: Callable[[], None]
+    rest: bytes = b""
+    """The beginning of a line whose end has not come yet."""
+
+
+class PrintedLines:
+    """Reads what the processes of a site print. Its methods may be called from any thread."""
+
+    def __init__(self, log: LogFile | None) -> None:
+        """`log` keeps the lines; None: they are only shown."""
+        self._log = log
+        self._selector = selectors.DefaultSelector()
+        self._orders: queue.SimpleQueue[tuple[int, _Pipe] | bytes | None] = queue.SimpleQueue()
+        self._woken, self._wake = socket.socketpair()
+        self._wake.setblocking(False)
+        self._selector.register(self._woken, selectors.EVENT_READ)
+        self._shown = _Shown()
+        self._reading = threading.Thread(target=self._read, name="printed lines", daemon=True)
+        self._reading.start()
+
+    def follow(self, pipe: int, stream: str, source: str, ended: Callable[[], None]) -> None:
+        """Read a pipe until its end, close it, and call `ended`, on another thread."""
+        self._order((pipe, _Pipe(stream, source, ended)))
+
+    def note(self, source: str, text: str) -> None:
+        """Keep what the site itself has to say of a process."""
+        self._order(_worded("site", source, [text.encode()]))
+
+    def close(self) -> None:
+        """Read and show what is there already, and end."""
+        self._order(None)
+        self._reading.join(LAST_LINES)
+        self._shown.close()
+
+    def _order(self, order: tuple[int, _Pipe] | bytes | None) -> None:
+        self._orders.put(order)
+        with contextlib.suppress(BlockingIOError, OSError):  # full: it will wake up anyway; closed: it has ended
+            self._wake.send(b"\0")
+
+    def _read(self) -> None:
+        going_on = True
+        while going_on:
+            ready = self._selector.select()
+            for key, _ in ready:
+                if isinstance(key.data, _Pipe):
+                    self._hear(key.fd, key.data)
+                else:
+                    self._woken.recv(CHUNK)
+                    going_on = self._obey()
+        for key in list(self._selector.get_map().values()):
+            if isinstance(key.data, _Pipe):
+                os.set_blocking(key.fd, False)
+                self._hear(key.fd, key.data)
+        self._selector.close()
+        self._woken.close()
+        self._wake.close()
+        if self._log is not None:
+            self._log.close()
+
+    def _obey(self) -> bool:
+        """Carry out what is ordered; return whether to go on."""
+        with contextlib.suppress(queue.Empty):
+            while True:
+                order = self._orders.get_nowait()
+                if order is None:
+                    return False
+                if isinstance(order, bytes):
+                    self._keep(order)
+                else:
+                    self._selector.register(order[0], selectors.EVENT_READ, order[1])
+        return True
+
+    def _hear(self, descriptor: int, pipe: _Pipe) -> None:
+        """Read some lines."""
+        try:
+            said = os.read(descriptor, CHUNK)
+        except BlockingIOError:
+            return
+        except OSError:
+            said = b""
+        whole, newline, rest = (pipe.rest + said).rpartition(b"\n")
+        if not said or len(rest) > LONGEST_LINE:
+            whole, newline, rest = pipe.rest + said, b"\n", b""
+        pipe.rest = rest
+        if whole:
+            self._keep(_worded(pipe.stream, pipe.source, whole.split(b"\n")))
+            self._shown.show(whole + newline)
+        if not said:
+            self._selector.unregister(descriptor)
+            os.close(descriptor)
+            pipe.ended()
+
+    def _keep(self, lines: bytes) -> None:
+        if self._log is not None:
+            self._log.write(lines)
+
+
+def _worded(stream: str, source: str, lines: list[bytes]) -> bytes:
+    """Lines as they are kept; a process that is no part of selfconf may print anything, so controls are spelt out."""
+    now = datetime.fromtimestamp(time.time(), timezone.utc).strftime("%Y-%m-%dT%H:%M:%S.%f")[:-3]
+    head = f"{now}Z {stream} {source} "
+    pieces = [
+        line[start : start + LONGEST_LINE]
+        for line in lines
+        for start in range(0, max(len(line.rstrip(b"\r")), 1), LONGEST_LINE)
+    ]
+    said = (plain(piece.rstrip(b"\r").decode("utf-8", "backslashreplace")) for piece in pieces)
+    return "".join(f"{head}{text}\n" for text in said).encode()
+
+
+class _Shown:
+    """A thread that writes to stderr, and leaves out what that does not take in time."""
+
+    def __init__(self) -> None:
+        self._waiting: queue.Queue[bytes | None] = queue.Queue(SHOWN_AT_ONCE)
+        self._left_out = 0
+        self._stream = STDERR
+        self._writing = threading.Thread(target=self._write, name="shown lines", daemon=True)
+        self._writing.start()
+
+    def show(self, text: bytes) -> None:
+        """Have a piece of text shown soon."""
+        try:
+            if self._left_out:
+                self._waiting.put_nowait(f"({self._left_out} pieces of output were left out here)\n".encode())
+                self._left_out = 0
+            self._waiting.put_nowait(text)
+        except queue.Full:
+            self._left_out += 1
+
+    def close(self) -> None:
+        """Show what is waiting, unless that takes too long."""
+        with contextlib.suppress(queue.Full):
+            self._waiting.put(None, timeout=LAST_LINES)
+            self._writing.join(LAST_LINES)
+
+    def _write(self) -> None:
+        while (text := self._waiting.get()) is not None:
+            try:
+                while text:
+                    text = text[os.write(self._stream, text) :]
+            except OSError:  # nobody reads it any more; the log does
+                continue

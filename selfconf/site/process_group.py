@@ -1,0 +1,82 @@
+"""A process with all that it starts in turn: one session and one group, which is signalled and ended as a whole.
+
+A session of its own, so that Ctrl-C on the terminal of the site reaches the site alone, which ends its processes in its
+own time. What a process leaves behind when it ends (a shell's child, say) is ended with it: it might act on.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from selfconf.termination import stopped
+
+
+class ProcessGroup:
+    """One started program."""
+
+    def __init__(self, words: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
+        """Start it. Raises OSError or ValueError for a command that cannot be started."""
+        self._process = subprocess.Popen(
+            list(words),
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+        self.number = self._process.pid
+        """The process id, which is the number of the group as well."""
+
+    def pipes(self) -> tuple[tuple[str, int], ...]:
+        """The streams that it prints on, by name. They are the caller's to close from now on."""
+        found = []
+        for name, pipe in (("stdout", self._process.stdout), ("stderr", self._process.stderr)):
+            if pipe is not None and not pipe.closed:
+                found.append((name, os.dup(pipe.fileno())))
+                pipe.close()
+        return tuple(found)
+
+    def code(self) -> int | None:
+        """The exit code of the program itself; None while it runs."""
+        return self._process.poll()
+
+    def gone(self) -> bool:
+        """Whether the program has ended, and all that it started."""
+        return self.code() is not None and not self._signalled(0)
+
+    def frozen(self) -> bool:
+        """Whether the program was stopped by a signal (SIGSTOP) and does not go on."""
+        return self.code() is None and stopped(self.number)
+
+    def terminate(self) -> None:
+        """Ask all of it to end."""
+        self._signalled(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """End all of it."""
+        self._signalled(signal.SIGKILL)
+
+    def wait(self, seconds: float) -> bool:
+        """Wait until the program itself has ended; return whether it has."""
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+    def _signalled(self, number: int) -> bool:
+        """Send a signal to all of the group; return whether there was anybody to receive it.
+
+        The number of a group belongs to nobody else as long as the program has not been waited for, or one of the
+        group is left.
+        """
+        try:
+            os.killpg(self.number, number)
+        except (ProcessLookupError, PermissionError):
+            return False
+        return True

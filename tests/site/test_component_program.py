@@ -1,0 +1,273 @@
+"""The program behind a command: one process for all its components, started again after a crash, ended when told to."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from selfconf import rendezvous
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Replies
+from selfconf.errors import PeerError
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import End, Fail, Wake
+from selfconf.site import Site, component_program, life_watch
+from selfconf.site.component_program import ComponentProgram
+from selfconf.termination import alive
+from tests.lab import iri
+from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve
+
+pytestmark = pytest.mark.process
+NUMBERED = 'import os; open("run-%d" % len(os.listdir()), "w").write(str(os.getpid()))'
+"""Leaves a file with the process id for each time it is started."""
+
+
+@pytest.fixture
+def network() -> Network:
+    """A simulated network."""
+    return Network()
+
+
+@pytest.fixture
+def site(network: Network, tmp_path: Path) -> Iterator[Callable[..., Site]]:
+    """A site over `here` that can start components, and keeps what they print in `home.log`."""
+    made: list[Site] = []
+
+    def make(command: str, *names: str, more: str = "") -> Site:
+        folder = dormant(tmp_path / "here", command, *names, more=more)
+        environment = rendezvous.environment("lab", "tcp/127.0.0.1:1")
+        made.append(serve(network, folder, environment, tmp_path / "home.log"))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+def runs(tmp_path: Path) -> list[int]:
+    """The processes that have been started and have said so, in order."""
+    files = sorted(path for path in (tmp_path / "here").glob("run-*") if path.read_text())
+    return [int(path.read_text()) for path in files]
+
+
+def fails(network: Network) -> list[Fail]:
+    """What is said on all FAIL keys from now on."""
+    heard: list[Fail] = []
+    network.node().subscribe(KEYS.any_fail(), lambda sample: heard.append(decode(sample.payload, Fail)))
+    return heard
+
+
+def program(site: Site) -> ComponentProgram:
+    """The program of the sleeper."""
+    return site.processes.by_component[SLEEPER]
+
+
+def test_a_command_that_two_components_share_is_started_once(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED), "left", "right")
+    for name in ("left", "right", "left"):
+        ask(network, KEYS.wake("home"), encode(Wake(iri(name))))
+    assert live(network, lambda: bool(runs(tmp_path)))
+    live(network, lambda: False, 0.3)
+    assert len(runs(tmp_path)) == 1
+    assert made.processes.by_component[iri("left")] is made.processes.by_component[iri("right")]
+
+
+def test_the_same_command_in_another_folder_is_another_program(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    dormant(tmp_path / "here" / "below", python(NUMBERED), "other")
+    made = site(python(NUMBERED))
+    for name in ("sleeper", "other"):
+        made.start(iri(name))
+    assert live(network, lambda: bool(runs(tmp_path)) and any((tmp_path / "here" / "below").glob("run-*")))
+
+
+def test_a_program_that_crashes_is_started_again_and_that_is_said(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made, heard = site(python(NUMBERED)), fails(network)
+    made.start(SLEEPER)
+    for number in (1, 2):
+        assert live(network, lambda number=number: len(runs(tmp_path)) == number)
+        os.kill(runs(tmp_path)[-1], signal.SIGKILL)
+    assert live(network, lambda: len(runs(tmp_path)) == 3)
+    assert [alive(process) for process in runs(tmp_path)] == [False, False, True]
+    assert [fail.detail for fail in heard] == [
+        "the process that its site started for it has ended with code -9; it is started again"
+    ] * 2
+
+
+def test_a_program_that_crashes_too_often_is_given_up(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED + "; raise SystemExit(3)"), more="; sc:restarts 1 ")
+    heard = fails(network)
+    made.start(SLEEPER)
+    assert live(network, lambda: len(heard) == 2)
+    live(network, lambda: len(runs(tmp_path)) > 2, 1.0)
+    assert len(runs(tmp_path)) == 2
+    assert "for the 2. time within 60 s; it is not started again" in heard[-1].detail
+    with pytest.raises(PeerError, match="has crashed more than 1 times within 60 s; it can be started in"):
+        made.start(SLEEPER)
+    network.run(lambda: False, 60.0)
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 3)
+
+
+@pytest.mark.parametrize("code", [0, 2])
+def test_a_program_that_wants_to_end_or_cannot_run_is_not_started_again(
+    network: Network, tmp_path: Path, site: Callable[..., Site], code: int
+) -> None:
+    made, heard = site(python(f"{NUMBERED}; raise SystemExit({code})")), fails(network)
+    made.start(SLEEPER)
+    assert live(network, lambda: bool(heard))
+    live(network, lambda: len(runs(tmp_path)) > 1, 0.5)
+    assert len(runs(tmp_path)) == 1
+    assert heard[0].detail == f"the process that its site started for it has ended with code {code}"
+
+
+def test_a_process_that_is_ended_is_not_started_again_but_can_be(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    replies: list[Replies] = []
+    network.node().ask(KEYS.end("home"), encode(End(SLEEPER)), 5.0, replies.append)
+    assert live(network, lambda: bool(replies))
+    assert [sample.payload for sample in replies[0].samples] == [b"ended"]
+    assert not alive(runs(tmp_path)[0])
+    live(network, lambda: len(runs(tmp_path)) > 1, 0.5)
+    assert len(runs(tmp_path)) == 1
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 2)
+
+
+def test_a_process_that_does_not_want_to_end_is_killed_with_all_that_it_started(
+    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(component_program, "TERMINATION", 0.3)
+    deaf = "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN); "
+    fork = "import os; os.fork(); "
+    made = site(python(deaf + fork + 'open("run-%d" % os.getpid(), "w").write(str(os.getpid()))'))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 2)
+    ended: list[bool] = []
+    made.processes.end(SLEEPER, "", lambda: ended.append(True))
+    assert live(network, lambda: bool(ended))
+    assert not any(map(alive, runs(tmp_path)))
+
+
+def test_a_frozen_process_is_ended_without_going_on(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    told = 'import signal; signal.signal(signal.SIGTERM, lambda *_: open("acted", "w").close()); '
+    made = site(python(told + NUMBERED))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    os.kill(runs(tmp_path)[0], signal.SIGSTOP)
+    group = program(made).group
+    assert group is not None
+    assert live(network, group.frozen)
+    ended: list[bool] = []
+    made.processes.end(SLEEPER, "", lambda: ended.append(True))
+    assert live(network, lambda: bool(ended), 1.5)
+    assert not (tmp_path / "here" / "acted").exists()
+
+
+def test_a_process_that_is_frozen_before_it_lives_is_ended_and_started_again(
+    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(life_watch, "FROZEN", 0.5)
+    made, heard = site(python(NUMBERED)), fails(network)
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    os.kill(runs(tmp_path)[0], signal.SIGSTOP)
+    assert live(network, lambda: len(runs(tmp_path)) == 2)
+    assert [alive(process) for process in runs(tmp_path)] == [False, True]
+    assert "has been frozen" in heard[0].detail
+    assert "its site ends it; it is started again" in heard[0].detail
+
+
+def test_of_two_components_of_a_process_one_life_is_enough(
+    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(life_watch, "WITHOUT_LIFE", 0.5)
+    made = site(python(NUMBERED), "left", "right")
+    end_life = network.node().announce(KEYS.life(iri("left"), "its-own"))
+    made.start(iri("right"))
+    live(network, lambda: len(runs(tmp_path)) > 1, 1.5)
+    assert len(runs(tmp_path)) == 1
+    end_life()
+    assert live(network, lambda: len(runs(tmp_path)) == 2)
+
+
+def test_only_the_life_that_the_site_has_started_is_ended(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python('import json, os; open("environment", "w").write(json.dumps(dict(os.environ)))'))
+    with pytest.raises(PeerError, match="has not started"):
+        made.processes.end(SLEEPER)
+    made.start(SLEEPER)
+    path = tmp_path / "here" / "environment"
+    assert live(network, lambda: path.exists() and path.read_text().endswith("}"))
+    life = json.loads(path.read_text())[rendezvous.LIFE_VARIABLE]
+    network.node().announce(KEYS.life(SLEEPER, life))
+    network.node().announce(KEYS.life(SLEEPER, "a-duplicate"))
+    network.run(lambda: False, 0.1)
+    errors = ask(network, KEYS.end("home"), encode(End(SLEEPER, "a-duplicate"))).errors
+    assert "has not started the life a-duplicate" in errors[0]
+    ended: list[bool] = []
+    made.processes.end(SLEEPER, life, lambda: ended.append(True))
+    assert live(network, lambda: bool(ended))
+
+
+def test_a_start_while_the_process_ends_comes_after_its_end(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    slow = (
+        'import os, signal; signal.signal(signal.SIGTERM, lambda *_: open("told", "w").close());'
+        "open(str(os.getpid()), 'w').close()"
+    ).replace("'", '"')
+    made = site(python(slow + "; signal.pause(); " + NUMBERED + "; raise SystemExit(0)"))
+    made.start(SLEEPER)
+    group = program(made).group
+    assert group is not None
+    assert live(network, (tmp_path / "here" / str(group.number)).exists)
+    made.processes.end(SLEEPER)
+    made.start(SLEEPER)
+    assert program(made).group is group
+    assert live(network, lambda: program(made).group not in (None, group))
+    assert group.gone()
+
+
+def test_what_components_print_is_in_the_log_with_what_became_of_them(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made, heard = site(python('import sys; print("hello"); sys.exit("goodbye")')), fails(network)
+    made.start(SLEEPER)
+    assert live(network, lambda: bool(heard))
+    made.close()
+    lines = [line.split(" ", 3)[1:] for line in (tmp_path / "home.log").read_text().splitlines()]
+    assert ["stdout", SLEEPER, "hello"] in lines
+    assert ["stderr", SLEEPER, "goodbye"] in lines
+    notes = [text for stream, _, text in lines if stream == "site"]
+    assert notes[0].startswith("started as process ")
+    assert "has ended with code 1" in notes[1]
+
+
+def test_a_terminal_reaches_the_site_alone(network: Network, tmp_path: Path, site: Callable[..., Site]) -> None:
+    made = site(python(NUMBERED))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    (process,) = runs(tmp_path)
+    assert os.getsid(process) == os.getpgid(process) == process
+    made.close()
+    assert not alive(process)

@@ -1,0 +1,63 @@
+"""The log of a site: lines are added, it is put aside when it is full, and it breaks nothing where it cannot be."""
+
+from __future__ import annotations
+
+import logging
+import os
+from pathlib import Path
+
+import pytest
+
+from selfconf.site.log_file import MOST_LOGS, PUT_ASIDE, LogFile, forget_oldest
+
+
+def test_lines_are_added_to_what_is_there(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "home.log"
+    for text in (b"one\n", b"two\n"):
+        log = LogFile(path)
+        log.write(text)
+        log.close()
+    assert path.read_bytes() == b"one\ntwo\n"
+    assert path.stat().st_mode & 0o077 == 0
+
+
+def test_a_file_without_lines_is_not_made(tmp_path: Path) -> None:
+    LogFile(tmp_path / "home.log").close()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_file_is_put_aside_and_the_oldest_goes(tmp_path: Path) -> None:
+    log = LogFile(tmp_path / "home.log", most_bytes=30)
+    lines = [f"line {number:04}\n".encode() for number in range(40)]
+    for line in lines:
+        log.write(line)
+    log.close()
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["home.log", *(f"home.log.{number + 1}" for number in range(PUT_ASIDE))]
+    kept = b"".join((tmp_path / name).read_bytes() for name in [*reversed(names[1:]), names[0]])
+    assert kept == b"".join(lines[-kept.count(b"\n") :])
+    assert all(path.stat().st_size <= 30 for path in tmp_path.iterdir())
+
+
+def test_where_nothing_can_be_written_that_is_said_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "file").write_text("")
+    log = LogFile(tmp_path / "file" / "home.log")
+    with caplog.at_level(logging.WARNING):
+        log.write(b"one\n")
+        log.write(b"two\n")
+    assert len(caplog.records) == 1
+    assert "cannot write" in caplog.text
+
+
+def test_the_oldest_logs_of_sites_that_have_ended_are_forgotten(tmp_path: Path) -> None:
+    for number in range(MOST_LOGS + 5):
+        for suffix in ("", ".1"):
+            path = tmp_path / f"home@s{number:02}.log{suffix}"
+            path.write_text("line\n")
+            os.utime(path, ns=(number, number))
+    (tmp_path / "other.txt").write_text("stays")
+    forget_oldest(tmp_path, {"home@s00.log"})
+    left = sorted(path.name for path in tmp_path.iterdir())
+    expected = ["home@s00.log", *(f"home@s{number:02}.log" for number in range(5, MOST_LOGS + 5))]
+    assert left == sorted([*expected, *(f"{name}.1" for name in expected), "other.txt"])
+    forget_oldest(tmp_path / "nowhere", ())

@@ -1,0 +1,88 @@
+"""A process with all that it starts: in a session of its own, ended as a whole."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from selfconf.site.process_group import ProcessGroup
+from selfconf.termination import alive
+from tests.site.test_processes import until
+
+pytestmark = pytest.mark.process
+CHILD = (
+    "import os, signal, subprocess, sys;"
+    "child = subprocess.Popen([sys.executable, '-c', 'import signal; signal.pause()']);"
+    "open('child', 'w').write(str(child.pid));"
+)
+
+
+@pytest.fixture
+def groups() -> Iterator[list[ProcessGroup]]:
+    """Groups that are ended after the test."""
+    made: list[ProcessGroup] = []
+    yield made
+    for group in made:
+        group.kill()
+        group.wait(10)
+
+
+def started(groups: list[ProcessGroup], folder: Path, code: str) -> ProcessGroup:
+    """A program of Python."""
+    group = ProcessGroup([sys.executable, "-c", code], folder, os.environ)
+    for _, pipe in group.pipes():
+        os.close(pipe)
+    groups.append(group)
+    return group
+
+
+def test_a_group_has_a_session_of_its_own(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    group = started(groups, tmp_path, "import signal; signal.pause()")
+    assert os.getsid(group.number) == os.getpgid(group.number) == group.number != os.getsid(0)
+    assert group.code() is None
+    assert not group.gone()
+
+
+def test_with_a_program_ends_what_it_has_started(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    group = started(groups, tmp_path, CHILD + "signal.pause()")
+    assert until(lambda: (tmp_path / "child").exists() and (tmp_path / "child").read_text() != "")
+    child = int((tmp_path / "child").read_text())
+    group.terminate()
+    assert group.wait(10)
+    assert until(lambda: not alive(child))
+
+
+def test_a_program_that_leaves_something_behind_is_not_gone(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    group = started(groups, tmp_path, CHILD + "os._exit(3)")
+    assert group.wait(10)
+    assert group.code() == 3
+    child = int((tmp_path / "child").read_text())
+    assert alive(child)
+    assert not group.gone()
+    group.kill()
+    assert until(lambda: not alive(child))
+
+
+def test_a_program_that_is_stopped_is_frozen_until_it_goes_on(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    group = started(groups, tmp_path, "import signal; signal.pause()")
+    assert not group.frozen()
+    os.kill(group.number, signal.SIGSTOP)
+    assert until(group.frozen)
+    os.kill(group.number, signal.SIGCONT)
+    assert until(lambda: not group.frozen())
+    group.kill()
+    assert group.wait(10)
+    assert not group.frozen()
+
+
+def test_signals_to_a_group_that_is_gone_reach_nobody(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    group = started(groups, tmp_path, "pass")
+    assert group.wait(10)
+    assert until(group.gone)
+    group.terminate()
+    group.kill()
