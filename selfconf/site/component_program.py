@@ -35,7 +35,7 @@ from selfconf.termination import parent_environment
 
 log = logging.getLogger(__name__)
 
-PROCESS_CHECK = 0.2
+PROCESS_CHECK = 0.5
 """How often, in seconds, it is looked whether a started process still runs; its end is mostly heard of at once."""
 ENDING_CHECK = 0.02
 """How often, in seconds, it is looked whether a process that is to end has ended."""
@@ -185,20 +185,19 @@ class ComponentProgram:
         if code is not None:
             self._ended(code)
             return
-        trouble = self._trouble(self.group.frozen())
+        trouble = self._trouble(self.group)
         if trouble is None:
             self._check_in(PROCESS_CHECK)
         else:
             self._end_for(trouble)
 
-    def _trouble(self, frozen: bool) -> str | None:
-        """Why the process has to be ended, in words: one component of it hangs, or none lives."""
-        found = [watch.trouble(frozen) for watch in self._watches.values()]
-        if any(watch.alive for watch in self._watches.values()):
-            return next(
-                (each for each, one in zip(found, self._watches.values(), strict=True) if one.alive and each), None
-            )
-        return next(iter(found), None)
+    def _trouble(self, group: ProcessGroup) -> str | None:
+        """Why the process has to be ended, in words: a component of it hangs, or none of them lives."""
+        living = [watch for watch in self._watches.values() if watch.alive]
+        if living:
+            return next((found for watch in living if (found := watch.hanging())), None)
+        frozen = group.frozen()
+        return next((found for watch in self._watches.values() if (found := watch.lifeless(frozen))), None)
 
     def _check_ending(self, group: ProcessGroup, since: float) -> None:
         waited = self._bus.now() - since

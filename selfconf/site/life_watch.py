@@ -58,18 +58,21 @@ class LifeWatch:
         """Whether a life of the component is that of the process, as far as can be told."""
         return life == self._life or (life in self._lives and self._life not in self._lives)
 
-    def trouble(self, frozen: bool) -> str | None:
-        """Why the process has to be ended, in words; None while it need not. `frozen`: it is stopped by a signal."""
-        now = self._bus.now()
-        if not self._lives:
-            lifeless = now - self._lifeless_since
-            if frozen and lifeless > FROZEN:
-                return f"has been frozen for {lifeless:.0f} s (SIGSTOP)"
-            return f"has had no life for {lifeless:.0f} s" if lifeless > WITHOUT_LIFE else None
-        unanswered = 0.0 if self._unanswered_since is None else now - self._unanswered_since
-        if unanswered > (self._profile.deadline or LONGEST_CALLBACK) + BEYOND_DEADLINE:
-            return f"has not answered for {unanswered:.0f} s: it hangs"
-        return None
+    def lifeless(self, frozen: bool) -> str | None:
+        """Why a process without a living component has to be ended, in words. `frozen`: it is stopped by a signal."""
+        lifeless = self._bus.now() - self._lifeless_since
+        if frozen and lifeless > FROZEN:
+            return f"has had no life for {lifeless:.0f} s and is frozen (SIGSTOP)"
+        return f"has had no life for {lifeless:.0f} s" if lifeless > WITHOUT_LIFE else None
+
+    def hanging(self) -> str | None:
+        """Why the process of a living component has to be ended, in words."""
+        if self._unanswered_since is None:
+            return None
+        unanswered = self._bus.now() - self._unanswered_since
+        if unanswered <= (self._profile.deadline or LONGEST_CALLBACK) + BEYOND_DEADLINE:
+            return None
+        return f"has not answered for {unanswered:.0f} s: it hangs"
 
     def _life_changed(self, key: str, alive: bool) -> None:
         if alive:

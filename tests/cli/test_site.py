@@ -148,3 +148,15 @@ def test_what_components_print_is_kept_and_ctrl_c_ends_them_with_their_site(home
     assert site.end(signal.SIGINT) == 0
     assert not alive(process)
     assert "hello\n" in site.complaints
+
+
+def test_a_component_that_is_frozen_is_ended_and_lives_again(home: Home) -> None:
+    dormant(home, "tracker")
+    site = home.site("a", "ads")
+    wake(home, "tracker")
+    assert home.until(lambda: home.state(component_of("tracker")) is not None)
+    (process,) = site.children()
+    os.kill(process, signal.SIGSTOP)
+    assert home.until(lambda: not alive(process))
+    assert home.until(lambda: home.state(component_of("tracker")) is not None)
+    assert process not in site.children()

@@ -192,7 +192,7 @@ def test_a_process_that_is_frozen_before_it_lives_is_ended_and_started_again(
     os.kill(runs(tmp_path)[0], signal.SIGSTOP)
     assert live(network, lambda: len(runs(tmp_path)) == 2)
     assert [alive(process) for process in runs(tmp_path)] == [False, True]
-    assert "has been frozen" in heard[0].detail
+    assert "is frozen" in heard[0].detail
     assert "its site ends it; it is started again" in heard[0].detail
 
 

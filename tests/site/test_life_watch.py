@@ -51,25 +51,25 @@ def passes(network: Network, seconds: float) -> None:
 def test_a_process_has_some_time_until_its_component_lives(network: Network) -> None:
     watch = watched(network)
     passes(network, WITHOUT_LIFE - 0.5)
-    assert watch.trouble(frozen=False) is None
+    assert watch.lifeless(frozen=False) is None
     passes(network, 1.0)
-    assert "has had no life" in (watch.trouble(frozen=False) or "")
+    assert "has had no life" in (watch.lifeless(frozen=False) or "")
 
 
 def test_a_process_that_is_frozen_before_it_lives_is_noticed_soon(network: Network) -> None:
     watch = watched(network)
     passes(network, FROZEN - 0.5)
-    assert watch.trouble(frozen=True) is None
+    assert watch.lifeless(frozen=True) is None
     passes(network, 1.0)
-    assert "frozen" in (watch.trouble(frozen=True) or "")
-    assert watch.trouble(frozen=False) is None
+    assert "frozen" in (watch.lifeless(frozen=True) or "")
+    assert watch.lifeless(frozen=False) is None
 
 
 def test_a_component_that_lives_and_answers_is_left_alone(network: Network) -> None:
     watch, actor = watched(network), Actor(network)
     passes(network, 100.0)
     assert watch.alive
-    assert watch.trouble(frozen=False) is watch.trouble(frozen=True) is None
+    assert watch.hanging() is None
     assert 90 <= actor.asked <= 100 / QUESTION_ACTIVE
 
 
@@ -78,7 +78,7 @@ def test_a_component_that_is_not_active_is_asked_rarely(network: Network) -> Non
     actor.active = False
     passes(network, 100.0)
     assert actor.asked <= 100 / QUESTION_IDLE + 1
-    assert watch.trouble(frozen=False) is None
+    assert watch.hanging() is None
 
 
 @pytest.mark.parametrize("deadline", [None, 0.5, 30.0])
@@ -90,9 +90,9 @@ def test_a_component_that_does_not_answer_for_longer_than_a_callback_may_take_ha
     actor.answers = False
     longest = (deadline or LONGEST_CALLBACK) + BEYOND_DEADLINE
     passes(network, longest - 0.5)
-    assert watch.trouble(frozen=False) is None
+    assert watch.hanging() is None
     passes(network, 0.5 + 2 * QUESTION_ACTIVE)
-    assert "it hangs" in (watch.trouble(frozen=False) or "")
+    assert "it hangs" in (watch.hanging() or "")
 
 
 def test_a_component_that_answers_again_in_time_does_not_hang(network: Network) -> None:
@@ -102,14 +102,14 @@ def test_a_component_that_answers_again_in_time_does_not_hang(network: Network) 
         passes(network, LONGEST_CALLBACK - 2.0)
         actor.answers = True
         passes(network, 3.0)
-    assert watch.trouble(frozen=False) is None
+    assert watch.hanging() is None
 
 
 def test_what_another_life_answers_does_not_count(network: Network) -> None:
     watch, actor, _ = watched(network), Actor(network), Actor(network, "other")
     actor.answers = False
     passes(network, LONGEST_CALLBACK + BEYOND_DEADLINE + 3.0)
-    assert "it hangs" in (watch.trouble(frozen=False) or "")
+    assert "it hangs" in (watch.hanging() or "")
 
 
 def test_a_program_that_names_its_life_itself_is_watched_as_well(network: Network) -> None:
@@ -118,10 +118,10 @@ def test_a_program_that_names_its_life_itself_is_watched_as_well(network: Networ
     assert watch.is_life("of-its-own")
     assert watch.is_life("own")
     assert not watch.is_life("another")
-    assert watch.trouble(frozen=False) is None
+    assert watch.hanging() is None
     actor.answers = False
     passes(network, LONGEST_CALLBACK + BEYOND_DEADLINE + 3.0)
-    assert watch.trouble(frozen=False) is not None
+    assert watch.hanging() is not None
 
 
 def test_the_life_of_a_second_process_is_not_that_of_the_first(network: Network) -> None:
@@ -137,9 +137,9 @@ def test_a_life_that_ends_begins_the_time_anew(network: Network) -> None:
     actor.end_life()
     passes(network, WITHOUT_LIFE - 1.0)
     assert not watch.alive
-    assert watch.trouble(frozen=False) is None
+    assert watch.lifeless(frozen=False) is None
     passes(network, 2.0)
-    assert watch.trouble(frozen=False) is not None
+    assert watch.lifeless(frozen=False) is not None
 
 
 def test_a_watch_that_is_closed_asks_nothing(network: Network) -> None:
