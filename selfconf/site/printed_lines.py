@@ -30,6 +30,10 @@ LONGEST_LINE = 8192
 """A line of more bytes is broken."""
 CHUNK = 1 << 13
 """How many bytes are read at a time."""
+MOST_A_SECOND = 1 << 19
+"""How many bytes a second are read of one pipe: who prints more has to wait, and does not keep the site busy."""
+PIPE_HOLDS = 1 << 16
+"""How many bytes Linux keeps in a pipe."""
 SHOWN_AT_ONCE = 1000
 """How many pieces wait for a terminal before more are left out."""
 STDERR = 2
@@ -47,6 +51,10 @@ class _Pipe:
     ended: Callable[[], None]
     rest: bytes = b""
     """The beginning of a line whose end has not come yet."""
+    second: float = 0.0
+    """When the second began in which bytes are counted."""
+    in_second: int = 0
+    """How many bytes were read in this second."""
 
 
 class PrintedLines:
@@ -60,6 +68,8 @@ class PrintedLines:
         self._woken, self._wake = socket.socketpair()
         self._wake.setblocking(False)
         self._selector.register(self._woken, selectors.EVENT_READ)
+        self._resting: dict[int, _Pipe] = {}
+        """The pipes that are not read for the rest of their second."""
         self._shown = _Shown()
         self._reading = threading.Thread(target=self._read, name="printed lines", daemon=True)
         self._reading.start()
@@ -86,8 +96,7 @@ class PrintedLines:
     def _read(self) -> None:
         going_on = True
         while going_on:
-            ready = self._selector.select()
-            for key, _ in ready:
+            for key, _ in self._selector.select(self._read_again()):
                 if isinstance(key.data, _Pipe):
                     self._hear(key.fd, key.data)
                 else:
@@ -95,13 +104,31 @@ class PrintedLines:
                     going_on = self._obey()
         for key in list(self._selector.get_map().values()):
             if isinstance(key.data, _Pipe):
-                os.set_blocking(key.fd, False)
-                self._hear(key.fd, key.data)
+                self._resting[key.fd] = key.data
+        for descriptor, pipe in self._resting.items():
+            self._hear_the_rest(descriptor, pipe)
         self._selector.close()
         self._woken.close()
         self._wake.close()
         if self._log is not None:
             self._log.close()
+
+    def _read_again(self) -> float | None:
+        """Read the pipes again whose second is over; return how long it takes until the next one's is."""
+        now = time.monotonic()
+        for descriptor, pipe in list(self._resting.items()):
+            if now >= pipe.second + 1.0:
+                del self._resting[descriptor]
+                self._selector.register(descriptor, selectors.EVENT_READ, pipe)
+        return min((pipe.second + 1.0 - now for pipe in self._resting.values()), default=None)
+
+    def _hear_the_rest(self, descriptor: int, pipe: _Pipe) -> None:
+        """Read what is in a pipe, and no more."""
+        os.set_blocking(descriptor, False)
+        with contextlib.suppress(OSError):
+            self._say(pipe, os.read(descriptor, PIPE_HOLDS))
+        self._say(pipe, b"")
+        os.close(descriptor)
 
     def _obey(self) -> bool:
         """Carry out what is ordered; return whether to go on."""
@@ -120,10 +147,24 @@ class PrintedLines:
         """Read some lines."""
         try:
             said = os.read(descriptor, CHUNK)
-        except BlockingIOError:
-            return
         except OSError:
             said = b""
+        self._say(pipe, said)
+        if not said:
+            self._selector.unregister(descriptor)
+            os.close(descriptor)
+            pipe.ended()
+            return
+        now = time.monotonic()
+        if now >= pipe.second + 1.0:
+            pipe.second, pipe.in_second = now, 0
+        pipe.in_second += len(said)
+        if pipe.in_second > MOST_A_SECOND:
+            self._selector.unregister(descriptor)
+            self._resting[descriptor] = pipe
+
+    def _say(self, pipe: _Pipe, said: bytes) -> None:
+        """Keep and show the lines that are whole now; at the end of a pipe the last line is whole as it is."""
         whole, newline, rest = (pipe.rest + said).rpartition(b"\n")
         if not said or len(rest) > LONGEST_LINE:
             whole, newline, rest = pipe.rest + said, b"\n", b""
@@ -131,10 +172,6 @@ class PrintedLines:
         if whole:
             self._keep(_worded(pipe.stream, pipe.source, whole.split(b"\n")))
             self._shown.show(whole + newline)
-        if not said:
-            self._selector.unregister(descriptor)
-            os.close(descriptor)
-            pipe.ended()
 
     def _keep(self, lines: bytes) -> None:
         if self._log is not None:

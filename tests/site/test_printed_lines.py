@@ -120,3 +120,19 @@ def test_without_a_log_lines_are_only_shown(capfd: pytest.CaptureFixture[str]) -
     printed.note("urn:c", "started")
     printed.close()
     assert capfd.readouterr().err == "hello\n"
+
+
+def test_who_prints_very_much_has_to_wait_and_others_do_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(printed_lines, "MOST_A_SECOND", CHUNK)
+    monkeypatch.setattr(printed_lines, "LAST_LINES", 10.0)
+    printed = PrintedLines(LogFile(tmp_path / "home.log"))
+    ended, (reading, writing) = threading.Event(), os.pipe()
+    printed.follow(reading, "stdout", "urn:much", ended.set)
+    os.write(writing, b"much\n" * (4 * CHUNK // 5))
+    say(printed, b"little\n", "urn:little")
+    os.close(writing)
+    assert not ended.is_set()
+    printed.close()
+    found = kept(tmp_path)
+    assert found.count(("stdout", "urn:much", "much")) == 4 * CHUNK // 5
+    assert ("stdout", "urn:little", "little") in found[: 3 * CHUNK // 5]
