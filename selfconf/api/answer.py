@@ -19,6 +19,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
@@ -205,6 +206,16 @@ class Inquiry:
             for role, candidates in zip(self.task.roles, partition.candidates, strict=True)
         }
         """How many components are eligible for each role."""
+        self.left_out = tuple(
+            LeftOut(self._source(component), component, why.reason)
+            for component, why in sorted(partitioner.not_judged.items())
+        )
+        """The components that play no role as what they say cannot be judged, or would take too long."""
+
+    def _source(self, component: IRI) -> str:
+        """The name of what a component is described in."""
+        place = self.ecology[component].profile.place
+        return place.source if place else "the ecology"
 
     def answer(self, what_if: bool = False) -> Answer | Refusal | Undecided:
         """The configuration, or why there is none, within the time of the method."""

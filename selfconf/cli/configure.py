@@ -53,6 +53,8 @@ def run(given: argparse.Namespace) -> int:
         inquiry = Inquiry(task, ecology, method)
         if given.ads is None:
             complain_of(ecology)
+    for one in inquiry.left_out:
+        complain(str(one))
     answer = inquiry.answer(given.what_if)
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
         complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")

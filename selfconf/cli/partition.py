@@ -16,7 +16,7 @@ from selfconf.cli.options import (
     given_ecology,
     task_of,
 )
-from selfconf.cli.terminal import display
+from selfconf.cli.terminal import complain, display
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Inquiry
@@ -50,6 +50,8 @@ def run(given: argparse.Namespace) -> int:
         inquiry = Inquiry(task, ecology, Method.of(reasoning=given.reasoning, ontologies=given.ontology))
         if given.ads is None:
             complain_of(ecology)
+    for one in inquiry.left_out:
+        complain(str(one))
     if given.show:
         display(_exported(inquiry, given.show))
         return 0

@@ -226,6 +226,17 @@ class NoCommonValue(_Predicate):
         return "leaves no value for a free parameter that its statements agree on"
 
 
+@dataclass(frozen=True, slots=True)
+class NotJudged(_Predicate):
+    """What the component says would take too long to judge, or cannot be judged at all; so it plays no role."""
+
+    code: ClassVar[str] = "not-judged"
+    reason: str
+
+    def __str__(self) -> str:
+        return f"is not judged: {self.reason}"
+
+
 Obstacle = (
     WrongType
     | WrongComponent
@@ -235,6 +246,7 @@ Obstacle = (
     | Excluded
     | ShapeViolated
     | NoCommonValue
+    | NotJudged
 )
 
 

@@ -6,9 +6,14 @@ rdflib with literal normalisation off for the whole process, and any other store
 
 from __future__ import annotations
 
+import math
 import re
+import time
 import warnings
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
 
 import rdflib
 from pyparsing import ParseException
@@ -20,20 +25,31 @@ from pyshacl.errors import (
     ShapeRecursionWarning,
     ValidationFailure,
 )
+from pyshacl.graph_abstraction import DataGraph
+from pyshacl.rdfutil.load import load_from_source
+from pyshacl.validator import Validator
 
 from selfconf.errors import TemplateError
-from selfconf.model.obstacle import ShapeViolated
+from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
-from selfconf.rdf.deadline import TimeUp, processor_limit
+from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
+from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED
+from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
 
-SHAPE_SECONDS = 30.0
-"""Processor time that judging by one shape may take: what a pattern or query is matched against is untrusted."""
+SHAPE_SECONDS = 120.0
+"""Processor time that judging by one shape may take."""
+EXTRA_SECONDS = 0.4
+"""Processor time that components may take in all beyond what is usual for the shape: what they say is untrusted."""
+USUAL_SECONDS = 0.002
+"""Processor time that is usual for a component, as long as none has been judged."""
+LEAST_SECONDS = 0.05
+"""Processor time for one more try; clocks of processor time go by milliseconds."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 _ASKING = rdflib.URIRef("urn:selfconf:asking")
 _DEEPEST = 16
-"""How many shapes within shapes pySHACL follows: its 15, and the one that asks."""
+"""How many shapes within shapes pySHACL follows: its 15, and the one that asks for them in a trial run."""
 _TARGETS = frozenset(
     (_SH.targetClass, _SH.targetNode, _SH.targetSubjectsOf, _SH.targetObjectsOf, _SH.target, _SH.targetWhere)
 )
@@ -43,12 +59,12 @@ _NOTHING = IRI("urn:selfconf:nothing")
 """A node about which nothing is said."""
 _NO_ORDER = (*UNORDERED, ReportableRuntimeError)
 """What comes through pySHACL where two values have no order; the last is its own, for blank nodes."""
+_SHAPE_AT_FAULT = (ShapeLoadError, ConstraintLoadError, ParseException)
+"""What pySHACL raises where nothing but the shape can be at fault."""
 _ILL_FORMED = (
     *UNORDERED,
-    ShapeLoadError,
-    ConstraintLoadError,
+    *_SHAPE_AT_FAULT,
     ReportableRuntimeError,
-    ParseException,
     re.error,
     AssertionError,
     AttributeError,
@@ -60,81 +76,147 @@ _ILL_FORMED = (
 
 
 def violations(
-    subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
-) -> dict[IRI, list[ShapeViolated]]:
+    subjects: rdflib.Graph,
+    shapes: rdflib.Graph,
+    shape: IRI,
+    focus: Sequence[IRI],
+    source: str,
+    called: str | None = None,
+    detailed: bool = True,
+) -> dict[IRI, list[ShapeViolated | NotJudged]]:
     """The nodes of `focus` that do not conform to `shape`, each with its violations, one for each property shape.
 
     Conformance is that of SHACL, section 3.4: a result of any severity counts. So does a value that cannot be compared
-    with another (4.3, 4.5.3). Raises TemplateError, blaming `source`, where the shape itself is not well-formed.
+    with another (4.3, 4.5.3). A node whose statements take too long to judge, or that pySHACL cannot judge, is
+    `NotJudged`; the others do not suffer from it. Without details the first violation will do. Raises TemplateError,
+    blaming `source` and the shape as it is `called`, where the shape itself is not well-formed.
     """
     if not focus:
         return {}
+    called = called or f"the shape {shape!r}"
     for reason in faults(shapes).values():
-        raise TemplateError(f"the shape {shape!r} is not evaluated: {reason}", file=source)
+        raise TemplateError(f"{called} is not evaluated: {reason}", file=source)
     try:
-        with processor_limit(SHAPE_SECONDS):
-            try:
-                return _found(subjects, shapes, shape, focus, source)
-            except _NO_ORDER:
-                _found(subjects, shapes, shape, [_NOTHING], source)  # the shape may be at fault: it then is here too
-                return _bisected(subjects, shapes, shape, focus, source)
+        with processor_limit(SHAPE_SECONDS), linear_patterns(), _silent():
+            judge = _Judge(subjects, shapes, shape, detailed)
+            found: dict[IRI, list[ShapeViolated | NotJudged]] = {}
+            for size, node in sorted((judge.size(node), node) for node in focus):
+                wrong = judge.wrong(node, size)
+                if wrong:
+                    found[node] = wrong
+            return found
     except TimeUp:
-        raise TemplateError(
-            f"judging {len(focus)} components by the shape {shape!r} takes more than {SHAPE_SECONDS:g} s of processor "
-            "time; look for a sh:pattern that repeats what is repeated already, such as ^(a+)+$",
-            file=source,
-        ) from None
+        raise TemplateError(f"{called} takes more than {SHAPE_SECONDS:g} s of processor time", file=source) from None
+    except ValidationFailure as error:
+        raise TemplateError(f"{called} cannot be judged: {first_line(str(error.message))}", file=source) from error
     except _ILL_FORMED as error:
-        raise TemplateError(f"the shape {shape!r} is not well-formed: {reason_of(error)}", file=source) from error
+        raise TemplateError(f"{called} is not well-formed: {reason_of(error)}", file=source) from error
 
 
-def _bisected(
-    subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
-) -> dict[IRI, list[ShapeViolated]]:
-    """The violations of each node where pySHACL stops at some, as they have values without an order."""
-    try:
-        return _found(subjects, shapes, shape, focus, source)
-    except _NO_ORDER:
-        if len(focus) == 1:
-            return {focus[0]: [ShapeViolated("Value cannot be compared")]}
-    half = len(focus) // 2
-    parts = [_bisected(subjects, shapes, shape, part, source) for part in (focus[:half], focus[half:])]
-    return parts[0] | parts[1]
+class _Judge:
+    """pySHACL, asked about one node after another, so that each answers for its own statements alone."""
+
+    def __init__(self, subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, detailed: bool) -> None:
+        dataset = load_from_source(subjects, multigraph=True)
+        dataset.default_union = True  # pySHACL looks at all of its graphs
+        data = DataGraph.from_rdflib(dataset)
+        loaded = load_from_source(aimed(shapes, (shape,), ()), multigraph=True)
+        options = {"max_validation_depth": _DEEPEST, "abort_on_first": not detailed}
+        validator = Validator(data, shacl_graph=loaded, options=options)
+        assert validator.shacl_graph.shapes  # looks at all of them: what is ill-formed shows
+        self._graph, self._data, self._executor = subjects, data, validator.make_executor()
+        self._shares = _Shares()
+        self._shape = validator.shacl_graph.lookup_shape_from_node(rdflib.URIRef(shape))
+        list(self._violations(_NOTHING))  # what is at fault with nothing said is the shape
+
+    def size(self, node: IRI) -> int:
+        """How many values a node has of the property of which it has most: what a query may have to combine."""
+        return max(
+            Counter(predicate for _, predicate, _ in self._graph.triples((rdflib.URIRef(node), None, None))).values(),
+            default=0,
+        )
+
+    def wrong(self, node: IRI, size: int) -> list[ShapeViolated | NotJudged]:
+        """What keeps a node of some size from conforming; nothing if it conforms."""
+        try:
+            with self._shares.limit(size):
+                return list(self._violations(node))
+        except MatchTooCostly as error:
+            return [NotJudged(str(error))]
+        except ProcessorTimeUp:
+            return [NotJudged("what it says takes too long to be judged by the shape")]
+        except _SHAPE_AT_FAULT:
+            raise
+        except _ILL_FORMED as error:
+            if isinstance(error, _NO_ORDER):
+                return [ShapeViolated("Value cannot be compared")]
+            return [NotJudged(f"pySHACL stops at what it says ({reason_of(error)})")]
+
+    def _violations(self, node: IRI) -> Iterable[ShapeViolated]:
+        conforms, results = self._shape.validate(self._executor, self._data, focus=rdflib.URIRef(node))
+        return () if conforms and not results else _details(results)
 
 
-def _found(
-    subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, focus: Sequence[IRI], source: str
-) -> dict[IRI, list[ShapeViolated]]:
-    report, text = judged(subjects, aimed(shapes, (shape,), focus))
-    if isinstance(report, ValidationFailure) or not isinstance(report, rdflib.Graph):
-        raise TemplateError(f"the shape {shape!r} cannot be judged: {first_line(text)}", file=source)
-    found: dict[IRI, list[ShapeViolated]] = {}
-    for result in report.objects(predicate=_SH.result):
-        found[IRI(str(report.value(result, _SH.focusNode)))] = _details(report, result)
-    return found
+class _Shares:
+    """How much processor time each node may take: twice what is usual, and some may take more, but not for long.
+
+    Once the time beyond the usual is used up, a node is not tried if it says more than any that was judged, and as much
+    as one that took too long. So nodes are judged in the order of their size.
+    """
+
+    def __init__(self) -> None:
+        self._left, self._judged, self._taken = EXTRA_SECONDS, 1, USUAL_SECONDS
+        self._fine, self._too_large = 0, math.inf
+
+    @contextmanager
+    def limit(self, size: int) -> Iterator[None]:
+        """The share of a node of some size."""
+        if self._left < LEAST_SECONDS and size > self._fine and size >= self._too_large:
+            raise ProcessorTimeUp
+        began = time.process_time()
+        try:
+            with processor_limit(2 * self._taken / self._judged + self._left / 2):
+                yield
+        except ProcessorTimeUp:
+            self._left = max(self._left - (time.process_time() - began), 0.0)
+            self._too_large = min(self._too_large, size)
+            raise
+        self._judged += 1
+        self._taken += time.process_time() - began
+        self._fine = max(self._fine, size)
 
 
-def _details(report: rdflib.Graph, result: rdflib.term.Node) -> list[ShapeViolated]:
+@contextmanager
+def _silent() -> Iterator[None]:
+    """No warning that a shape comes back to itself.
+
+    SHACL leaves open what such a shape means (3.4.3); pySHACL takes it to hold where it comes back.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ShapeRecursionWarning)
+        yield
+
+
+def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, Any, Any]]]]) -> list[ShapeViolated]:
     """What a node lacks, sorted: of each property shape, and of each constraint on the node itself, one violation."""
     least: dict[tuple[object, ...], ShapeViolated] = {}
-    for detail in report.objects(result, _SH.detail):
-        path = report.value(detail, _SH.resultPath)
-        message = str(report.value(detail, _SH.resultMessage) or "does not conform")
+    for _, result, triples in results:
+        said: dict[Any, Any] = {}
+        for subject, predicate, value in triples:
+            if subject == result:
+                said.setdefault(predicate, value[1] if isinstance(value, tuple) else value)
+        path = said.get(_SH.resultPath)
+        message = str(said.get(_SH.resultMessage) or "does not conform")
         one = ShapeViolated(message, IRI(str(path)) if isinstance(path, rdflib.URIRef) else None)
-        constraint = (report.value(detail, _SH.sourceConstraintComponent), message) if path is None else ()
-        thing = report.value(detail, _SH.sourceShape), *constraint
+        constraint = (said.get(_SH.sourceConstraintComponent), message) if path is None else ()
+        thing = said.get(_SH.sourceShape), *constraint
         least[thing] = min(one, least.get(thing, one), key=lambda violation: violation.message)
     return sorted(least.values(), key=lambda violation: violation.message) or [ShapeViolated("does not conform")]
 
 
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
-    """The report of pySHACL and its text.
-
-    That a shape comes back to itself, it would tell on stderr; SHACL leaves open what such a shape means (3.4.3), and
-    pySHACL takes it to hold where it comes back.
-    """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ShapeRecursionWarning)
+    """The report of pySHACL and its text."""
+    with _silent():
         _, report, text = validate(
             subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST
         )

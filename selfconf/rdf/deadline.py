@@ -27,6 +27,10 @@ class TimeUp(BaseException):
     """The time is up; no `Exception`, because libraries on the way catch those."""
 
 
+class ProcessorTimeUp(TimeUp):
+    """The processor time is up, whatever the clock says."""
+
+
 class _Timer(NamedTuple):
     """A timer of the process: its number, the signal that it sends, and the clock that it goes by."""
 
@@ -67,4 +71,4 @@ def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
 
 
 def _raise(number: int, frame: FrameType | None) -> None:
-    raise TimeUp
+    raise ProcessorTimeUp if number == signal.SIGPROF else TimeUp

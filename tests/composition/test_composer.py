@@ -19,6 +19,7 @@ from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.tasks import templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
+from tests import hostile_words
 from tests.lab import PREFIXES, iri
 
 NOBODY: frozenset[IRI] = frozenset()
@@ -206,3 +207,21 @@ def test_components_that_were_passed_over_are_those_before_the_last_choice() -> 
     given = ecology(locator("gps", "Time"), locator("odometry"), locator("wheels"), controller("cap"))
     composer = Composer(task(PLAIN))
     assert composer.passed_over(configured(composer, given)) == {iri("position"): [iri("gps")], iri("control"): []}
+
+
+def test_what_strangers_say_keeps_them_out_and_no_one_else() -> None:
+    given = templates.read_task(turtle.parse(hostile_words.TEMPLATE, "template.ttl"))
+    strangers = [hostile_words.stranger(kind, 1) for kind in hostile_words.KINDS]
+    found = {
+        one.component: one
+        for text in (hostile_words.HONEST, *strangers)
+        for one in advertisements.read_document(turtle.parse(text, "ads.ttl"))[0]
+    }
+    composer = Composer(given)
+    first = composer.compose(found, NOBODY, None)
+    assert isinstance(first, Configuration)
+    assert first.components == tuple(map(iri, ("cam-1", "ear-1", "arm-1", "screen")))
+    assert sorted(composer.partitioner.not_judged) == [iri("stranger-beyond-1"), iri("stranger-crowd-1")]
+    second = composer.compose(found, frozenset({iri("cam-1"), iri("ear-1")}), first)
+    assert isinstance(second, Configuration)
+    assert second.components == tuple(map(iri, ("cam-2", "ear-2", "arm-1", "screen")))

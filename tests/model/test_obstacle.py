@@ -15,6 +15,7 @@ from selfconf.model.obstacle import (
     NoAlternative,
     NoCommonValue,
     NotAmong,
+    NotJudged,
     Obstacle,
     ParameterUndeclared,
     PropertyUnmet,
@@ -79,6 +80,7 @@ WORDED: list[tuple[Obstacle, str, str]] = [
         "leaves no value for a free parameter that its statements agree on",
         "it leaves no value for a free parameter that its statements agree on",
     ),
+    (NotJudged("too much"), "is not judged: too much", "it is not judged: too much"),
 ]
 
 
@@ -102,6 +104,7 @@ def test_codes_are_stable_and_different() -> None:
         "excluded",
         "no-alternative",
         "no-common-value",
+        "not-judged",
         "parameter-undeclared",
         "property-unmet",
         "shape-violated",

@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager
 
 import pytest
 
-from selfconf.rdf.deadline import TimeUp, deadline, processor_limit
+from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, deadline, processor_limit
 
 Limit = Callable[[float], AbstractContextManager[None]]
 LIMITS = pytest.mark.parametrize("limit", [deadline, processor_limit])
@@ -64,3 +64,16 @@ def test_outside_of_the_main_thread_there_is_no_limit(limit: Limit) -> None:
     thread.start()
     thread.join()
     assert done
+
+
+def test_processor_time_and_the_time_of_the_clock_are_told_apart() -> None:
+    with pytest.raises(TimeUp) as ended, deadline(0.05):
+        _spin()
+    assert not isinstance(ended.value, ProcessorTimeUp)
+    with pytest.raises(ProcessorTimeUp), processor_limit(0.05):
+        _spin()
+
+
+def _spin() -> None:
+    while True:
+        pass

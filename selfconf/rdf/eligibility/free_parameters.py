@@ -8,7 +8,7 @@ from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.tasks import shape_statements, suitable
 from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import SC, SH, TYPE
+from selfconf.rdf.vocabulary import RDFS, SC, SH, TYPE
 
 KEPT = 64
 """Of how many sets of values it is remembered which of them suit a parameter."""
@@ -40,6 +40,18 @@ def seen(document: Document, role: IRI, shown: Iterable[Triple]) -> set[Term]:
         if beginnings:
             found.add(subject)
     return found
+
+
+def looked_at(document: Document, role: IRI) -> frozenset[IRI] | None:
+    """The predicates that the shape of a role can look at; None where it could be any."""
+    said, named = set[IRI](), {TYPE, RDFS.subClassOf}
+    for predicate, value in shape_statements(document, role):
+        said.add(predicate)
+        if isinstance(value, IRI):
+            named.add(value)
+    if said & _QUERIES or SH.closed in said or document.instances(SH.ConstraintComponent):
+        return None
+    return frozenset(named)
 
 
 def enumerated(document: Document, parameter: IRI) -> set[Term]:

@@ -10,7 +10,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from selfconf.model.obstacle import NoCommonValue, Obstacle, ShapeViolated
+from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, ShapeViolated
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
@@ -86,7 +86,11 @@ def nearly(
 
     Where the shape says more than the tests, pySHACL has to agree that there is nothing else; it is asked about a few.
     """
-    few = [tested for tested in partitioner.tested(role, ecology, type_sets) if len(tested[2].obstacles) < 2]
+    few = [
+        tested
+        for tested in partitioner.tested(role, ecology, type_sets)
+        if len(tested[2].obstacles) < 2 and not any(isinstance(one, NotJudged) for one in tested[2].obstacles)
+    ]
     found = _by_tests(partitioner, role, few) if role.complete else _judged(partitioner, role, ecology, few)
     return sorted(found, key=_component)
 
@@ -131,10 +135,17 @@ def _judged(
         for a in focus:
             reasons[a][value] = [*obstacles[a], *_besides(judged.get(a.component, ()), tests[a])]
     for a, by_value in reasons.items():
-        near = {value: some[0] for value, some in by_value.items() if len(some) == 1}
-        if near and all(by_value.values()):
+        near = _alone(by_value)
+        if near:
             allows = {} if parameter is None or ANOTHER in near else {parameter: frozenset(near)}
             yield NearMiss(role.iri, a.component, next(iter(near.values())), allows)
+
+
+def _alone(by_value: Mapping[Term, Sequence[Obstacle]]) -> dict[Term, Obstacle]:
+    """The one obstacle for each value of a parameter that leaves one; none where a value leaves none, or is unclear."""
+    if not all(by_value.values()) or any(isinstance(one, NotJudged) for some in by_value.values() for one in some):
+        return {}
+    return {value: some[0] for value, some in by_value.items() if len(some) == 1}
 
 
 def _focus(obstacles: Mapping[Advertisement, Sequence[Obstacle]]) -> list[Advertisement]:
@@ -143,10 +154,10 @@ def _focus(obstacles: Mapping[Advertisement, Sequence[Obstacle]]) -> list[Advert
     return [a for a in by_name if not obstacles[a]][:JUDGED] + [a for a in by_name if obstacles[a]][:JUDGED]
 
 
-def _besides(violated: Iterable[ShapeViolated], failed: set[IRI | None]) -> list[ShapeViolated]:
+def _besides(violated: Iterable[ShapeViolated | NotJudged], failed: set[IRI | None]) -> list[Obstacle]:
     """Violations but the first that a failed test tells already, in its words."""
     violations = list(violated)
-    told = next((one for one in violations if one.path in failed), None)
+    told = next((one for one in violations if isinstance(one, ShapeViolated) and one.path in failed), None)
     return [one for one in violations if one is not told]
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.obstacle import Obstacle, ShapeViolated
+from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable, ordered
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term, sort_key
@@ -77,12 +77,16 @@ class Partitioner:
             for role in given.task.template.roles
         )
         self._above = ClassClosure(hierarchy)
+        self.not_judged: dict[IRI, NotJudged] = {}
+        """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""
+        self._given_up: dict[Advertisement, dict[IRI, NotJudged]] = {}
         self.suitable = free_values.Suitable(self._parameters, given.document)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
+        other.not_judged, other._given_up = {}, {}
         return other
 
     def partition(self, advertisements: Advertisements) -> Partition:
@@ -117,6 +121,8 @@ class Partitioner:
 
     def eligible(self, ecology: AdvertisementIndex) -> list[list[EligibleComponent]]:
         """For each role the components that conform to it, unordered. Raises TemplateError."""
+        self.not_judged = {}
+        self._given_up = {a: roles for a, roles in self._given_up.items() if ecology.get(a.component) == a}
         everything = [] if all(role.complete for role in self.roles) else list(ecology.values())
         found: list[list[EligibleComponent]] = []
         by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
@@ -130,7 +136,7 @@ class Partitioner:
                 by_value[number] = parameter, survivors
                 found.append([])
             else:
-                outside = self.violations(role, survivors, everything, {})
+                outside = self.violations(role, survivors, everything, {}, detailed=False)
                 found.append(
                     [EligibleComponent(a.profile, {}, _NOTHING) for a in survivors if a.component not in outside]
                 )
@@ -140,8 +146,13 @@ class Partitioner:
 
     def _passed(self, role: CompiledRole, ecology: AdvertisementIndex) -> list[tuple[Advertisement, TestOutcome]]:
         """The advertisements that pass all tests of a role, with what the tests say."""
-        tested = self.tested(role, ecology, self.akin(role, ecology))
-        return [(a, outcome) for _, alike, outcome in tested if not outcome.obstacles for a in alike]
+        passed: list[tuple[Advertisement, TestOutcome]] = []
+        for _, alike, outcome in self.tested(role, ecology, self.akin(role, ecology)):
+            if not outcome.obstacles:
+                passed += [(a, outcome) for a in alike]
+            elif isinstance(reason := outcome.obstacles[0], NotJudged):
+                self.not_judged.update((a.component, reason) for a in alike)
+        return passed
 
     def _suited(
         self,
@@ -190,7 +201,7 @@ class Partitioner:
         subjects = self.subjects(role, survivors, everything)
         others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
         for value in (*sorted(values, key=sort_key), *others):
-            outside = self.violations(role, survivors, everything, {parameter: value}, subjects)
+            outside = self.violations(role, survivors, everything, {parameter: value}, subjects, detailed=False)
             for component in allowed.keys() - outside.keys():
                 allowed[component].add(value)
         for advertisement in survivors:
@@ -207,8 +218,32 @@ class Partitioner:
         everything: Sequence[Advertisement],
         values: Mapping[IRI, Term],
         subjects: rdflib.Graph | None = None,
-    ) -> dict[IRI, list[ShapeViolated]]:
-        """What pySHACL finds wrong with some components, parameters replaced by their values."""
+        detailed: bool = True,
+    ) -> dict[IRI, list[ShapeViolated | NotJudged]]:
+        """What pySHACL finds wrong with some components, parameters replaced by their values.
+
+        Without details one violation of each will do. What took too long once is not tried again, as long as it is
+        advertised by the same words.
+        """
+        given_up = {a: self._given_up[a][role.iri] for a in focus if role.iri in self._given_up.get(a, ())}
+        found: dict[IRI, list[ShapeViolated | NotJudged]] = {a.component: [why] for a, why in given_up.items()}
+        found |= self._judged([a for a in focus if a not in given_up], role, everything, values, subjects, detailed)
+        for advertisement in focus:
+            for reason in found.get(advertisement.component, ()):
+                if isinstance(reason, NotJudged):
+                    self.not_judged[advertisement.component] = reason
+                    self._given_up.setdefault(advertisement, {})[role.iri] = reason
+        return found
+
+    def _judged(
+        self,
+        focus: Sequence[Advertisement],
+        role: CompiledRole,
+        everything: Sequence[Advertisement],
+        values: Mapping[IRI, Term],
+        subjects: rdflib.Graph | None,
+        detailed: bool,
+    ) -> dict[IRI, list[ShapeViolated | NotJudged]]:
         if not focus:
             return {}
         # Most roles are compiled in full, and then neither rdflib nor pySHACL is loaded.
@@ -217,7 +252,8 @@ class Partitioner:
 
         shapes = to_rdflib(bound_shape(self.document, {**self.task.bindings, **values}))
         seen = self.subjects(role, focus, everything) if subjects is None else subjects
-        return violations(seen, shapes, role.iri, [a.component for a in focus], self.document.source)
+        components = [advertisement.component for advertisement in focus]
+        return violations(seen, shapes, role.iri, components, self.document.source, detailed=detailed)
 
     def subjects(
         self, role: CompiledRole, focus: Sequence[Advertisement], everything: Sequence[Advertisement]
@@ -225,7 +261,9 @@ class Partitioner:
         """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
         from selfconf.rdf.rdflib_terms import to_rdflib
 
-        return to_rdflib(self.visible(focus if role.local else everything))
+        seen = self.visible(focus if role.local else everything)
+        named = free_values.looked_at(self.document, role.iri)
+        return to_rdflib(seen if named is None else (triple for triple in seen if triple[1] in named))
 
     def visible(self, advertisements: Sequence[Advertisement]) -> Iterator[Triple]:
         """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.

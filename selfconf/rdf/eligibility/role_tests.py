@@ -20,6 +20,7 @@ from selfconf.model.obstacle import (
     Missing,
     NoAlternative,
     NotAmong,
+    NotJudged,
     Obstacle,
     ParameterUndeclared,
     PropertyUnmet,
@@ -29,7 +30,7 @@ from selfconf.model.obstacle import (
 )
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term
-from selfconf.rdf.shacl import ValueTest
+from selfconf.rdf.shacl import MatchTooCostly, ValueTest
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,11 +167,12 @@ class CompiledRole:
         return tuple(test for test in self.tests if isinstance(test, ClassTest))
 
     def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[Obstacle]:
-        """Everything that keeps a component out, in the order of the shape."""
-        for test in self.tests:
-            reason = test.obstacle(profile, hierarchy)
-            if reason is not None:
-                yield reason
+        """Everything that keeps a component out, in the order of the shape; only that, where it cannot be judged."""
+        try:
+            found = [test.obstacle(profile, hierarchy) for test in self.tests]
+        except MatchTooCostly as error:
+            found = [NotJudged(str(error))]
+        yield from (reason for reason in found if reason is not None)
 
     def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
         """For each free parameter that the component constrains, the values it allows (perhaps none)."""

@@ -13,13 +13,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from types import ModuleType
 
-from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
-from selfconf.rdf.deadline import TimeUp, processor_limit
+from selfconf.rdf.shacl.patterns import Pattern, pattern
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
 
-PATTERN_SECONDS = 5.0
-"""Processor time that matching a pattern against one value may take."""
 _KINDS: Mapping[IRI, tuple[type, ...]] = {
     SH.IRI: (IRI,),
     SH.BlankNode: (BlankNode,),
@@ -48,7 +45,7 @@ class ValueTest:
     flags: str = ""
 
     def passes(self, value: Term) -> bool:
-        """Whether a value is as wanted."""
+        """Whether a value is as wanted. Raises MatchTooCostly for a pattern that takes too long to find out about."""
         return _passes(self, value)
 
 
@@ -89,11 +86,10 @@ def _compiles(test: ValueTest) -> bool:
     return True
 
 
-@lru_cache(maxsize=1024)
-def _expression(pattern: str, flags: str) -> re.Pattern[str]:
+def _expression(expression: str, flags: str) -> Pattern:
     """A pattern as pySHACL reads it: of the flags, `i` and `m`."""
     options = (re.IGNORECASE if "i" in flags.lower() else 0) | (re.MULTILINE if "m" in flags.lower() else 0)
-    return re.compile(pattern, options)
+    return pattern(expression, int(options))
 
 
 @lru_cache(maxsize=1 << 16)
@@ -115,21 +111,7 @@ def _passes(test: ValueTest, value: Term) -> bool:
         if least and number == 0:
             return True
         return not isinstance(value, BlankNode) and (len(str(value)) >= number if least else len(str(value)) <= number)
-    return not isinstance(value, BlankNode) and _matches(_expression(str(wanted), test.flags), str(value))
-
-
-def _matches(expression: re.Pattern[str], value: str) -> bool:
-    """Whether a pattern is found in a value. Raises TemplateError where that would take too long."""
-    if len(value) < 16:  # too short for the worst of patterns to take long
-        return expression.search(value) is not None
-    try:
-        with processor_limit(PATTERN_SECONDS):
-            return expression.search(value) is not None
-    except TimeUp:
-        raise TemplateError(
-            f"matching the sh:pattern {expression.pattern!r} takes more than {PATTERN_SECONDS:g} s of processor time; "
-            "it probably repeats what is repeated already, as ^(a+)+$ does"
-        ) from None
+    return not isinstance(value, BlankNode) and _expression(str(wanted), test.flags).finds(str(value))
 
 
 def _literals() -> ModuleType:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
-from selfconf.rdf.shacl import compiled
+from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SH, TYPE
 
@@ -19,7 +20,7 @@ def misfits(parameter: Parameter, values: Iterable[Term], document: Document) ->
     """
     constraints = _constraints(parameter.iri, document)
     tests, covered = compiled(constraints)
-    left = [value for value in values if covered != constraints.keys() or not all(test.passes(value) for test in tests)]
+    left = [value for value in values if covered != constraints.keys() or not _passes(tests, value)]
     return _judged(parameter, left, document) if constraints and left else {}
 
 
@@ -28,8 +29,16 @@ def suitable(parameter: Parameter, values: frozenset[Term], document: Document) 
     constraints = _constraints(parameter.iri, document)
     tests, covered = compiled(constraints)
     if covered == constraints.keys():
-        return frozenset([value for value in values if all(test.passes(value) for test in tests)])
+        return frozenset([value for value in values if _passes(tests, value)])
     return values - _judged(parameter, values, document).keys()
+
+
+def _passes(tests: Iterable[ValueTest], value: Term) -> bool:
+    """Whether a value passes all tests, and that can be told in time."""
+    try:
+        return all(test.passes(value) for test in tests)
+    except MatchTooCostly:
+        return False
 
 
 def _constraints(parameter: IRI, document: Document) -> dict[IRI, list[Term]]:
@@ -62,5 +71,10 @@ def _judged(parameter: Parameter, values: Iterable[Term], document: Document) ->
     subjects = rdflib.Graph()
     for one, value in probes.items():
         subjects.add((rdflib.URIRef(one), rdflib.URIRef(probe), rdflib_term(value)))
-    found = violations(subjects, shapes, probe_shape, list(probes), document.source)
-    return {value: found[one][0].message for one, value in probes.items() if one in found}
+    called = f"the parameter {parameter.name!r}"
+    found = violations(subjects, shapes, probe_shape, list(probes), document.source, called)
+    return {value: _reason(found[one][0]) for one, value in probes.items() if one in found}
+
+
+def _reason(obstacle: ShapeViolated | NotJudged) -> str:
+    return obstacle.message if isinstance(obstacle, ShapeViolated) else obstacle.reason

@@ -1,0 +1,85 @@
+"""Regular expressions inside pySHACL and rdflib, at a cost that the texts of strangers cannot choose.
+
+pySHACL (`sh:pattern`) and rdflib (REGEX and REPLACE of SPARQL) ask `re`, which can take years. Within `linear_patterns`
+their modules see another `re`, which answers the same by `selfconf.rdf.shacl.pattern`. Queries are parsed once as
+well, not once for each component: parsing takes longer than most answers.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import lru_cache
+from types import ModuleType
+from typing import Any
+
+from pyshacl.constraints.core import string_based_constraints
+from rdflib.plugins.sparql import operators, processor
+
+from selfconf.rdf.shacl import pattern
+
+
+class _Expression:
+    """What pySHACL takes for a compiled regular expression; it asks whether there is a match, never which."""
+
+    def __init__(self, expression: str, flags: int) -> None:
+        self._pattern = pattern(expression, flags)
+
+    def search(self, text: str) -> bool:
+        return self._pattern.finds(text)
+
+    match = search  # pySHACL asks for either
+
+
+class _LinearRe(ModuleType):
+    """What pySHACL and rdflib use of `re`."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(re, name)
+
+    def compile(self, expression: str, flags: int = 0) -> _Expression:
+        return _Expression(expression, int(flags))
+
+    def search(self, expression: str, text: str, flags: int = 0) -> bool:
+        return pattern(expression, int(flags)).finds(text)
+
+    def sub(self, expression: str, replacement: str, text: str, count: int = 0, flags: int = 0) -> str:
+        if not pattern(expression, int(flags)).finds(text):
+            return text
+        return re.sub(expression, replacement, text, count=count, flags=flags)
+
+
+_parse, _translate = vars(processor)["parseQuery"], vars(processor)["translateQuery"]
+
+
+@lru_cache(maxsize=64)
+def _prepared(text: str, base: str | None, namespaces: tuple[tuple[str, Any], ...]) -> Any:
+    """A query ready to be evaluated, as often as it is asked."""
+    return _translate(_parse(text), base, dict(namespaces))
+
+
+def _recalled(text: str, base: str | None = None, namespaces: Mapping[str, Any] | None = None) -> Any:
+    return _prepared(text, base, tuple(sorted((namespaces or {}).items())))
+
+
+_LINEAR = _LinearRe("re")
+_INSTEAD: tuple[tuple[ModuleType, str, object], ...] = (
+    (string_based_constraints, "re", _LINEAR),
+    (operators, "re", _LINEAR),
+    (processor, "parseQuery", str),  # parsed by `_recalled`, where it has not been
+    (processor, "translateQuery", _recalled),
+)
+
+
+@contextmanager
+def linear_patterns() -> Iterator[None]:
+    """In the block, pySHACL and rdflib match patterns in linear time."""
+    before = [vars(module)[name] for module, name, _ in _INSTEAD]
+    for module, name, instead in _INSTEAD:
+        vars(module)[name] = instead
+    try:
+        yield
+    finally:
+        for (module, name, _), original in zip(_INSTEAD, before, strict=True):
+            vars(module)[name] = original

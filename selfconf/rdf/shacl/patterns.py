@@ -1,0 +1,134 @@
+"""Whether a regular expression is found in a text of a stranger, at a cost that the text cannot choose.
+
+Most expressions meet most texts at a cost that can be told beforehand: then `re` is asked. Where its backtracking could
+go on for long, an automaton is (`selfconf.rdf.shacl.automaton`), which says the same in linear time. What is left are
+expressions beyond regular languages, and texts of megabytes: `re` may try them for a moment of processor time, which
+becomes shorter the more such texts there are, and then they are not decided.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from functools import lru_cache
+from typing import Any
+
+from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
+from selfconf.rdf.shacl.automaton import Automaton, NotRegular, parsed
+
+CHEAP = 10_000
+"""Steps of backtracking that `re` may always take: a tenth of a millisecond."""
+CHEAP_ENOUGH = 1_000_000
+"""The same where there is no automaton."""
+LONGEST_TEXT = 100_000
+"""Characters that an automaton reads."""
+PATTERN_SECONDS = 0.2
+"""Processor time that `re` may try one expression in vain where nothing is known of the cost."""
+LONGEST_TRY = 0.05
+"""How much of it may go into one text."""
+
+
+class MatchTooCostly(TimeUp):
+    """Whether a text is like a pattern takes too long to find out."""
+
+    def __init__(self, pattern: str, text: str) -> None:
+        super().__init__(pattern)
+        self.pattern, self.text = pattern, text
+
+    def __str__(self) -> str:
+        shown = self.text if len(self.text) <= 40 else f"{self.text[:40]}..."
+        return f"matching the sh:pattern {self.pattern!r} against {shown!r} takes too long"
+
+
+class Pattern:
+    """A regular expression, and the cheapest way to find it in a text."""
+
+    def __init__(self, pattern: str, flags: int) -> None:
+        """Raises re.error."""
+        self.pattern, self.flags = pattern, flags
+        self._expression = re.compile(pattern, flags)
+        self._tree = parsed(pattern, flags)
+        self._short = self._length_for(CHEAP)
+        self._automaton: Automaton | None = None
+        self._regular = True
+        self._left = PATTERN_SECONDS
+
+    def _length_for(self, steps: int) -> int:
+        """The length of the texts, to a power of two, that cannot cost more steps of backtracking."""
+        anchored = _anchored(self._tree) and not self.flags & re.MULTILINE
+        lengths = (1 << power for power in range(21))
+        return max((one for one in lengths if (1 if anchored else one) * _ways(self._tree, one) <= steps), default=0)
+
+    def finds(self, text: str) -> bool:
+        """Whether the pattern is found in a text. Raises MatchTooCostly."""
+        if len(text) <= self._short or not text:
+            return self._expression.search(text) is not None
+        automaton = self._made() if len(text) <= LONGEST_TEXT else None
+        return self._tried(text) if automaton is None else automaton.finds(text)
+
+    def _made(self) -> Automaton | None:
+        if self._automaton is None and self._regular:
+            try:
+                self._automaton = Automaton(self.pattern, self.flags)
+            except NotRegular:
+                self._regular = False
+                self._short = self._length_for(CHEAP_ENOUGH)
+        return self._automaton
+
+    def _tried(self, text: str) -> bool:
+        if len(text) <= self._short:
+            return self._expression.search(text) is not None
+        if self._left <= 0:
+            raise MatchTooCostly(self.pattern, text)
+        began = time.process_time()
+        try:
+            with processor_limit(LONGEST_TRY):
+                return self._expression.search(text) is not None
+        except ProcessorTimeUp:
+            self._left -= time.process_time() - began
+            raise MatchTooCostly(self.pattern, text) from None
+
+
+@lru_cache(maxsize=1024)
+def pattern(expression: str, flags: int = 0) -> Pattern:
+    """A pattern by its expression and the flags of `re`. Raises re.error."""
+    return Pattern(expression, flags)
+
+
+def _anchored(tree: Any) -> bool:
+    """Whether a match can only begin where the text does."""
+    first = (str(tree[0][0]), str(tree[0][1])) if len(tree) else ("", "")
+    return first in (("AT", "AT_BEGINNING"), ("AT", "AT_BEGINNING_STRING"))
+
+
+def _ways(items: Any, length: int) -> float:
+    """A bound on the number of ways in which a sequence can meet a text of some length."""
+    return math.prod((_ways_of(str(operator), argument, length) for operator, argument in items), start=1.0)
+
+
+def _ways_of(operator: str, argument: Any, length: int) -> float:
+    """A bound on the number of ways in which one part can meet it; what is not known here is taken to be worst."""
+    if operator in ("LITERAL", "NOT_LITERAL", "ANY", "IN", "AT"):
+        return 1.0
+    if operator == "BRANCH":
+        return math.fsum(_ways(one, length) for one in argument[1])
+    if operator == "SUBPATTERN":
+        return _ways(argument[3], length)
+    if operator in ("MAX_REPEAT", "MIN_REPEAT"):
+        least, most, inner = argument
+        return _repeated(int(least), min(int(most), length + 1), _ways(inner, length), length)
+    if operator in ("ASSERT", "ASSERT_NOT"):
+        return _ways(argument[1], length)
+    return math.inf
+
+
+def _repeated(least: int, most: int, ways: float, length: int) -> float:
+    """The number of ways of something repeated."""
+    counts = max(most - least, 0) + 1.0
+    if ways == 1.0:
+        return counts
+    try:
+        return counts * ways ** max(least, most)
+    except OverflowError:
+        return math.inf

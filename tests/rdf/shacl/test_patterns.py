@@ -1,0 +1,50 @@
+"""Patterns at a cost that a text cannot choose."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from selfconf.rdf.shacl.patterns import LONGEST_TEXT, PATTERN_SECONDS, MatchTooCostly, Pattern
+
+LETTERS = "a" * 60
+SLOW = [
+    (r"^(\w+\s?)*$", LETTERS + "!", False),
+    (r"^(\w+\s?)*$", LETTERS * 50, True),
+    (r"^(a|a)*$", LETTERS + "!", False),
+    (r"(a?){40}a{40}$", "a" * 39, False),
+    (r"\s+$", " " * (LONGEST_TEXT - 1) + "x", False),
+    (r"[a-z]+[a-z]+[a-z]+[a-z]+!", LETTERS * 100, False),
+]
+BEYOND = r"^(?=(\w+)+$)"
+
+
+@pytest.mark.parametrize(("expression", "text", "found"), SLOW, ids=range(len(SLOW)))
+def test_what_would_take_years_is_decided_at_once(expression: str, text: str, found: bool) -> None:
+    began = time.process_time()
+    assert Pattern(expression, 0).finds(text) == found
+    assert time.process_time() - began < 2
+
+
+@pytest.mark.parametrize("text", ["", "a", "Eye 1", "a" * 1_000_000])
+def test_what_costs_little_is_asked_of_re(text: str) -> None:
+    pattern = Pattern("^[a-z]*$", 0)
+    assert pattern.finds(text) == (" " not in text)
+    assert pattern._automaton is None
+
+
+def test_beyond_regular_languages_many_texts_cost_little_more_than_one() -> None:
+    pattern = Pattern(BEYOND, 0)
+    began = time.process_time()
+    for number in range(200):
+        with pytest.raises(MatchTooCostly, match="takes too long"):
+            pattern.finds(f"{LETTERS}{number}!")
+    assert time.process_time() - began < PATTERN_SECONDS + 1
+
+
+def test_beyond_regular_languages_a_harmless_text_is_decided_whatever_came_before() -> None:
+    pattern = Pattern(r"^(?=.*[A-Z])(?=.*\d).{8,}$", 0)
+    pattern._left = 0.0
+    assert pattern.finds("Password1 and more")
+    assert not pattern.finds("password1 and more")
