@@ -17,16 +17,23 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterator, MutableSequence, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal
 from typing import Any, NamedTuple
 
-from rdflib import RDF, BNode, Graph, Literal, URIRef
+from rdflib import RDF, XSD, BNode, Graph, Literal, URIRef
 from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
 from rdflib.term import Node
+
+from selfconf.rdf.rdflib_literals import literal
 
 RdflibTriple = tuple[Node, Node, Node]
 
 _BLANK = re.compile(r"(?:[ \t\r\n]+|#[^\n]*)*")
+_NUMBER = re.compile(
+    r"(?P<double>[+-]?(?:[0-9]+\.[0-9]*|\.?[0-9]+)[eE][+-]?[0-9]+)"
+    r"|(?P<decimal>[+-]?[0-9]*\.[0-9]+)|(?P<integer>[+-]?[0-9]+)"
+)
+_DOTTED_PREFIX = re.compile(r"\.[\w.\-\u00B7\u0300-\u036F\u203F\u2040]*[\w\-\u00B7\u0300-\u036F\u203F\u2040]:")
+"""The rest of a prefixed name whose prefix begins like a keyword, up to the colon: of `a.b:c`, `.b:`."""
 _LONE_RETURN = re.compile(r"\r(?!\n)")
 _TOKEN = re.compile(
     r"""<[^>\n]*>|(?:"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*')(?:@[\w-]+|\^\^(?:<[^>]*>|[^\s;,.\])]+))?"""
@@ -177,11 +184,7 @@ class _Sink(RDFSink):
         self.positions.triples.setdefault((subject, predicate, value), self.at)
 
     def newLiteral(self, s: str, dt: URIRef | None, lang: str | None) -> Literal:
-        literal = Literal(s, lang=lang, datatype=dt, normalize=False)  # as it is written, so that shapes see its text
-        if isinstance(literal.value, Decimal) and not literal.value.is_finite():
-            # xsd:decimal has no NaN and no infinity, but Python has; comparing with one raises through pySHACL.
-            literal._value, literal._ill_typed = None, True
-        return literal
+        return literal(s, dt, lang)  # as it is written, so that shapes see its text
 
     def newList(self, n: list[Any], f: Any) -> Any:
         opening, *members = self.open[-1]
@@ -199,7 +202,11 @@ class _Sink(RDFSink):
 
 
 class _Parser(SinkParser):
-    """rdflib's parser; its methods know where in the text they are, so each notes it before it goes on."""
+    """rdflib's parser; its methods know where in the text they are, so each notes it before it goes on.
+
+    It also reads what Turtle allows and rdflib does not: prefixes that begin like a keyword (`a.b:c`), blanks before
+    `^^` and before a language, numbers as they are written, whatever their length.
+    """
 
     _store: _Sink
 
@@ -241,6 +248,24 @@ class _Parser(SinkParser):
             return super().node(argstr, i, res, subjectAlready)
         finally:
             self._store.open.pop()
+
+    def nodeOrLiteral(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
+        start = self._start(argstr, i)
+        number = _NUMBER.match(argstr, start)
+        if number is None or number.lastgroup is None:
+            return super().nodeOrLiteral(argstr, i, res)
+        self._latest = start
+        res.append(self._store.newLiteral(number[0], XSD[number.lastgroup], None))
+        return number.end()
+
+    def strconst(self, argstr: str, i: int, delim: str) -> tuple[int, str]:
+        end, text = super().strconst(argstr, i, delim)
+        after = _BLANK.match(argstr, end)
+        return (after.end() if after and argstr.startswith(("^^", "@"), after.end()) else end), text
+
+    def tok(self, tok: str, argstr: str, i: int, colon: bool = False) -> int:
+        end = super().tok(tok, argstr, i, colon)
+        return -1 if end >= 0 and _DOTTED_PREFIX.match(argstr, end) else end
 
     def item(self, argstr: str, i: int, res: MutableSequence[Any]) -> int:
         self._store.open[-1].append(self._start(argstr, i))

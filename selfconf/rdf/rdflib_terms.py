@@ -1,29 +1,14 @@
-"""The model's terms as rdflib's, and back: what pySHACL and owlrl work on. Loading rdflib takes some 40 ms.
-
-rdflib makes a value of each literal as soon as there is one. What strangers write must not cost much thereby: markup
-stays text here, as its value is a document that nothing compares. That a literal is none of its datatype is told by
-selfconf where it matters, so rdflib does not log it.
-"""
+"""The model's terms as rdflib's, and back: what pySHACL and owlrl work on. Loading rdflib takes some 40 ms."""
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterable
-from xml.parsers import expat
 
 import rdflib
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.rdflib_literals import literal
 from selfconf.rdf.turtle import Triple
-
-_MARKUP = frozenset((rdflib.RDF.HTML, rdflib.RDF.XMLLiteral))
-
-
-def _worth_logging(record: logging.LogRecord) -> bool:
-    return not str(record.msg).startswith("Failed to convert Literal lexical form")
-
-
-logging.getLogger("rdflib.term").addFilter(_worth_logging)
 
 
 def to_rdflib(triples: Iterable[Triple]) -> rdflib.Graph:
@@ -39,29 +24,9 @@ def rdflib_term(value: Term) -> rdflib.URIRef | rdflib.BNode | rdflib.Literal:
     if isinstance(value, IRI):
         return rdflib.URIRef(value)
     if isinstance(value, Literal):
-        if value.language:
-            return rdflib.Literal(value.lexical, lang=value.language, normalize=False)
-        datatype = rdflib.URIRef(value.datatype)
-        if datatype in _MARKUP:
-            return _markup(value.lexical, datatype)
-        return rdflib.Literal(value.lexical, datatype=datatype, normalize=False)
+        datatype = None if value.language else rdflib.URIRef(value.datatype)
+        return literal(value.lexical, datatype, value.language)
     return rdflib.BNode(value[2:])
-
-
-def _markup(text: str, datatype: rdflib.URIRef) -> rdflib.Literal:
-    """A literal of markup whose value is its text, and that is ill-typed where it is to be XML and is not."""
-    literal = rdflib.Literal(text)
-    literal._datatype, literal._value = datatype, text
-    literal._ill_typed = datatype == rdflib.RDF.XMLLiteral and not _is_xml(text)
-    return literal
-
-
-def _is_xml(text: str) -> bool:
-    try:
-        expat.ParserCreate().Parse(f"<x>{text}</x>".encode(), True)
-    except (expat.ExpatError, ValueError):
-        return False
-    return True
 
 
 def from_rdflib(node: rdflib.term.Node) -> Term:

@@ -15,6 +15,8 @@ from rdflib.compare import isomorphic
 from rdflib.plugins.parsers.notation3 import RDFSink, SinkParser
 
 from selfconf.rdf.positions import NotTurtleError, Offsets, Positions, TextPosition, parse_with_positions
+from selfconf.rdf.rdflib_terms import to_rdflib
+from selfconf.rdf.turtle import parse
 
 ROOT = Path(__file__).resolve().parents[2]
 OURS = sorted((*ROOT.glob("ontology/*.ttl"), *ROOT.glob("shapes/*.ttl")))
@@ -208,6 +210,30 @@ def test_every_declaration_of_a_prefix_is_noted() -> None:
     ]
 
 
+PREFIXES = "".join(
+    f"@prefix {name}: <urn:x:{name}#> .\n" for name in ("a", "a.b", "is.x", "has.x", "true.x", "false.y")
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":t a a.b:T .",
+        ":t a.b:p 1 ; has.x:p true.x:q , true ; is.x:p false.y:z , false .",
+        ":t :p true, false.",
+        ':t :p "y" ^^ <urn:t> .',
+        ":t :p (\"y\"\n^^ # so it is\n<urn:t> \"z\" @en '''x'''\t@en-gb).",
+        ":t :p 007 , +1 , -.5 , 1.50 , 1.e5 , .1E+2 , 1e0 .",
+        f":t :p {'9' * 5_000} .",
+    ],
+    ids=range(7),
+)
+def test_all_turtle_is_turtle(text: str) -> None:
+    text = HEAD + PREFIXES + text
+    graph, _ = parse_with_positions(text, "a.ttl")
+    assert isomorphic(graph, to_rdflib(parse(text, "a.ttl").triples()))
+
+
 @pytest.mark.parametrize(
     ("text", "place"),
     [
@@ -240,7 +266,7 @@ def test_a_token_is_as_wide_as_it_looks() -> None:
 
 
 PRIVATE = ("directiveOrStatement", "bind", "node", "item", "subject", "prop", "object", "verb", "property_list",
-           "objectList", "makeStatement", "path")  # fmt: skip
+           "objectList", "makeStatement", "path", "nodeOrLiteral", "strconst", "tok")  # fmt: skip
 
 
 @pytest.mark.parametrize("method", PRIVATE)

@@ -1,0 +1,54 @@
+"""Literals as rdflib has them, with their text as it is written, and without surprises for what judges them.
+
+rdflib makes a value of each literal as soon as there is one. What strangers write must not cost much thereby, nor be
+commented on stderr, as that a literal is none of its datatype is told by selfconf where it matters:
+
+* markup stays text, as its value would be a document that nothing compares;
+* a decimal is finite: Python's decimals have infinity and not-a-number, which raise in comparisons;
+* what is no boolean is false, without a warning.
+"""
+
+from __future__ import annotations
+
+import logging
+from decimal import Decimal
+from xml.parsers import expat
+
+from rdflib import RDF, XSD, Literal, URIRef
+
+_MARKUP = frozenset((RDF.HTML, RDF.XMLLiteral))
+_BOOLEANS = frozenset(("true", "false", "1", "0"))
+
+
+def _worth_logging(record: logging.LogRecord) -> bool:
+    return not str(record.msg).startswith("Failed to convert Literal lexical form")
+
+
+logging.getLogger("rdflib.term").addFilter(_worth_logging)
+
+
+def literal(text: str, datatype: URIRef | None, language: str | None = None) -> Literal:
+    """A literal of a datatype or in a language."""
+    if datatype in _MARKUP:
+        return _literal(text, datatype, text, datatype == RDF.XMLLiteral and not _is_xml(text))
+    if datatype == XSD.boolean and text not in _BOOLEANS:
+        return _literal(text, datatype, False, True)
+    found = Literal(text, lang=language, datatype=datatype, normalize=False)
+    if isinstance(found.value, Decimal) and not found.value.is_finite():
+        return _literal(text, datatype, None, True)
+    return found
+
+
+def _literal(text: str, datatype: URIRef | None, value: object, ill_typed: bool) -> Literal:
+    """A literal whose value is given; rdflib has no other way to say so than by what it keeps to itself."""
+    found = Literal(text)
+    found._datatype, found._value, found._ill_typed = datatype, value, ill_typed
+    return found
+
+
+def _is_xml(text: str) -> bool:
+    try:
+        expat.ParserCreate().Parse(f"<x>{text}</x>".encode(), True)
+    except (expat.ExpatError, ValueError):
+        return False
+    return True
