@@ -1,9 +1,8 @@
 """The search of selfconf and the engines beside it, each fed with the problem as its users would write it down.
 
 An engine gets a problem and answers whether there is a configuration. Ours gives the first one; the general solvers
-may give any, which is the easier question (`first` asks them for the first one too). The families ask for one
-component per role and name no ports, so that neither do the models. Building the model is part of the time, importing
-a library is not.
+may give any, which is the easier question (`first` asks them for the first one too). The families ask for fixed numbers
+of components. Building the model is part of the time, importing a library is not.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from typing import Any, TypeVar
 from benchmarks.search import sparql
 from selfconf.model.configuration import Configuration
 from selfconf.search.budget import Budget
-from selfconf.search.problem import Problem
+from selfconf.search.problem import Problem, Sources
 from selfconf.search.reduction.dominance import LazyReduction
 from selfconf.search.strategies import first as solve
 from selfconf.search.strategies import paper
@@ -37,10 +36,10 @@ def algorithm_1(problem: Problem) -> bool:
 
 
 PROGRAM = """
-1 { plays(R,C) : candidate(R,C) } 1 :- role(R).
+K { plays(R,C) : candidate(R,C) } K :- role(R,K).
 :- shared(C), 2 { plays(R,C) }.
-fed(R,S) :- feeds(Q,R), plays(Q,C), output(C,S).
-:- plays(R,C), input(C,S), not fed(R,S).
+fed(R,N) :- plays(Q,C), gives(Q,C,R,N).
+:- plays(R,C), needs(R,C,N), not fed(R,N).
 1 { value(V,K) : domain(V,K) } 1 :- variable(V).
 :- plays(R,C), constrained(R,C,V), not value(V,K) : allows(R,C,V,K).
 """
@@ -58,29 +57,26 @@ def clingo(problem: Problem) -> bool:
 
 def facts(problem: Problem) -> Iterator[str]:
     """A problem as facts of answer set programming; components are numbered as they come."""
-    signals: dict[str, int] = {}
     components: dict[str, int] = {}
     for role, candidates in enumerate(problem.candidates):
-        yield f"role({role})."
-        for link in problem.links[role]:
-            yield f"feeds({link.source},{role})."
+        yield f"role({role},{problem.roles[role].minimum})."
         for candidate in candidates:
-            profile = candidate.profile
-            known = profile.component in components
-            number = components.setdefault(profile.component, len(components))
+            component = candidate.profile.component
+            if component in components:
+                yield f"shared({components[component]})."
+            number = components.setdefault(component, len(components))
             yield f"candidate({role},{number})."
-            if known:
-                yield f"shared({number})."
-            else:
-                for wanted in profile.inputs:
-                    yield f"input({number},{signals.setdefault(wanted.signal, len(signals))})."
-                for output in profile.outputs:
-                    yield f"output({number},{signals.setdefault(output.signal, len(signals))})."
             for variable, mask in enumerate(candidate.admits):
                 if mask >= 0:
                     yield f"constrained({role},{number},{variable})."
                     for value in _bits(mask):
                         yield f"allows({role},{number},{variable},{value})."
+    named = [[components[c.profile.component] for c in candidates] for candidates in problem.candidates]
+    labels = [[(role, number) for number in some] for role, some in enumerate(named)]
+    for need, (needing, givers) in enumerate(_needs(problem, labels)):
+        role = needing[0][0]
+        yield from (f"needs({role},{number},{need})." for _, number in needing)
+        yield from (f"gives({source},{number},{role},{need})." for source, number in dict.fromkeys(givers))
     for number, variable_ in enumerate(problem.variables):
         yield f"variable({number})."
         for value in range(len(variable_.domain)):
@@ -108,8 +104,11 @@ def cp_model_of(problem: Problem) -> tuple[Any, list[list[Any]]]:
 
     model = cp_model.CpModel()
     plays = [[model.new_bool_var("") for _ in candidates] for candidates in problem.candidates]
-    for literals in plays:
-        model.add_exactly_one(literals)
+    for role, literals in zip(problem.roles, plays, strict=True):
+        if role.minimum == 1:
+            model.add_exactly_one(literals)
+        else:
+            model.add(cp_model.LinearExpr.sum(literals) == role.minimum)
     for same in _shared(problem, plays):
         model.add_at_most_one(same)
     for needing, givers in _needs(problem, plays):
@@ -152,22 +151,33 @@ def clauses_of(problem: Problem, solver: str) -> Iterator[tuple[Any, list[list[i
             clauses.add_clause([*givers, -fed])
             for literal in needing:
                 clauses.add_clause([-literal, fed])
-        groups = [(literals, True) for literals in plays]
-        groups += [(same, False) for same in _shared(problem, plays)]
+        groups = [
+            *((literals, role.minimum, True) for role, literals in zip(problem.roles, plays, strict=True)),
+            *((same, 1, False) for same in _shared(problem, plays)),
+        ]
         for domain, some in values:
-            groups.append((domain, True))
+            groups.append((domain, 1, True))
             for literal, mask in some:
                 clauses.add_clause([-literal, *(domain[k] for k in _bits(mask))])
-        for literals, one in groups:
-            if one:
-                clauses.add_clause(literals)
-            if clauses.supports_atmost():
-                clauses.add_atmost(literals, 1)
-            else:
-                encoded = CardEnc.atmost(literals, 1, top_id=top, encoding=EncType.seqcounter)
+        for literals, number, exactly in groups:
+            for some_literals, most in _bounds(literals, number, exactly):
+                if clauses.supports_atmost():
+                    clauses.add_atmost(some_literals, most)
+                    continue
+                encoded = CardEnc.atmost(some_literals, most, top_id=top, encoding=EncType.seqcounter)
                 top = max(top, encoded.nv)
                 clauses.append_formula(encoded.clauses)
+            if exactly and number == 1:
+                clauses.add_clause(literals)
         yield clauses, plays
+
+
+def _bounds(literals: list[int], number: int, exactly: bool) -> Iterator[tuple[list[int], int]]:
+    """At most so many of which literals hold, where a number of some hold; one at least is a clause of its own."""
+    if number < len(literals):
+        yield literals, number
+    if exactly and number != 1:
+        yield [-literal for literal in literals], len(literals) - number
 
 
 def _shared(problem: Problem, plays: list[list[L]]) -> list[list[L]]:
@@ -180,19 +190,20 @@ def _shared(problem: Problem, plays: list[list[L]]) -> list[list[L]]:
 
 
 def _needs(problem: Problem, plays: list[list[L]]) -> Iterator[tuple[list[L], list[L]]]:
-    """For each role and signal: who needs it there, and who gives it."""
-    gives: list[dict[str, list[L]]] = [{} for _ in plays]
+    """For each role, signal and set of links that may feed it: who needs it there, and who gives it."""
+    gives: list[dict[tuple[str, str | None], list[L]]] = [{} for _ in plays]
     for role, candidates in enumerate(problem.candidates):
         for candidate, literal in zip(candidates, plays[role], strict=True):
             for output in candidate.profile.outputs:
-                gives[role].setdefault(output.signal, []).append(literal)
+                for name in (None, output.name):
+                    gives[role].setdefault((output.signal, name), []).append(literal)
     for role, candidates in enumerate(problem.candidates):
-        needing: dict[str, list[L]] = {}
+        needing: dict[tuple[str, Sources], list[L]] = {}
         for candidate, literal in zip(candidates, plays[role], strict=True):
             for wanted in candidate.profile.inputs:
-                needing.setdefault(wanted.signal, []).append(literal)
-        for signal, some in needing.items():
-            yield some, [g for link in problem.links[role] for g in gives[link.source].get(signal, ())]
+                needing.setdefault((wanted.signal, problem.feeding(role, wanted.name)), []).append(literal)
+        for (signal, sources), some in needing.items():
+            yield some, [g for source, output in sources for g in gives[source].get((signal, output), ())]
 
 
 def _values(
@@ -216,6 +227,7 @@ ENGINES: dict[str, Callable[[Problem], bool]] = {
     "clingo": clingo,
     "CP-SAT": cp_sat,
     "python-sat": python_sat,
+    "CaDiCaL": partial(python_sat, solver="cadical195"),
     "MiniCard": partial(python_sat, solver="minicard"),
     "Oxigraph": sparql.oxigraph,
     "rdflib": sparql.rdflib_graph,
@@ -226,10 +238,11 @@ LIBRARIES = {
     "clingo": "clingo",
     "CP-SAT": "ortools.sat.python.cp_model",
     "python-sat": "pysat.solvers",
+    "CaDiCaL": "pysat.solvers",
     "MiniCard": "pysat.solvers",
 }
 """What an engine imports, before its time begins."""
-GENERAL = ("clingo", "CP-SAT", "python-sat", "MiniCard")
+GENERAL = ("clingo", "CP-SAT", "python-sat", "CaDiCaL", "MiniCard")
 """The general solvers."""
 SMALL = {"Oxigraph": 100, "rdflib": 10, "Algorithm 1": 10}
 """Up to which size an engine is tried that is hopeless beyond."""

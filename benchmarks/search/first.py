@@ -26,7 +26,7 @@ First = tuple[IRI, ...] | bool
 def selfconf(problem: Problem) -> First:
     """The strategy `first`."""
     playing = solve.solution(LazyReduction(problem), Budget())
-    return tuple(one.profile.component for (one,) in playing) if isinstance(playing, list) else False
+    return tuple(c.profile.component for some in playing for c in some) if isinstance(playing, list) else False
 
 
 WEIGHED = ":~ plays(R,C), rank(R,C,K). [K@-R]\n"
@@ -39,6 +39,8 @@ WEIGHT = 2**40
 
 def able(engine: str, problem: Problem) -> bool:
     """Whether an engine can be asked at all."""
+    if engine == "clingo, weights":
+        return all(role.minimum == 1 for role in problem.roles)
     return engine != "clingo, heuristic" or sum(map(len, problem.candidates)) <= LEVELS
 
 
@@ -76,23 +78,28 @@ def cp_sat(problem: Problem) -> First:
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     found: list[list[bool]] = []
+    asked = [role.minimum for role in problem.roles]
     while len(found) < len(plays):
         weighed, weight = [], 1
-        for literals in plays[len(found) :]:
-            if weight * len(literals) > WEIGHT:
+        for literals, number in zip(plays[len(found) :], asked[len(found) :], strict=True):
+            span = len(literals) if number == 1 else 2 ** len(literals)
+            if weighed and weight * span > WEIGHT:
                 break
             weighed.append(literals)
-            weight *= len(literals)
+            weight *= span
         terms = []
-        for literals in weighed:
-            weight //= len(literals)
-            terms += [weight * rank * literal for rank, literal in enumerate(literals) if rank]
+        for literals, number in zip(weighed, asked[len(found) :], strict=False):
+            weight //= len(literals) if number == 1 else 2 ** len(literals)
+            ranks = range(len(literals)) if number == 1 else [-(2 ** (len(literals) - 1 - k)) for k in range(len(literals))]
+            terms += [weight * rank * literal for rank, literal in zip(ranks, literals, strict=True) if rank]
         model.minimize(cp_model.LinearExpr.sum(terms))
         if solver.solve(model) != cp_model.OPTIMAL:
             return False
         for literals in weighed:
             found.append([solver.boolean_value(literal) for literal in literals])
-            model.add(literals[found[-1].index(True)] == 1)
+            for literal, holds in zip(literals, found[-1], strict=True):
+                if holds:
+                    model.add(literal == 1)
     return _named(problem, found)
 
 
@@ -106,7 +113,8 @@ def python_sat(problem: Problem, solver: str = "glucose4") -> First:
         if not clauses.solve():
             return False
         true = set(clauses.get_model())
-        for literals in plays:
+        for role, literals in zip(problem.roles, plays, strict=True):
+            left = role.minimum
             for literal in literals:
                 if literal not in true:
                     if not clauses.solve(assumptions=[literal]):
@@ -114,7 +122,9 @@ def python_sat(problem: Problem, solver: str = "glucose4") -> First:
                         continue
                     true = set(clauses.get_model())
                 clauses.add_clause([literal])
-                break
+                left -= 1
+                if not left:
+                    break
         return _named(problem, [[literal in true for literal in literals] for literals in plays])
 
 
@@ -133,5 +143,6 @@ ENGINES: dict[str, Callable[[Problem], First]] = {
     "clingo, heuristic": partial(clingo, rule=IN_ORDER, options=["--heuristic=Domain"]),
     "CP-SAT": cp_sat,
     "python-sat": python_sat,
+    "CaDiCaL": partial(python_sat, solver="cadical195"),
     "MiniCard": partial(python_sat, solver="minicard"),
 }
