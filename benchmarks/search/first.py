@@ -90,7 +90,9 @@ def cp_sat(problem: Problem) -> First:
         terms = []
         for literals, number in zip(weighed, asked[len(found) :], strict=False):
             weight //= len(literals) if number == 1 else 2 ** len(literals)
-            ranks = range(len(literals)) if number == 1 else [-(2 ** (len(literals) - 1 - k)) for k in range(len(literals))]
+            ranks = (
+                range(len(literals)) if number == 1 else [-(2 ** (len(literals) - 1 - k)) for k in range(len(literals))]
+            )
             terms += [weight * rank * literal for rank, literal in zip(ranks, literals, strict=True) if rank]
         model.minimize(cp_model.LinearExpr.sum(terms))
         if solver.solve(model) != cp_model.OPTIMAL:

@@ -135,9 +135,7 @@ def queens(side: int, seed: int = 0, given: int = 0) -> Problem:
     """So many queens, a role for each column; with some of their places taken away at random."""
     rng = random.Random(seed)
     domains = [sorted(rng.sample(range(side), side - given)) for _ in range(side)]
-    return in_pairs(
-        domains, {(a, b): partial(_no_attack, b - a) for a, b in combinations(range(side), 2)}
-    )
+    return in_pairs(domains, {(a, b): partial(_no_attack, b - a) for a, b in combinations(range(side), 2)})
 
 
 def _no_attack(apart: int, one: int, other: int) -> bool:
@@ -274,9 +272,7 @@ def langford(pairs: int) -> Problem:
 
         return goes
 
-    return in_pairs(
-        domains, {(a, b): apart(a + 1, b + 1) for a, b in combinations(range(pairs), 2)}
-    )
+    return in_pairs(domains, {(a, b): apart(a + 1, b + 1) for a, b in combinations(range(pairs), 2)})
 
 
 Family = tuple[tuple[str, Callable[[int], Problem]], ...]
@@ -296,7 +292,10 @@ CHOOSING: dict[str, Family] = {
         ("40 roles of 2", lambda seed: ring(40, 2, 12, 6, seed)),
         ("100 roles of 3", lambda seed: ring(100, 3, 12, 8, seed)),
     ),
-    "Latin square": (("12, 42 % open", lambda seed: latin(12, 0.42, seed)), ("15, 42 % open", lambda seed: latin(15, 0.42, seed))),
+    "Latin square": (
+        ("12, 42 % open", lambda seed: latin(12, 0.42, seed)),
+        ("15, 42 % open", lambda seed: latin(15, 0.42, seed)),
+    ),
     "colouring": (("60 nodes, 4 colours", lambda seed: colouring(60, 4, 8.4, seed)),),
     "tour": (("16 places", lambda seed: tour(16, 4.0, seed)), ("24 places", lambda seed: tour(24, 4.0, seed))),
 }

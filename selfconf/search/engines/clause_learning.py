@@ -9,32 +9,22 @@ millisecond, an instance being a list of clauses and not a program to ground; an
 exact, where clingo's priorities saturate at 32,767 levels. Without it everything works, and hard instances end as
 `Undecided` sooner.
 
-*Encoding.* A literal for each option: it plays; of two, the second plays iff the first does not. Each role is played
-by exactly as many as it has slots; a component plays one role at most. An option with a need implies one of the options
-that support it, by way of a literal for the need where several options have it.
-A literal for each value of a variable, at most one of which holds: an option that constrains the variable implies one
-of the values that it admits, or none of those that it does not admit.
-
-*The least solution.* Slot by slot: given the choices so far and a model, ask for one in which an earlier option is
-in the slot, until there is none. What is settled is added as a unit, so that everything learned stays true.
-
-*Guards.* Each constraint may have a literal that puts it in force, to be assumed: the solver then names assumptions
-that cannot hold together, an unsatisfiable core. A role that is not in force may still be played, so that fewer
-constraints in force never make less possible.
+*The least solution.* Slot by slot, candidate by candidate: given the choices so far and a model, ask for one in which
+an earlier option is in the slot, the first one first, until there is none. What is settled is added as a unit, so that
+everything learned stays true, and the solver goes from one question to the next with it.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from importlib.util import find_spec
 from typing import Any
 
-from selfconf.model.partition import ANY_VALUE
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.reduction import Constraint, Distinct, Fed, Option, Played, ReducedProblem, Shared
+from selfconf.search.engines.encoding import Encoding
+from selfconf.search.reduction import Constraint, Option, ReducedProblem
 
 SOLVER = "Minicard"
 """The solver, by the name of its class in python-sat."""
@@ -69,20 +59,17 @@ class ClauseSolver:
 
         self.reduced = reduced
         self._solver = getattr(solvers, SOLVER)()
-        self._top = 0
         self._model: list[int] = []
-        self.guards: dict[Constraint, int] = {}
-        self._guarded = guarded
-        self._asked = Counter(reduced.slots)
-        self.plays: tuple[tuple[int, ...], ...] = tuple(
-            self._literals(role, len(options)) for role, options in enumerate(reduced.options)
-        )
+        encoding = Encoding(reduced, guarded, distinct)
+        self.guards: dict[Constraint, int] = encoding.guards
+        self.plays: tuple[tuple[int, ...], ...] = encoding.plays
         """For each role, the literals of its options."""
-        self._roles()
-        if distinct:
-            self._distinct()
-        self._needs()
-        self._values()
+        self._top = encoding.top
+        add = self._solver.add_clause
+        for clause in encoding.clauses:
+            add(clause)
+        for literals, most, force in encoding.bounds:
+            self.at_most(literals, most, force)
         self._solver.set_phases([literals[0] for literals in self.plays if literals])
 
     def __enter__(self) -> ClauseSolver:
@@ -96,15 +83,6 @@ class ClauseSolver:
         self._top += 1
         return self._top
 
-    def _literals(self, role: int, options: int) -> tuple[int, ...]:
-        """Return a literal for each option; of two options of which one must play, each is the other's negation."""
-        # Not with guards: then the role may be left unplayed, so that neither option holds.
-        if options == 2 and self._asked[role] == 1 and not self._guarded:
-            first = self.literal()
-            return first, -first
-        before, self._top = self._top, self._top + options
-        return tuple(range(before + 1, self._top + 1))
-
     def add(self, clause: Iterable[int]) -> None:
         """Add a clause."""
         self._solver.add_clause(list(clause))
@@ -112,93 +90,6 @@ class ClauseSolver:
     def prefer(self, literals: Iterable[int]) -> None:
         """Try these literals first, which changes the time alone."""
         self._solver.set_phases(list(literals))
-
-    def _in_force(self, constraint: Constraint) -> list[int]:
-        """Return what a clause of a constraint starts with: nothing, or that its guard does not hold."""
-        if not self._guarded:
-            return []
-        guard = self.guards.get(constraint)
-        if guard is None:
-            guard = self.guards[constraint] = self.literal()
-        return [-guard]
-
-    def _roles(self) -> None:
-        for role, asked in self._asked.items():
-            literals = self.plays[role]
-            force = self._in_force(Played(role))
-            if len(literals) == 2 and literals[0] == -literals[1]:
-                continue
-            self.at_most(literals, asked)
-            if len(literals) < asked:
-                impossible = self.literal()
-                self.add([*force, impossible])
-                self.add([-impossible])
-            elif asked == 1:
-                self.add([*force, *literals])
-            else:
-                self.at_most([-literal for literal in literals], len(literals) - asked, force)
-
-    def _distinct(self) -> None:
-        names = [option.component for options in self.reduced.options for option in options if option.component]
-        if len(set(names)) == len(names):
-            return
-        playing: dict[str, list[int]] = {}
-        for options, literals in zip(self.reduced.options, self.plays, strict=True):
-            for option, literal in zip(options, literals, strict=True):
-                if option.component:
-                    playing.setdefault(option.component, []).append(literal)
-        for same in playing.values():
-            if len(same) > 1:
-                self.at_most(same, 1, self._in_force(Distinct()))
-
-    def _needs(self) -> None:
-        supporting: list[list[int]] = [[] for _ in self.reduced.needs]
-        needing: list[list[int]] = [[] for _ in self.reduced.needs]
-        for options, literals in zip(self.reduced.options, self.plays, strict=True):
-            for option, literal in zip(options, literals, strict=True):
-                kind = option.kind
-                for need in kind.supports:
-                    supporting[need].append(literal)
-                for need in kind.needs:
-                    needing[need].append(literal)
-        add = self._solver.add_clause
-        for need, having in enumerate(needing):
-            if not having:
-                continue
-            force = self._in_force(Fed(need))
-            if len(having) == 1:
-                add([*force, -having[0], *supporting[need]])
-                continue
-            # One literal between both sides: a sum of clauses instead of a product.
-            fed = self.literal()
-            add([*force, -fed, *supporting[need]])
-            for literal in having:
-                add([-literal, fed])
-
-    def _values(self) -> None:
-        for variable, open_values in enumerate(self.reduced.values):
-            constrained = [
-                (literal, option.kind.admits[variable] & open_values)
-                for options, literals in zip(self.reduced.options, self.plays, strict=True)
-                for option, literal in zip(options, literals, strict=True)
-                if option.kind.admits[variable] != ANY_VALUE
-            ]
-            if constrained:
-                self._one_value(constrained, self._in_force(Shared(variable)))
-
-    def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> None:
-        """Let options have a common value of a variable, given their literals and the masks of what they admit."""
-        width = max((mask if mask >= 0 else ~mask).bit_length() for _, mask in constrained)
-        values = [self.literal() for _ in range(width)]
-        self.at_most(values, 1)
-        for literal, mask in constrained:
-            if mask >= 0:
-                self.add([*force, -literal, *(values[k] for k in range(width) if mask >> k & 1)])
-                continue
-            # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
-            for k in range(width):
-                if not mask >> k & 1:
-                    self.add([*force, -literal, -values[k]])
 
     def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
         """Allow no more than a number of the literals to hold, under the guards given."""
@@ -311,20 +202,14 @@ class ClauseSolver:
             if role != previous:
                 start, previous = 0, role
             literals = self.plays[role]
-            current = next(i for i in range(start, len(literals)) if self.holds(literals[i]))
-            while current > start:
-                earlier = literals[start]
-                if current > start + 1:
-                    earlier = self.literal()
-                    self.add([-earlier, *literals[start:current]])
-                found = self.solve((earlier,), budget)
+            current = start
+            while not self.holds(literals[current]):
+                found = self.solve((literals[current],), budget)
                 if isinstance(found, Undecided):
                     return found
                 if not found:
-                    break
-                current = next(i for i in range(start, current) if self.holds(literals[i]))
-            for literal in literals[start:current]:
-                self.add([-literal])
+                    self.add([-literals[current]])
+                    current += 1
             self.add([literals[current]])
             chosen.append(self.reduced.options[role][current])
             start = current + 1

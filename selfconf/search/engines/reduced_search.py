@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from selfconf.model.refusal import Undecided
+from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.engines.matching import MaintainedMatching
 from selfconf.search.reduction import Option, ReducedProblem
@@ -23,7 +24,7 @@ def first_solution(
     reduced: ReducedProblem,
     budget: Budget,
     distinct: bool = True,
-    matching: MaintainedMatching | None = None,
+    matching: MaintainedMatching[IRI] | None = None,
     pace: float | None = None,
 ) -> list[Option] | Undecided | None:
     """Return the least solution, one option per slot; None if there is none; Undecided when the steps are used up.
@@ -37,7 +38,7 @@ class ReducedSearch:
     """A depth-first search that may be resumed after each solution; a subclass may reject options."""
 
     def __init__(
-        self, reduced: ReducedProblem, distinct: bool = True, matching: MaintainedMatching | None = None
+        self, reduced: ReducedProblem, distinct: bool = True, matching: MaintainedMatching[IRI] | None = None
     ) -> None:
         self.reduced, self.distinct, self.matching = reduced, distinct, matching
         slots = reduced.slots

@@ -41,17 +41,17 @@ class Wiring:
         self._roles = len(problem.roles) if roles is None else roles
         self.needs: list[Need] = []
         self._names_inputs = [any(link.input for link in links) for links in problem.links]
-        self._names_outputs = {link.source for links in problem.links for link in links if link.output}
-        """The roles of which an interaction names an output."""
-        self._by_signal: list[dict[IRI, list[int]]] = [{} for _ in problem.roles]
-        """For each role and signal the needs."""
+        self._fed: list[dict[IRI, list[int]]] = [{} for _ in problem.roles]
+        """For each role and signal the needs that any output of the role feeds with it."""
+        self._fed_by_name: list[dict[tuple[IRI, str], list[int]]] = [{} for _ in problem.roles]
+        """For each role, signal and name of an output the needs that only an output of this name feeds."""
 
     def needed(self, role: int, inputs: Sequence[tuple[Input, ...]]) -> list[tuple[int, ...]]:
         """Return for the inputs of each class of a role the numbers of the needs that they are."""
         if self._names_inputs[role]:
             number = self._numbered(role, dict.fromkeys(chain.from_iterable(inputs)))
             return [tuple(dict.fromkeys([number[one] for one in some if one in number])) for some in inputs]
-        sources, by_signal, needs = self.problem.feeding(role, None), self._by_signal[role], self.needs
+        sources, by_signal = self.problem.feeding(role, None), dict[IRI, int]()
         if self._fed_later(sources):
             return [()] * len(inputs)
         found: list[tuple[int, ...]] = []
@@ -60,48 +60,56 @@ class Wiring:
             for _, signal, _ in some:
                 known = by_signal.get(signal)
                 if known is None:
-                    known = by_signal[signal] = [len(needs)]
-                    needs.append(Need(role, signal, sources))
-                numbers += known
+                    known = by_signal[signal] = self._new(Need(role, signal, sources))
+                numbers.append(known)
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
         return found
 
+    def _new(self, need: Need) -> int:
+        """Number a need, and note which outputs feed it."""
+        number = len(self.needs)
+        self.needs.append(need)
+        signal, sources = need.signal, need.sources
+        for source, output in sources:
+            if output is None:
+                self._fed[source].setdefault(signal, []).append(number)
+            elif (source, None) not in sources:
+                self._fed_by_name[source].setdefault((signal, output), []).append(number)
+        return number
+
     def _fed_later(self, sources: Sources) -> bool:
-        return any(source >= self._roles for source, _ in sources)
+        return self._roles < len(self.problem.roles) and any(source >= self._roles for source, _ in sources)
 
     def _numbered(self, role: int, inputs: Iterable[Input]) -> dict[Input, int]:
         """Return the need that each input of a role is: one for all inputs with the same signal and sources."""
         same: dict[tuple[IRI, Sources], int] = {}
         found: dict[Input, int] = {}
+        feeding: dict[str, Sources | None] = {}
         for wanted in inputs:
-            sources = self.problem.feeding(role, wanted.name)
-            if self._fed_later(sources):
+            name, signal = wanted
+            if name not in feeding:
+                of_name = self.problem.feeding(role, name)
+                feeding[name] = None if self._fed_later(of_name) else of_name
+            sources = feeding[name]
+            if sources is None:
                 continue
-            number = found[wanted] = same.setdefault((wanted.signal, sources), len(self.needs))
-            if number == len(self.needs):
-                self.needs.append(Need(role, wanted.signal, sources, wanted.name))
-                self._by_signal[role].setdefault(wanted.signal, []).append(number)
+            number = same.get((signal, sources))
+            if number is None:
+                number = same[signal, sources] = self._new(Need(role, signal, sources, name))
+            found[wanted] = number
         return found
 
     def supported(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
         """Return for the outputs of each class of a role the needs that they support."""
         flat, above = self.problem.hierarchy.flat, self.problem.hierarchy.superclasses
-        sinks = [
-            (self._by_signal[sink], role in self._names_outputs or self._names_inputs[sink])
-            for sink in self.problem.sinks[role]
-        ]
+        fed, by_name = self._fed[role], self._fed_by_name[role]
         found: list[tuple[int, ...]] = []
         for some in outputs:
             numbers: list[int] = []
             for name, offered, _ in some:
                 for signal in (offered,) if flat else above(offered):
-                    for by_signal, named in sinks:
-                        if signal in by_signal:
-                            needs = by_signal[signal]
-                            numbers += self._fed_by(needs, role, name) if named else needs
+                    numbers += fed.get(signal, ())
+                    if by_name:
+                        numbers += by_name.get((signal, name), ())
             found.append(tuple(sorted(set(numbers))) if len(numbers) > 1 else tuple(numbers))
         return found
-
-    def _fed_by(self, numbers: Sequence[int], role: int, name: str) -> list[int]:
-        """Return the needs, among some, that an output of a name may feed."""
-        return [n for n in numbers if (role, None) in self.needs[n].sources or (role, name) in self.needs[n].sources]

@@ -149,7 +149,7 @@ def least_of(
     if remaining.wiped_out() is not None:
         return None
     components = remaining.components()
-    matching: MaintainedMatching | None = None
+    matching: MaintainedMatching[IRI] | None = None
     # Where no component is an option of two roles, every choice is a matching.
     if len(set().union(*components)) < sum(map(len, components)):
         matching = MaintainedMatching(remaining.slots, components)

@@ -1,0 +1,173 @@
+"""A reduced problem as clauses, and as bounds on how many of some literals hold.
+
+A literal for each option: it plays; of two, the second plays iff the first does not. Each role is played by exactly as
+many as it has slots; a component plays one role at most. An option with a need implies one of the options that support
+it, by way of a literal for the need where several options have it.
+A literal for each value of a variable, at most one of which holds: an option that constrains the variable implies one
+of the values that it admits, or none of those that it does not admit.
+
+*Groups.* Where options exclude each other (`exclusion`), one bound for each group says so, in place of the needs from
+which that follows; and what counting the groups has proved is added.
+
+*Guards.* Each constraint may have a literal that puts it in force, to be assumed: the solver then names assumptions
+that cannot hold together, an unsatisfiable core. A role that is not in force may still be played, so that fewer
+constraints in force never make less possible. There are no groups then, as each follows from many constraints.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from selfconf.model.partition import ANY_VALUE
+from selfconf.search.engines.exclusion import Exclusions, exclusions
+from selfconf.search.reduction import Constraint, Distinct, Fed, Played, ReducedProblem, Shared
+
+
+class Bound(NamedTuple):
+    """At most a number of the literals hold, if the literals whose negations are in `force` do."""
+
+    literals: Sequence[int]
+    most: int
+    force: Sequence[int] = ()
+
+
+class Encoding:
+    """The clauses and bounds of a reduced problem; literals are numbered from one."""
+
+    def __init__(self, reduced: ReducedProblem, guarded: bool = False, distinct: bool = True) -> None:
+        self.reduced = reduced
+        self.top = 0
+        """The highest literal so far."""
+        self.clauses: list[list[int]] = []
+        self.bounds: list[Bound] = []
+        self.guards: dict[Constraint, int] = {}
+        self._guarded = guarded
+        self._asked = Counter(reduced.slots)
+        self.plays: tuple[tuple[int, ...], ...] = tuple(
+            self._literals(role, len(options)) for role, options in enumerate(reduced.options)
+        )
+        """For each role, the literals of its options."""
+        groups = Exclusions() if guarded else exclusions(reduced, distinct)
+        self._roles()
+        if guarded and distinct:
+            self._distinct()
+        self._needs(groups.stated)
+        self._values()
+        self._groups(groups)
+
+    def literal(self) -> int:
+        """Return a new literal."""
+        self.top += 1
+        return self.top
+
+    def _literals(self, role: int, options: int) -> tuple[int, ...]:
+        """Return a literal for each option; of two options of which one must play, each is the other's negation."""
+        # Not with guards: then the role may be left unplayed, so that neither option holds.
+        if options == 2 and self._asked[role] == 1 and not self._guarded:
+            first = self.literal()
+            return first, -first
+        before, self.top = self.top, self.top + options
+        return tuple(range(before + 1, self.top + 1))
+
+    def _in_force(self, constraint: Constraint) -> list[int]:
+        """Return what a clause of a constraint starts with: nothing, or that its guard does not hold."""
+        if not self._guarded:
+            return []
+        guard = self.guards.get(constraint)
+        if guard is None:
+            guard = self.guards[constraint] = self.literal()
+        return [-guard]
+
+    def _at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
+        if most < len(literals):
+            self.bounds.append(Bound(literals, most, force))
+
+    def _roles(self) -> None:
+        for role, asked in self._asked.items():
+            literals = self.plays[role]
+            force = self._in_force(Played(role))
+            if len(literals) == 2 and literals[0] == -literals[1]:
+                continue
+            self._at_most(literals, asked)
+            if len(literals) < asked:
+                impossible = self.literal()
+                self.clauses.append([*force, impossible])
+                self.clauses.append([-impossible])
+            elif asked == 1:
+                self.clauses.append([*force, *literals])
+            else:
+                self._at_most([-literal for literal in literals], len(literals) - asked, force)
+
+    def _distinct(self) -> None:
+        playing: dict[str, list[int]] = {}
+        for options, literals in zip(self.reduced.options, self.plays, strict=True):
+            for option, literal in zip(options, literals, strict=True):
+                if option.component:
+                    playing.setdefault(option.component, []).append(literal)
+        for same in playing.values():
+            if len(same) > 1:
+                self._at_most(same, 1, self._in_force(Distinct()))
+
+    def _needs(self, stated: frozenset[int]) -> None:
+        """Write the needs that are not stated otherwise."""
+        supporting: list[list[int]] = [[] for _ in self.reduced.needs]
+        needing: list[list[int]] = [[] for _ in self.reduced.needs]
+        for options, literals in zip(self.reduced.options, self.plays, strict=True):
+            for option, literal in zip(options, literals, strict=True):
+                kind = option.kind
+                for need in kind.supports:
+                    supporting[need].append(literal)
+                for need in kind.needs:
+                    needing[need].append(literal)
+        add = self.clauses.append
+        for need, having in enumerate(needing):
+            if not having or need in stated:
+                continue
+            force = self._in_force(Fed(need))
+            if len(having) == 1:
+                add([*force, -having[0], *supporting[need]])
+                continue
+            # One literal between both sides: a sum of clauses instead of a product.
+            fed = self.literal()
+            add([*force, -fed, *supporting[need]])
+            for literal in having:
+                add([-literal, fed])
+
+    def _values(self) -> None:
+        for variable, open_values in enumerate(self.reduced.values):
+            constrained = [
+                (literal, option.kind.admits[variable] & open_values)
+                for options, literals in zip(self.reduced.options, self.plays, strict=True)
+                for option, literal in zip(options, literals, strict=True)
+                if option.kind.admits[variable] != ANY_VALUE
+            ]
+            if constrained:
+                self._one_value(constrained, self._in_force(Shared(variable)))
+
+    def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> None:
+        """Let options have a common value of a variable, given their literals and the masks of what they admit."""
+        width = max((mask if mask >= 0 else ~mask).bit_length() for _, mask in constrained)
+        values = [self.literal() for _ in range(width)]
+        self._at_most(values, 1)
+        for literal, mask in constrained:
+            if mask >= 0:
+                self.clauses.append([*force, -literal, *(values[k] for k in range(width) if mask >> k & 1)])
+                continue
+            # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
+            for k in range(width):
+                if not mask >> k & 1:
+                    self.clauses.append([*force, -literal, -values[k]])
+
+    def _groups(self, known: Exclusions) -> None:
+        if known.impossible:
+            self.clauses += [[self.literal()], [-self.top]]
+        options = [literal for literals in self.plays for literal in literals]
+        for group in known.groups:
+            if len(group) == 2:
+                self.clauses.append([-options[number] for number in group])
+            else:
+                self._at_most([options[number] for number in group], 1)
+        self.clauses += [[options[number] for number in some] for some in known.played]
+        self.clauses += [[-options[number]] for number in known.excluded]

@@ -1,0 +1,264 @@
+"""Groups of options of which at most one can play, read off the needs; and what counting says about them.
+
+*Conflicts.* Where a need can be fed by one role alone, which has one slot, an option with the need excludes the options
+of that role which do not support it. So do two options that are one component, and two of a role that has one slot. A
+*group* is a set of options that exclude each other pairwise (a clique of the graph of conflicts): "nobody shares a
+frequency" may be wired by port names, pair by pair, and is a group for each frequency in the end. Groups are
+grown greedily until each conflict that is counted here is in one of them, so that they say all that these needs say;
+one constraint with many options propagates like all of its pairs, in a fraction of the space.
+
+*Counting.* Let each option of some roles be in one group. The slots of these roles then draw on the groups as on
+components: if they have fewer groups than slots between them, there is no solution (Hall's theorem); an option whose
+group is in no matching is in no solution; and if they have exactly as many, each of these groups is played. That is
+what neither clause learning nor depth-first search sees in less than exponential time (pigeonholes, Latin squares).
+Nothing here depends on the order of options: what is removed or added is false or true of every solution.
+
+*Which groups.* From a group, its roles; then the group, disjoint from those before, that has options not covered yet in
+the most of these roles, which may bring in further roles; until all their options are covered, or there are more groups
+than slots.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from selfconf.search.engines.matching import HallSet, unmatchable
+from selfconf.search.reduction import Option, ReducedProblem
+
+FEW = 3
+"""A need says little if at most one in this number of the options that could feed it do not."""
+CONFLICTS_PER_OPTION = 200
+"""How many conflicts are looked at, for each option."""
+SHARES_PER_OPTION = 2
+"""How many groups are put together at most, for each option, before counting ends."""
+SPREAD = 4
+"""For each role of the group from which it began how many groups are put together at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusions:
+    """Groups of options by their numbers, counted through all roles, and what follows from them."""
+
+    groups: Sequence[Sequence[int]] = ()
+    stated: frozenset[int] = frozenset()
+    """The needs of which the groups say all."""
+    played: Sequence[Sequence[int]] = ()
+    """Sets of options of which at least one plays in every solution."""
+    excluded: frozenset[int] = frozenset()
+    """Options that play in no solution."""
+    impossible: bool = False
+    """Whether some roles have fewer groups than slots: then there is no solution."""
+
+
+def exclusions(reduced: ReducedProblem, distinct: bool = True) -> Exclusions:
+    """Return the groups of a reduced problem, and what counting them proves.
+
+    If components need not be distinct, one component in two roles is no conflict.
+    """
+    graph = _Conflicts(reduced, distinct)
+    if not any(graph.across):
+        return Exclusions()
+    groups = list(graph.groups())
+    found = _Counting(graph, groups)
+    found.run()
+    return Exclusions(
+        [list(_bits(group)) for group in groups],
+        frozenset(graph.stated),
+        [list(_bits(group)) for group in found.played],
+        frozenset(_bits(found.excluded)),
+        found.impossible,
+    )
+
+
+class _Conflicts:
+    """The graph of conflicts between options; sets of options are masks."""
+
+    def __init__(self, reduced: ReducedProblem, distinct: bool) -> None:
+        self.reduced = reduced
+        self.options: list[Option] = [option for options in reduced.options for option in options]
+        self.asked = Counter(reduced.slots)
+        self.role = [option.kind.role for option in self.options]
+        self.of_role = _masks(self.role, len(reduced.options))
+        self.across = [0] * len(self.options)
+        """For each option the options of other roles that it excludes."""
+        self.stated: set[int] = set()
+        self._by_needs()
+        if distinct:
+            self._by_components()
+
+    def _by_needs(self) -> None:
+        having: dict[int, int] = {}
+        for number, option in enumerate(self.options):
+            for need in option.kind.needs:
+                having[need] = having.get(need, 0) | 1 << number
+        fed_by: dict[int, set[int]] = {}
+        for need in having:
+            wanted = self.reduced.needs[need]
+            sources = {source for source, _ in wanted.sources} or {wanted.role}
+            source = min(sources)
+            if len(sources) == 1 and source != wanted.role and self.asked[source] == 1:
+                fed_by.setdefault(source, set()).add(need)
+        left = CONFLICTS_PER_OPTION * len(self.options)
+        for source, needs in fed_by.items():
+            lacking = self._lacking(source, needs)
+            few = max(1, len(self.reduced.options[source]) // FEW)
+            for need in needs:
+                numbers = lacking.get(need, ())
+                left -= len(numbers)
+                if len(numbers) > few or left < 0:
+                    continue
+                self.stated.add(need)
+                have, lack = having[need], 0
+                for number in numbers:
+                    self.across[number] |= have
+                    lack |= 1 << number
+                for number in _bits(have):
+                    self.across[number] |= lack
+
+    def _lacking(self, source: int, needs: set[int]) -> dict[int, list[int]]:
+        """Return for each need that is not supported by all options of a role those that do not support it."""
+        lacking: dict[int, list[int]] = {}
+        of_kind: dict[int, set[int]] = {}
+        for number in _bits(self.of_role[source]):
+            kind = self.options[number].kind
+            missing = of_kind.get(id(kind))
+            if missing is None:
+                missing = of_kind[id(kind)] = needs.difference(kind.supports)
+            for need in missing:
+                lacking.setdefault(need, []).append(number)
+        return lacking
+
+    def _by_components(self) -> None:
+        same: dict[str, int] = {}
+        for number, option in enumerate(self.options):
+            if option.component:
+                same[option.component] = same.get(option.component, 0) | 1 << number
+        for mask in same.values():
+            if mask & (mask - 1):
+                for number in _bits(mask):
+                    self.across[number] |= mask & ~(1 << number)
+
+    def groups(self) -> Iterator[int]:
+        """Yield groups until each conflict across roles is in one; components that are shared come first."""
+        left = list(self.across)
+        whole = [
+            mask | (self.of_role[role] if self.asked[role] == 1 else 0) & ~(1 << number)
+            for number, (mask, role) in enumerate(zip(self.across, self.role, strict=True))
+        ]
+        for number in range(len(left)):
+            while left[number]:
+                group = self._grown(number, left[number], whole)
+                for member in _bits(group):
+                    left[member] &= ~group
+                yield group
+
+    def _grown(self, start: int, uncovered: int, whole: Sequence[int]) -> int:
+        """Return a group with an option: of conflicts not covered yet first, then of any."""
+        group, common = 1 << start, whole[start]
+        for wanted in (uncovered, -1):
+            while common & wanted:
+                lowest = common & wanted & -(common & wanted)
+                group |= lowest
+                common &= whole[lowest.bit_length() - 1]
+        return group
+
+
+class _Counting:
+    """Looks for roles whose slots have no more groups than they need."""
+
+    def __init__(self, graph: _Conflicts, groups: Sequence[int]) -> None:
+        self.graph = graph
+        self.groups = [group for group in groups if len(set(self._roles(group))) > 2]
+        self.roles = [frozenset(self._roles(group)) for group in self.groups]
+        self.having: list[list[int]] = [[] for _ in graph.options]
+        """For each option the groups that have it."""
+        for number, group in enumerate(self.groups):
+            for option in _bits(group):
+                self.having[option].append(number)
+        self.left = SHARES_PER_OPTION * len(graph.options)
+        """How many groups may still be put together."""
+        self.played: list[int] = []
+        self.excluded = 0
+        self.impossible = False
+
+    def _roles(self, mask: int) -> Iterator[int]:
+        return (self.graph.role[number] for number in _bits(mask))
+
+    def run(self) -> None:
+        """Count from one group after the other, the largest first, but for those that are played for sure by then."""
+        order = sorted(range(len(self.groups)), key=lambda number: -len(self.roles[number]))
+        known: set[int] = set()
+        for start in order:
+            if self.impossible or self.left <= 0:
+                return
+            if start not in known:
+                cover = self._cover(start)
+                if cover is not None:
+                    known |= cover.keys()
+                    self._count(cover)
+
+    def _cover(self, start: int) -> dict[int, int] | None:
+        """Return groups, by number, with disjoint shares of them that cover all options of their roles."""
+        graph = self.graph
+        shares: dict[int, int] = {}
+        roles: set[int] = set()
+        covered = wanted = slots = 0
+        best: int | None = start
+        while best is not None:
+            self.left -= 1
+            share = self.groups[best] & ~covered
+            shares[best] = share
+            covered |= share
+            for role in self.roles[best] - roles if share == self.groups[best] else set(self._roles(share)) - roles:
+                roles.add(role)
+                wanted |= graph.of_role[role]
+                slots += graph.asked[role]
+            left = wanted & ~covered
+            if not left:
+                return shares
+            if len(shares) > min(slots, SPREAD * (8 + len(self.roles[start]))):
+                return None
+            best = self._next(left, covered)
+        return None
+
+    def _next(self, left: int, covered: int) -> int | None:
+        """Return the group with the lowest of the options left that has the most of them, rather a disjoint one."""
+        lowest = (left & -left).bit_length() - 1
+        return max(
+            self.having[lowest],
+            key=lambda number: (not self.groups[number] & covered, (self.groups[number] & left).bit_count()),
+            default=None,
+        )
+
+    def _count(self, shares: dict[int, int]) -> None:
+        """Match the slots of the roles with the groups that cover their options."""
+        graph = self.graph
+        group_of = {number: name for name, share in shares.items() for number in _bits(share)}
+        roles = sorted({graph.role[number] for number in group_of})
+        drawn = {role: sorted({group_of[number] for number in _bits(graph.of_role[role])}) for role in roles}
+        slots = [role for role in roles for _ in range(graph.asked[role])]
+        found = unmatchable(slots, [drawn.get(role, []) for role in range(len(graph.of_role))])
+        if isinstance(found, HallSet):
+            self.impossible = True
+            return
+        for role, name in found:
+            self.excluded |= shares[name] & graph.of_role[role]
+        if len(slots) == len(shares):
+            self.played += shares.values()
+
+
+def _masks(roles: Sequence[int], number: int) -> list[int]:
+    masks = [0] * number
+    for place, role in enumerate(roles):
+        masks[role] |= 1 << place
+    return masks
+
+
+def _bits(mask: int) -> Iterator[int]:
+    """Yield the numbers of the bits that are set."""
+    while mask:
+        lowest = mask & -mask
+        yield lowest.bit_length() - 1
+        mask ^= lowest
