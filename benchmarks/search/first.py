@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import accumulate
+from typing import Any
 
 from benchmarks.search.engines import PROGRAM, clauses_of, cp_model_of, facts
 from selfconf.model.term import IRI
@@ -80,7 +81,8 @@ def cp_sat(problem: Problem) -> First:
     found: list[list[bool]] = []
     asked = [role.minimum for role in problem.roles]
     while len(found) < len(plays):
-        weighed, weight = [], 1
+        weighed: list[list[Any]] = []
+        weight = 1
         for literals, number in zip(plays[len(found) :], asked[len(found) :], strict=True):
             span = len(literals) if number == 1 else 2 ** len(literals)
             if weighed and weight * span > WEIGHT:

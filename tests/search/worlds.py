@@ -263,3 +263,41 @@ def _candidates(
 def _allowed(draw: st.DrawFn, variable: Variable) -> int:
     some = draw(st.integers(0, (1 << len(variable.domain)) - 1))
     return ~some if not some or draw(st.integers(0, 3)) == 0 else some
+
+
+@st.composite
+def rivalries(draw: st.DrawFn, roles: int = 5, values: int = 4) -> Problem:
+    """Problems whose roles exclude each other's candidates, pair by pair, through named inputs; some share components.
+
+    Half of the pairs must differ, as pigeons do; what the others may not be together is drawn.
+    """
+    count, size = draw(st.integers(2, roles)), draw(st.integers(2, values))
+    domains = [sorted(draw(st.sets(st.integers(0, size - 1), min_size=1))) for _ in range(count)]
+    pairs = [(a, b) for a in range(count) for b in range(a) if draw(st.integers(0, 3))]
+    shared = {draw(st.integers(0, size - 1))} if draw(st.booleans()) else set()
+    inputs: dict[tuple[int, int], list[Input]] = {}
+    outputs: dict[tuple[int, int], list[Output]] = {}
+    for sink, source in pairs:
+        differ = draw(st.booleans())
+        for value in domains[sink]:
+            signal = iri(f"s{source}.{sink}.{value}")
+            inputs.setdefault((sink, value), []).append(Input(f"from{source}", signal))
+            for other in domains[source]:
+                if value != other if differ else draw(st.integers(0, 3)):
+                    outputs.setdefault((source, other), []).append(Output(f"to{sink}.{value}", signal))
+    candidates = []
+    for role, domain in enumerate(domains):
+        some = []
+        for value in domain:
+            ports = Ports(tuple(inputs.get((role, value), ())), tuple(outputs.get((role, value), ())))
+            # One component has the same ports in all roles: so only those without any can be shared here.
+            name = f"c{value}" if value in shared and ports == Ports() else f"c{role}.{value}"
+            some.append(Candidate(Profile(iri(name), ports=ports)))
+        candidates.append(tuple(some))
+    asked = [2 if len(domain) > 1 and not draw(st.integers(0, 9)) else 1 for domain in domains]
+    template = Template(
+        iri("template"),
+        tuple(Role(iri(f"r{k}"), minimum, minimum) for k, minimum in enumerate(asked)),
+        tuple(Interaction(iri(f"r{b}"), iri(f"r{a}"), None, f"from{b}") for a, b in pairs),
+    )
+    return Problem(Task(template), Partition(tuple(candidates)))

@@ -5,6 +5,7 @@
 * `ReducedSearch` is depth-first search over a reduced problem, and `first_solution` the least solution found by it.
 * `hall_set` finds roles that lack components (a `HallSet`) by bipartite matching, `unmatchable` the options that are in
   no matching; a `MaintainedMatching` follows a depth-first search.
+* `exclusive_groups` are groups of options of which at most one can play, and what counting them proves.
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
   `least_by_clauses` find any or the least solution by it, and `minimise` a solution of least weight.
 """
@@ -16,6 +17,7 @@ from selfconf.search.engines.clause_learning import (
     least_by_clauses,
     solver_available,
 )
+from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
 from selfconf.search.engines.reduced_search import ReducedSearch, first_solution
@@ -28,6 +30,7 @@ __all__ = [
     "MaintainedMatching",
     "ReducedSearch",
     "any_by_clauses",
+    "exclusive_groups",
     "first_solution",
     "hall_set",
     "least_by_clauses",

@@ -21,11 +21,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from selfconf.model.partition import ANY_VALUE
-from selfconf.search.engines.exclusion import Exclusions, exclusions
+from selfconf.search.engines.exclusion import ExclusiveGroups, exclusive_groups
 from selfconf.search.reduction import Constraint, Distinct, Fed, Played, ReducedProblem, Shared
 
 
-class Bound(NamedTuple):
+class AtMost(NamedTuple):
     """At most a number of the literals hold, if the literals whose negations are in `force` do."""
 
     literals: Sequence[int]
@@ -41,7 +41,7 @@ class Encoding:
         self.top = 0
         """The highest literal so far."""
         self.clauses: list[list[int]] = []
-        self.bounds: list[Bound] = []
+        self.bounds: list[AtMost] = []
         self.guards: dict[Constraint, int] = {}
         self._guarded = guarded
         self._asked = Counter(reduced.slots)
@@ -49,7 +49,7 @@ class Encoding:
             self._literals(role, len(options)) for role, options in enumerate(reduced.options)
         )
         """For each role, the literals of its options."""
-        groups = Exclusions() if guarded else exclusions(reduced, distinct)
+        groups = ExclusiveGroups() if guarded else exclusive_groups(reduced, distinct)
         self._roles()
         if guarded and distinct:
             self._distinct()
@@ -82,7 +82,7 @@ class Encoding:
 
     def _at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
         if most < len(literals):
-            self.bounds.append(Bound(literals, most, force))
+            self.bounds.append(AtMost(literals, most, force))
 
     def _roles(self) -> None:
         for role, asked in self._asked.items():
@@ -160,7 +160,7 @@ class Encoding:
                 if not mask >> k & 1:
                     self.clauses.append([*force, -literal, -values[k]])
 
-    def _groups(self, known: Exclusions) -> None:
+    def _groups(self, known: ExclusiveGroups) -> None:
         if known.impossible:
             self.clauses += [[self.literal()], [-self.top]]
         options = [literal for literals in self.plays for literal in literals]

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 from selfconf.search.engines.matching import HallSet, unmatchable
 from selfconf.search.reduction import Option, ReducedProblem
 
-FEW = 3
+FEW = 2
 """A need says little if at most one in this number of the options that could feed it do not."""
 CONFLICTS_PER_OPTION = 200
 """How many conflicts are looked at, for each option."""
@@ -38,7 +38,7 @@ SPREAD = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Exclusions:
+class ExclusiveGroups:
     """Groups of options by their numbers, counted through all roles, and what follows from them."""
 
     groups: Sequence[Sequence[int]] = ()
@@ -52,18 +52,18 @@ class Exclusions:
     """Whether some roles have fewer groups than slots: then there is no solution."""
 
 
-def exclusions(reduced: ReducedProblem, distinct: bool = True) -> Exclusions:
+def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> ExclusiveGroups:
     """Return the groups of a reduced problem, and what counting them proves.
 
     If components need not be distinct, one component in two roles is no conflict.
     """
     graph = _Conflicts(reduced, distinct)
     if not any(graph.across):
-        return Exclusions()
+        return ExclusiveGroups()
     groups = list(graph.groups())
     found = _Counting(graph, groups)
     found.run()
-    return Exclusions(
+    return ExclusiveGroups(
         [list(_bits(group)) for group in groups],
         frozenset(graph.stated),
         [list(_bits(group)) for group in found.played],

@@ -16,7 +16,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-Name = TypeVar("Name", bound=Hashable)
+Pooled = TypeVar("Pooled", bound=Hashable)
 """By what components are known here: their names, or the numbers of groups of which each stands for one."""
 
 
@@ -31,13 +31,13 @@ class HallSet:
     """The number of different components among their options."""
 
 
-def hall_set(slots: Sequence[int], options: Sequence[Sequence[Name]]) -> HallSet | None:
+def hall_set(slots: Sequence[int], options: Sequence[Sequence[Pooled]]) -> HallSet | None:
     """Return roles that lack components, or None if each slot can have one of its own; `options` are per role."""
     found = _matched(slots, _shared_pools(options))
     return found if isinstance(found, HallSet) else None
 
 
-def unmatchable(slots: Sequence[int], options: Sequence[Sequence[Name]]) -> HallSet | set[tuple[int, Name]]:
+def unmatchable(slots: Sequence[int], options: Sequence[Sequence[Pooled]]) -> HallSet | set[tuple[int, Pooled]]:
     """Return the pairs of a role and an option that are in no matching; or else roles that lack components."""
     slot_of = _matched(slots, _shared_pools(options))
     if isinstance(slot_of, HallSet):
@@ -105,24 +105,24 @@ def _strong_components(edges: Mapping[int, set[int]]) -> dict[int, int]:
     return group
 
 
-class MaintainedMatching(Generic[Name]):
+class MaintainedMatching(Generic[Pooled]):
     """A matching maintained along a depth-first search: every slot still to come keeps a component of its own.
 
     Slots are given components in order. When a slot is taken back nothing is undone: its component stays as good as
     any other until the slot is given one again.
     """
 
-    def __init__(self, slots: Sequence[int], options: Sequence[Sequence[Name]]) -> None:
+    def __init__(self, slots: Sequence[int], options: Sequence[Sequence[Pooled]]) -> None:
         self.slots, self.options = slots, _shared_pools(options)
         found = _matched(slots, self.options)
         self.hall_set = found if isinstance(found, HallSet) else None
         """Roles that lack components, if there are any: then there is no matching to maintain."""
-        self.slot_of: dict[Name, int] = {} if isinstance(found, HallSet) else found
-        self.component_of: list[Name | None] = [None] * len(slots)
+        self.slot_of: dict[Pooled, int] = {} if isinstance(found, HallSet) else found
+        self.component_of: list[Pooled | None] = [None] * len(slots)
         for component, slot in self.slot_of.items():
             self.component_of[slot] = component
 
-    def give(self, place: int, component: Name) -> bool:
+    def give(self, place: int, component: Pooled) -> bool:
         """Give a slot a component, if every later slot can then still have one of its own; or else change nothing."""
         owner, before = self.slot_of.get(component), self.component_of[place]
         if owner == place:
@@ -141,16 +141,16 @@ class MaintainedMatching(Generic[Name]):
         return False
 
 
-def _shared_pools(options: Sequence[Sequence[Name]]) -> list[Sequence[Name]]:
+def _shared_pools(options: Sequence[Sequence[Pooled]]) -> list[Sequence[Pooled]]:
     """Return the options with one sequence for all roles that have equal ones, so that it is looked through once."""
-    known: dict[tuple[Name, ...], Sequence[Name]] = {}
+    known: dict[tuple[Pooled, ...], Sequence[Pooled]] = {}
     return [known.setdefault(tuple(some), some) for some in options]
 
 
-def _matched(slots: Sequence[int], options: Sequence[Sequence[Name]]) -> HallSet | dict[Name, int]:
+def _matched(slots: Sequence[int], options: Sequence[Sequence[Pooled]]) -> HallSet | dict[Pooled, int]:
     """Return for each component that is matched its slot, or else roles that lack components."""
-    slot_of: dict[Name, int] = {}
-    component_of: list[Name | None] = [None] * len(slots)
+    slot_of: dict[Pooled, int] = {}
+    component_of: list[Pooled | None] = [None] * len(slots)
     # A greedy matching first: augmenting paths are then needed for the few slots that it leaves out.
     for slot, role in enumerate(slots):
         for component in options[role]:
@@ -165,7 +165,7 @@ def _matched(slots: Sequence[int], options: Sequence[Sequence[Name]]) -> HallSet
     return slot_of
 
 
-def _hall_set_of(reached: set[int], slots: Sequence[int], options: Sequence[Sequence[Name]]) -> HallSet:
+def _hall_set_of(reached: set[int], slots: Sequence[int], options: Sequence[Sequence[Pooled]]) -> HallSet:
     """Return the roles of slots that alternating paths reach from an unmatched one: they lack a component."""
     roles = tuple(sorted({slots[slot] for slot in reached}))
     found = {component for role in roles for component in options[role]}
@@ -175,16 +175,16 @@ def _hall_set_of(reached: set[int], slots: Sequence[int], options: Sequence[Sequ
 def _augment(
     start: int,
     slots: Sequence[int],
-    options: Sequence[Sequence[Name]],
-    slot_of: dict[Name, int],
-    component_of: list[Name | None],
+    options: Sequence[Sequence[Pooled]],
+    slot_of: dict[Pooled, int],
+    component_of: list[Pooled | None],
     settled: int = -1,
 ) -> set[int] | None:
     """Match a slot along an augmenting path that leaves slots up to a settled one alone; or return the slots reached.
 
     Options are looked through once, however many slots and roles have them.
     """
-    came: dict[Name, int] = {}
+    came: dict[Pooled, int] = {}
     looked: set[int] = set()
     reached, waiting = {start}, [start]
     while waiting:
@@ -210,7 +210,7 @@ def _augment(
 
 
 def _flip(
-    component: Name | None, came: dict[Name, int], slot_of: dict[Name, int], component_of: list[Name | None]
+    component: Pooled | None, came: dict[Pooled, int], slot_of: dict[Pooled, int], component_of: list[Pooled | None]
 ) -> None:
     """Flip the augmenting path that was found, back to the slot that had no component."""
     while component is not None:

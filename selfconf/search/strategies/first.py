@@ -41,6 +41,7 @@ from selfconf.search.engines import (
     HallSet,
     MaintainedMatching,
     any_by_clauses,
+    exclusive_groups,
     first_solution,
     least_by_clauses,
     solver_available,
@@ -164,7 +165,9 @@ def least_of(
         assert not isinstance(excluded, HallSet)
         remaining = _without(remaining, excluded)
         matching = MaintainedMatching(remaining.slots, remaining.components())
-    return by_clauses(remaining, budget) if solver_available() else first_solution(remaining, budget, matching=matching)
+    if solver_available():
+        return by_clauses(remaining, budget)
+    return None if exclusive_groups(remaining).impossible else first_solution(remaining, budget, matching=matching)
 
 
 def _without(given: ReducedProblem, excluded: set[tuple[int, IRI]]) -> ReducedProblem:

@@ -1,0 +1,67 @@
+"""Groups of options exclude each other, and what counting them says is true of every solution."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmarks.search.further_families import colouring, latin, pigeonholes, queens, tour
+from selfconf.search.budget import Budget
+from selfconf.search.engines import clause_learning
+from selfconf.search.engines.clause_learning import least_by_clauses
+from selfconf.search.engines.exclusion import exclusive_groups
+from selfconf.search.problem import Problem
+from selfconf.search.reduction import LazyReduction, pruned, reduced
+from selfconf.search.strategies import solution
+from tests.search.comparison import least_numbers, numbers
+from tests.search.oracle import World
+from tests.search.worlds import agreement, problems, rivalries
+
+
+@given(st.one_of(rivalries(), problems()))
+@agreement()
+def test_groups_and_what_counting_proves_hold_in_every_solution(problem: Problem) -> None:
+    given_ = pruned(reduced(problem))
+    found = exclusive_groups(given_)
+    options = [option for some in given_.options for option in some]
+    place = {(option.kind.role, option.number): number for number, option in enumerate(options)}
+    for players in World(problem.task, problem.partition, problem.hierarchy).solutions():
+        assert not found.impossible
+        pairs = [(role, problem.candidates[role].index(c)) for role, chosen in enumerate(players) for c in chosen]
+        if not all(pair in place for pair in pairs):
+            continue  # a solution with a dominated candidate
+        playing = {place[pair] for pair in pairs}
+        assert all(len(playing & set(group)) <= 1 for group in found.groups)
+        assert all(playing & set(some) for some in found.played)
+        assert not playing & found.excluded
+
+
+@given(rivalries())
+@agreement()
+def test_clause_learning_with_groups_finds_the_least_solution(problem: Problem) -> None:
+    pytest.importorskip("pysat")
+    assert numbers(least_by_clauses(reduced(problem), Budget(10_000))) == least_numbers(problem)
+
+
+@pytest.mark.parametrize(("pigeons", "holes"), [(9, 8), (30, 29)])
+@pytest.mark.parametrize("aided", [True, False])
+def test_pigeonholes_through_ports_are_refused_by_counting(
+    pigeons: int, holes: int, aided: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not aided:
+        monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+    assert solution(LazyReduction(pigeonholes(pigeons, holes)), Budget(20_000)) is None
+
+
+@pytest.mark.parametrize(
+    "problem", [latin(7, 0.6, 1), queens(9, 1, 2), tour(12, 4.0, 2)], ids=["Latin square", "queens", "tour"]
+)
+def test_what_has_as_many_groups_as_slots_has_each_of_them_played(problem: Problem) -> None:
+    assert exclusive_groups(pruned(reduced(problem))).played
+
+
+def test_groups_take_the_place_of_the_needs_that_they_state() -> None:
+    given_ = pruned(reduced(colouring(12, 3, 4.0, 1)))
+    used = {need for options in given_.options for option in options for need in option.kind.needs}
+    assert exclusive_groups(given_).stated == used
