@@ -1,8 +1,9 @@
 """A network in memory: one thread, a clock turned by hand, and a seed for everything that can go wrong.
 
 `Network` delivers what nodes send in the order of simulated time. Faults are policy: each message may be delayed, lost
-or doubled with given chances, and nodes may be cut off from each other. Events are never lost between nodes that
-reach each other, as on the real bus. A history is replayed by its seed.
+or doubled with given chances; nodes may be cut off from each other, one way or both; a node may be paused, be busy, or
+have a clock of its own. Events are never lost between nodes that reach each other, as on the real bus. A history is
+replayed by its seed.
 """
 
 from __future__ import annotations
@@ -39,6 +40,12 @@ def _wild(chunk: str) -> bool:
     return not chunk.startswith("@")
 
 
+LEASE = 1.0
+"""Seconds after which a node that is paused counts as gone: its lives seem to have ended."""
+REJOINING = 0.1
+"""Seconds that a node whose lease has run out needs to be connected again, once it goes on."""
+
+
 @dataclass(frozen=True, slots=True)
 class Faults:
     """The chances per message, and the delays in seconds; a perfect and fast network by default."""
@@ -47,46 +54,114 @@ class Faults:
     doubling: float = 0.0
     least_delay: float = 0.0005
     most_delay: float = 0.0005
+    most_event_delay: float = 0.0
+    """How long events and notices of lives may be delayed at most; they keep their order all the same."""
 
 
 class Network:
-    """The simulated network: its nodes, its time, and which nodes reach each other."""
+    """The simulated network: its nodes, its time, and which nodes reach each other.
+
+    `stepped` is called after each thing that has happened, for those who want to look at every step of a history.
+    """
 
     def __init__(self, seed: int = 0, faults: Faults | None = None) -> None:
         self.time = 0.0
         self.faults = faults or Faults()
+        self.stepped: Callable[[], None] = lambda: None
         self._chance = random.Random(seed)
         self._events: list[tuple[float, int, Callable[[], None]]] = []
         self._count = itertools.count()
-        self._cut: set[frozenset[int]] = set()
+        self._cut: set[tuple[int, int]] = set()
+        """The one-way links that are cut: sender, receiver."""
+        self._latest: dict[tuple[int, int], float] = {}
+        """When the latest event from one node to another arrives, which no later one may overtake."""
         self.nodes: list[MemoryBus] = []
 
-    def node(self) -> MemoryBus:
-        """A new node that reaches all others."""
-        bus = MemoryBus(self, len(self.nodes))
+    def node(self, clock: float = 0.0) -> MemoryBus:
+        """A new node that reaches all others; its clock is ahead of the network's time by that many seconds."""
+        bus = MemoryBus(self, len(self.nodes), clock)
         self.nodes.append(bus)
         return bus
 
     def cut(self, left: MemoryBus, right: MemoryBus) -> None:
         """Nothing gets through between two nodes from now on; to each the other's lives seem to have ended."""
-        self._cut.add(frozenset((left.number, right.number)))
-        left.unsee(right)
-        right.unsee(left)
-        left.match_all()
+        self.mute(left, right)
+        self.mute(right, left)
+
+    def mute(self, sender: MemoryBus, receiver: MemoryBus) -> None:
+        """Nothing of one node reaches another from now on; the way back stays open."""
+        if self.reaches(sender, receiver):
+            self._cut.add((sender.number, receiver.number))
+            receiver.unsee(sender)
+            sender.match_all()
 
     def reconnect(self, left: MemoryBus, right: MemoryBus) -> None:
         """Two nodes reach each other again, and see each other's lives."""
-        self._cut.discard(frozenset((left.number, right.number)))
-        left.see(right)
-        right.see(left)
+        for sender, receiver in ((left, right), (right, left)):
+            reached = self.reaches(sender, receiver)
+            self._cut.discard((sender.number, receiver.number))
+            if not reached and self.reaches(sender, receiver):
+                receiver.see(sender)
         left.match_all()
 
-    def reaches(self, left: MemoryBus, right: MemoryBus) -> bool:
-        """Whether a message gets through between two nodes."""
-        return left.open and right.open and not self._severed(left, right)
+    def reaches(self, sender: MemoryBus, receiver: MemoryBus) -> bool:
+        """Whether a message of one node gets through to another."""
+        return sender.open and receiver.open and not self._severed(sender, receiver)
 
-    def _severed(self, left: MemoryBus, right: MemoryBus) -> bool:
-        return frozenset((left.number, right.number)) in self._cut
+    def _severed(self, sender: MemoryBus, receiver: MemoryBus) -> bool:
+        lone = sender is not receiver and (sender.expelled or receiver.expelled)
+        return lone or (sender.number, receiver.number) in self._cut
+
+    def pause(self, node: MemoryBus) -> None:
+        """Let a node do nothing, as SIGSTOP does: what arrives waits, timers are late, and after `LEASE` it is gone.
+
+        Pausing a node that never resumes, and closing it later, is what others see of a host that loses its power.
+        """
+        if node.paused or not node.open:
+            return
+        node.pauses += 1
+        node.paused, number = True, node.pauses
+
+        def expel() -> None:
+            if node.open and node.paused and node.pauses == number:
+                self._expel(node)
+
+        self._at(self.time + LEASE, expel)
+
+    def resume(self, node: MemoryBus) -> None:
+        """Let a node go on: first with the timers that are due, then with what has arrived before it was gone."""
+        if not node.paused:
+            return
+        node.paused = False
+        node.catch_up()
+        number = node.pauses
+
+        def readmit() -> None:
+            if node.open and node.expelled and not node.paused and node.pauses == number:
+                self._readmit(node)
+
+        self._at(self.time + REJOINING, readmit)
+
+    def _expel(self, node: MemoryBus) -> None:
+        others = [other for other in self.nodes if other is not node and other.open]
+        reached = [other for other in others if self.reaches(node, other)]
+        heard = [other for other in others if self.reaches(other, node)]
+        node.expelled = True
+        for other in reached:
+            other.unsee(node)
+        for other in heard:
+            node.unsee(other)
+        node.match_all()
+
+    def _readmit(self, node: MemoryBus) -> None:
+        node.expelled = False
+        for other in self.nodes:
+            if other is not node and other.open:
+                if self.reaches(node, other):
+                    other.see(node)
+                if self.reaches(other, node):
+                    node.see(other)
+        node.match_all()
 
     def loses(self) -> bool:
         """Whether the next message is lost."""
@@ -101,27 +176,40 @@ class Network:
             return False
 
         def arrive() -> None:
-            if not self._severed(sender, receiver):  # what was on the way is lost with the link
-                action()
+            if receiver.open and not self._severed(sender, receiver):  # what was on the way is lost with the link
+                receiver.take(action)
 
         times = 2 if not sure and self._chance.random() < self.faults.doubling else 1
+        begins = max(self.time, sender.busy_until)
         for _ in range(times):
             delay = self._chance.uniform(self.faults.least_delay, self.faults.most_delay)
-            if sure:  # one delay for all keeps the order
-                delay = self.faults.least_delay
-            self.at(self.time + delay, receiver, arrive)
+            moment = begins + (self._in_order(sender, receiver, begins) if sure else delay)
+            self._at(moment, arrive)
         return True
 
-    def at(self, time: float, node: MemoryBus, action: Callable[[], None]) -> tuple[float, int, Callable[[], None]]:
-        """Have a node do something at a time, if it is still there."""
+    def _in_order(self, sender: MemoryBus, receiver: MemoryBus, begins: float) -> float:
+        """The delay of an event, which overtakes no earlier one between two nodes."""
+        delay, most = self.faults.least_delay, self.faults.most_event_delay
+        if most:
+            delay += self._chance.uniform(0.0, most)
+        link = sender.number, receiver.number
+        if sender is receiver:
+            return self.faults.least_delay
+        moment = max(begins + delay, self._latest.get(link, 0.0))
+        self._latest[link] = moment
+        return moment - begins
+
+    def at(self, time: float, node: MemoryBus, action: Callable[[], None]) -> None:
+        """Have a node do something at a time, if it is still there: a timer."""
 
         def act() -> None:
             if node.open:
-                action()
+                node.take(action, timer=True)
 
-        entry = (time, next(self._count), act)
-        heapq.heappush(self._events, entry)
-        return entry
+        self._at(time, act)
+
+    def _at(self, time: float, action: Callable[[], None]) -> None:
+        heapq.heappush(self._events, (time, next(self._count), action))
 
     def step(self) -> bool:
         """Let the next thing happen; False if nothing is left."""
@@ -130,6 +218,7 @@ class Network:
         time, _, action = heapq.heappop(self._events)
         self.time = max(self.time, time)
         action()
+        self.stepped()
         return True
 
     def run(self, until: Callable[[], bool], seconds: float = 60.0) -> bool:
@@ -146,8 +235,17 @@ class Network:
 class MemoryBus:
     """A node of the simulated network."""
 
-    def __init__(self, network: Network, number: int) -> None:
+    def __init__(self, network: Network, number: int, clock: float = 0.0) -> None:
         self.network, self.number, self.open = network, number, True
+        self.clock = clock
+        """By how many seconds the clock of this node is ahead of the network's time."""
+        self.paused, self.pauses = False, 0
+        self.expelled = False
+        """Whether it was paused for so long that its links are gone."""
+        self.busy_until = 0.0
+        """Until when a callback keeps the thread of this node busy; what it sends goes out after that."""
+        self._late_timers: list[Callable[[], None]] = []
+        self._late_arrivals: list[Callable[[], None]] = []
         self._subscribers: dict[int, tuple[str, Callable[[Sample], None]]] = {}
         self._queryables: dict[int, tuple[str, Callable[[_Request], None]]] = {}
         self._watchers: dict[int, tuple[str, Callable[[str, bool], None]]] = {}
@@ -159,12 +257,35 @@ class MemoryBus:
     def link(self) -> str:
         """The network, if this node reaches any other; one that is alone is not cut off."""
         others = [node for node in self.network.nodes if node is not self and node.open]
-        reached = not others or any(self.network.reaches(self, node) for node in others)
+        reached = not others or any(
+            self.network.reaches(self, node) or self.network.reaches(node, self) for node in others
+        )
         return "network" if self.open and reached else ""
 
+    def take(self, action: Callable[[], None], timer: bool = False) -> None:
+        """Do what is due now, or keep it while this node is paused or busy."""
+        if self.paused or self.network.time < self.busy_until:
+            (self._late_timers if timer else self._late_arrivals).append(action)
+        else:
+            action()
+
+    def catch_up(self) -> None:
+        """Do what was kept: timers first, as a program's loop looks at its clock before it reads what has arrived."""
+        if self.paused or self.network.time < self.busy_until:
+            return
+        late = [*((action, True) for action in self._late_timers), *((action, False) for action in self._late_arrivals)]
+        self._late_timers, self._late_arrivals = [], []
+        for action, timer in late:
+            self.network._at(self.network.time, _again(self, action, timer))
+
+    def spend(self, seconds: float) -> None:
+        """Keep the thread of this node busy, as slow code in a callback does; its lives go on meanwhile."""
+        self.busy_until = max(self.network.time, self.busy_until) + seconds
+        self.network._at(self.busy_until, self.catch_up)
+
     def now(self) -> float:
-        """Seconds of simulated time."""
-        return self.network.time
+        """Seconds of simulated time, by the clock of this node."""
+        return max(self.network.time, self.busy_until) + self.clock
 
     def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
         """Call `action` once, after that time."""
@@ -178,12 +299,12 @@ class MemoryBus:
             nonlocal undone
             undone = True
 
-        self.network.at(self.network.time + seconds, self, act)
+        self.network.at(max(self.network.time, self.busy_until) + seconds, self, act)
         return undo
 
     def wake_up(self, action: Callable[[], None]) -> None:
         """Call `action` soon."""
-        self.network.at(self.network.time, self, action)
+        self.network._at(self.network.time, _again(self, action, timer=False))
 
     def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
         """Declare a key to put on."""
@@ -241,7 +362,7 @@ class MemoryBus:
         undo = self._declare(self._watchers, (key, changed))
         number = max(self._watchers)
         for node in self.network.nodes:
-            if self.network.reaches(self, node):
+            if self.network.reaches(node, self):
                 for token in list(node._tokens.values()):
                     if intersects(key, token):
                         self.network.deliver(node, self, _life_notice(self, number, changed, token, True))
@@ -253,7 +374,7 @@ class MemoryBus:
             sorted(
                 token
                 for node in self.network.nodes
-                if self.network.reaches(self, node)
+                if self.network.reaches(node, self)
                 for token in node._tokens.values()
                 if intersects(key, token)
             )
@@ -278,6 +399,7 @@ class MemoryBus:
             self._publish_life(key, False)
         self.open = False
         self._tokens.clear()
+        self._late_timers, self._late_arrivals = [], []
         self.match_all()
 
     def see(self, other: MemoryBus) -> None:
@@ -324,6 +446,14 @@ class MemoryBus:
                     )
 
 
+def _again(node: MemoryBus, action: Callable[[], None], timer: bool) -> Callable[[], None]:
+    def again() -> None:
+        if node.open:
+            node.take(action, timer)
+
+    return again
+
+
 def _arrival(node: MemoryBus, number: int, receive: Callable[[Sample], None], sample: Sample) -> Callable[[], None]:
     def arrive() -> None:
         if number in node._subscribers:  # it may have been undone while the sample was on its way
@@ -364,7 +494,7 @@ class _Publisher:
         """Call `matched` if it has changed whether there is a subscriber."""
         network = self._bus.network
         matching = any(
-            network.reaches(self._bus, node) and intersects(key, self._key)
+            network.reaches(node, self._bus) and intersects(key, self._key)
             for node in network.nodes
             for key, _ in node._subscribers.values()
         )

@@ -159,3 +159,192 @@ def test_time_stands_still_unless_something_happens_or_it_is_let_pass() -> None:
     assert node.now() == 0.0
     assert not network.run(lambda: False, 5.0)
     assert node.now() == 5.0
+
+
+# Pauses, busy threads, one-way links, clocks.
+
+
+class Watched:
+    """Two nodes: one that is alive, hears a key and has a timer; another that watches it and talks to it."""
+
+    def __init__(self, faults: Faults | None = None) -> None:
+        self.network = Network(0, faults)
+        self.one, self.other = self.network.node(), self.network.node()
+        self.heard: list[str] = []
+        self.lives: list[bool] = []
+        self.seen: list[bool] = []
+        self.one.subscribe("a", lambda sample: self.heard.append(sample.payload.decode()))
+        self.one.announce("live/one")
+        self.other.announce("live/other")
+        self.other.watch("live/one", lambda _, alive: self.lives.append(alive))
+        self.one.watch("live/other", lambda _, alive: self.seen.append(alive))
+        self.publisher = self.other.publisher("a", Urgency.EVENT)
+        self.let_pass(0.1)
+
+    def let_pass(self, seconds: float) -> None:
+        """Let simulated time pass."""
+        self.network.run(lambda: False, seconds)
+
+    def put(self, text: str) -> None:
+        """Let the other node say something, and let it arrive."""
+        self.publisher.put(text.encode())
+        self.let_pass(0.1)
+
+
+def test_a_paused_node_handles_what_has_arrived_late_and_its_timers_first() -> None:
+    here = Watched()
+    here.one.later(0.3, lambda: here.heard.append("timer"))
+    here.network.pause(here.one)
+    here.put("first")
+    here.put("second")
+    here.let_pass(0.5)
+    assert here.heard == []
+    here.network.resume(here.one)
+    here.let_pass(0.1)
+    assert here.heard == ["timer", "first", "second"]
+    assert here.lives == [True]
+
+
+def test_a_node_that_is_paused_for_longer_than_the_lease_is_gone_and_comes_back() -> None:
+    here = Watched()
+    here.network.pause(here.one)
+    here.put("before the lease runs out")
+    here.let_pass(2.0)
+    assert here.lives == [True, False]
+    here.put("lost")
+    here.network.resume(here.one)
+    here.let_pass(0.05)
+    assert here.heard == ["before the lease runs out"]
+    assert here.seen == [True, False]
+    assert not here.one.link
+    here.let_pass(1.0)
+    assert here.lives == [True, False, True]
+    assert here.seen == [True, False, True]
+    here.put("again")
+    assert here.heard == ["before the lease runs out", "again"]
+
+
+def test_a_node_that_is_paused_again_before_it_is_connected_again_stays_gone() -> None:
+    here = Watched()
+    here.network.pause(here.one)
+    here.let_pass(2.0)
+    here.network.resume(here.one)
+    here.let_pass(0.05)
+    here.network.pause(here.one)
+    here.let_pass(5.0)
+    assert here.lives == [True, False]
+    here.network.resume(here.one)
+    here.let_pass(1.0)
+    assert here.lives == [True, False, True]
+
+
+def test_a_host_that_loses_its_power_is_missed_after_the_lease() -> None:
+    here = Watched()
+    here.network.pause(here.one)
+    here.let_pass(0.9)
+    assert here.lives == [True]
+    here.let_pass(0.2)
+    assert here.lives == [True, False]
+    here.one.close()
+    here.network.resume(here.one)
+    here.let_pass(2.0)
+    assert here.lives == [True, False]
+
+
+def test_a_question_to_a_paused_node_shows_as_a_time_out_and_is_answered_too_late() -> None:
+    here = Watched()
+    echo(here.one, "b")
+    here.network.pause(here.one)
+    replies: list[Replies] = []
+    here.other.ask("b", b"", 0.3, replies.append)
+    here.let_pass(0.5)
+    here.network.resume(here.one)
+    here.let_pass(0.5)
+    assert [said.complete for said in replies] == [False]
+
+
+def test_a_busy_node_lives_on_but_handles_nothing_and_what_it_sends_afterwards_is_late() -> None:
+    here = Watched()
+    said: list[tuple[float, bytes]] = []
+    here.other.subscribe("b", lambda sample: said.append((round(here.network.time, 3), sample.payload)))
+    publisher = here.one.publisher("b", Urgency.EVENT)
+    began = here.network.time
+
+    def slow() -> None:
+        publisher.put(b"before")
+        here.one.spend(3.0)
+        publisher.put(b"after")
+
+    here.one.wake_up(slow)
+    here.let_pass(0.1)
+    here.put("waits")
+    here.let_pass(2.0)
+    assert here.heard == []
+    assert here.lives == [True]
+    assert [payload for _, payload in said] == [b"before"]
+    here.let_pass(1.0)
+    assert here.heard == ["waits"]
+    assert said[1] == (round(began + 3.0005, 3), b"after")
+
+
+def test_a_link_may_be_cut_one_way() -> None:
+    here = Watched()
+    back: list[Sample] = []
+    here.other.subscribe("b", back.append)
+    publisher = here.one.publisher("b", Urgency.EVENT)
+    here.network.mute(here.other, here.one)
+    here.put("lost")
+    publisher.put(b"arrives")
+    here.let_pass(0.1)
+    assert here.heard == []
+    assert [sample.payload for sample in back] == [b"arrives"]
+    assert here.lives == [True]
+    assert here.seen == [True, False]
+    here.network.reconnect(here.one, here.other)
+    here.let_pass(0.1)
+    assert here.lives == [True]
+    assert here.seen == [True, False, True]
+
+
+def test_a_third_node_sees_the_lives_that_two_others_have_lost_sight_of() -> None:
+    here = Watched()
+    third = here.network.node()
+    lives: list[tuple[str, bool]] = []
+    third.watch("live/*", lambda key, alive: lives.append((key, alive)))
+    here.network.cut(here.one, here.other)
+    here.let_pass(1.0)
+    assert here.lives == [True, False]
+    assert lives == [("live/one", True), ("live/other", True)]
+
+
+def test_events_and_lives_may_be_delayed_and_keep_their_order() -> None:
+    here = Watched(Faults(most_event_delay=2.0))
+    here.let_pass(5.0)
+    for number in range(20):
+        here.publisher.put(str(number).encode())
+    began = here.network.time
+    here.network.run(lambda: bool(here.heard), 5.0)
+    assert here.network.time - began > 0.01
+    here.let_pass(5.0)
+    assert here.heard == [str(number) for number in range(20)]
+
+
+def test_each_node_has_a_clock_of_its_own() -> None:
+    network = Network()
+    one, other = network.node(), network.node(clock=-300.0)
+    went_off: list[float] = []
+    other.later(1.0, lambda: went_off.append(network.time))
+    network.run(lambda: False, 2.0)
+    assert (one.now(), other.now()) == (2.0, -298.0)
+    assert went_off == [1.0]
+
+
+def test_whoever_wants_to_looks_at_every_step() -> None:
+    network = Network()
+    node = network.node()
+    times: list[float] = []
+    network.stepped = lambda: times.append(network.time)
+    for seconds in (1.0, 2.0):
+        node.later(seconds, lambda: None)
+    network.run(lambda: False, 5.0)
+    assert times == [1.0, 2.0]
