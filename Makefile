@@ -9,7 +9,7 @@ PYTHON ?= $(shell for p in python3.11 python3.10 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && echo $$p && exit; done)
 SEEDS  ?= 20
 
-.PHONY: demo test quick nightly check package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test quick nightly faults check package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -24,9 +24,14 @@ test: $(VENV)/with-dev
 quick: $(VENV)/with-dev
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow'
 
-# Ten thousand random ecologies for each property of the search, against every oracle; about twenty minutes.
+# Ten thousand random ecologies for each property of the search, against every oracle, and ten thousand histories with
+# faults; about half an hour.
 nightly: $(VENV)/with-dev
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults
+
+# Five hundred real faults: processes that are killed, stopped and ended at random moments; about an hour.
+faults: $(VENV)/with-dev
+	$(BIN)/python -m benchmarks.faults --trials 500
 
 check: $(VENV)/with-dev lint types floors shapes docs-check test package
 

@@ -23,11 +23,6 @@ settings.register_profile(
 settings.load_profile("selfconf")
 
 
-def pytest_addoption(parser: pytest.Parser) -> None:
-    """The option by which a history is replayed."""
-    parser.addoption("--seed", type=int, help="the seed of the first history of faults to run")
-
-
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Spread the tests over processes so that those of a group share one."""

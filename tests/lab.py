@@ -93,9 +93,14 @@ class Recorder(Component):
     def __init__(self) -> None:
         self.said: list[tuple[Any, ...]] = []
         self.refusal: Exception | None = None
+        self.slow = 0.0
+        """How many seconds `started` takes."""
 
     def started(self) -> None:
         self.said.append(("started",))
+        if self.slow:
+            assert self._runtime is not None
+            _node(self._runtime.bus).spend(self.slow)
         if self.refusal is not None:
             raise self.refusal
 
@@ -150,8 +155,13 @@ class Lab:
         bound: tuple[tuple[str, str], ...] = (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")),
         policy: Policy = Policy.REPAIR,
         patient: bool = False,
+        clock: float = 0.0,
+        **wishes: Any,
     ) -> TaskRunner:
-        """A configurator that has begun with act 1."""
+        """A configurator that has begun with act 1; its clock is ahead by `clock` seconds.
+
+        `wishes` are further fields of its `RunRequest`.
+        """
         document = templates.read_task(turtle.parse(template, "template.ttl"))
         task = bindings.complete(bindings.bind(document, bound))
         composer = Composer(task)
@@ -164,9 +174,14 @@ class Lab:
             patient=patient,
             report=self.events.append,
             ended=self.ended.append,
+            **wishes,
         )
         agent = TaskRunner(
-            self.network.node(), "lab", order, f"agent{len(self.network.nodes)}", lambda: self.network.time
+            self.network.node(clock),
+            "lab",
+            order,
+            f"agent{len(self.network.nodes)}",
+            lambda: self.network.time + clock,
         )
         agent.start()
         return agent

@@ -126,7 +126,7 @@ class Network:
             if node.open and node.paused and node.pauses == number:
                 self._expel(node)
 
-        self._at(self.time + LEASE, expel)
+        self.after(LEASE, expel)
 
     def resume(self, node: MemoryBus) -> None:
         """Let a node go on: first with the timers that are due, then with what has arrived before it was gone."""
@@ -140,7 +140,7 @@ class Network:
             if node.open and node.expelled and not node.paused and node.pauses == number:
                 self._readmit(node)
 
-        self._at(self.time + REJOINING, readmit)
+        self.after(REJOINING, readmit)
 
     def _expel(self, node: MemoryBus) -> None:
         others = [other for other in self.nodes if other is not node and other.open]
@@ -207,6 +207,10 @@ class Network:
                 node.take(action, timer=True)
 
         self._at(time, act)
+
+    def after(self, seconds: float, action: Callable[[], None]) -> None:
+        """Have something happen to the network itself, which is never paused."""
+        self._at(self.time + seconds, action)
 
     def _at(self, time: float, action: Callable[[], None]) -> None:
         heapq.heappush(self._events, (time, next(self._count), action))

@@ -1,242 +1,294 @@
-"""Histories in which everything goes wrong, each replayed by its seed.
+"""Histories in which everything goes wrong, each decided by its script, which is made from a seed.
 
-A history runs the paper's ecology on a network that loses, delays and doubles messages, while components fail, crash
-and come back, nodes are cut off, and configurators die. Then the faults cease, every node reaches every other, and
-after a while the ecology must be in order: `disorder` names everything that is not.
+A history plays the actions of a script on the paper's ecology, on a network that loses, delays and doubles messages:
+components fail, crash, come back, are started twice, are slow; nodes are paused, cut off, or cut off from one other;
+sites and configurators die and come back; several tasks compete. At every step of the network the invariants of
+`tests/faults/invariants.py` are looked at. Then the faults cease, every node reaches every other, and after a while the
+ecology must be in order.
 
-*Replaying a failure.* A history that ends in disorder fails its test; the first line of the message has its seed, then
-comes what happened, in order, and what is not in order. Its seed decides everything in it, the network included, so
-`python -m pytest tests/faults --seed N` lets the failure happen again, as long as the code and the list of mishaps in
-`run` are unchanged. The test whose name ends in `[0]` then is seed N, the others are the seeds that follow; give its
-name to run seed N alone, and add `--log-level DEBUG` to see every change of a configurator's phase:
+A history that breaks an invariant fails its test, and the message shows what happened, in order. To play it again, and
+to have every action dropped that is not needed:
 
-    python -m pytest --seed N 'tests/faults/test_histories.py::test_after_every_history_the_ecology_is_in_order[0]'
+    python -m tests.faults.replay SEED --shrink
 """
 
 from __future__ import annotations
 
-import random
-from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-from selfconf.bus.memory import Faults
-from selfconf.configurator.machine import wiring
-from selfconf.configurator.state import Phase, Policy
+from selfconf.bus.memory import Faults, MemoryBus
+from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
-from selfconf.model.refusal import Refusal
-from selfconf.protocol.messages import Cause
 from selfconf.sdk.component import Refused
+from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Site
-from tests.lab import ADVERTISEMENTS, Lab
+from tests.faults.script import SITES, Action, Script
+from tests.lab import Lab, Recorder
 
 SETTLED = 60.0
-"""Seconds after which the ecology must be in order again."""
-COMPONENTS = sorted(ADVERTISEMENTS)
+"""Seconds after the last fault in which the ecology must come into order."""
+
+
+@dataclass(slots=True)
+class Life:
+    """One process of a component: its runtime, its code and its node."""
+
+    name: str
+    runtime: ComponentRuntime
+    recorder: Recorder
+    node: MemoryBus
+
+    @property
+    def awake(self) -> bool:
+        """Whether it lives, and does something with what arrives."""
+        return self.node.open and not self.node.paused and self.node.network.time >= self.node.busy_until
 
 
 class History:
-    """A seeded history; `told` says what happened, for people who replay it."""
+    """A script that is played; `broken` says what was not as it must be, and when."""
 
-    def __init__(self, seed: int, folder: Path) -> None:
-        self.chance = random.Random(seed)
-        faults = Faults(
-            loss=self.chance.choice((0.0, 0.02, 0.1, 0.3)),
-            doubling=self.chance.choice((0.0, 0.1, 0.5)),
-            least_delay=0.0005,
-            most_delay=self.chance.choice((0.0005, 0.02, 0.2, 1.0)),
-        )
-        self.told: list[str] = [f"seed {seed}: {faults}"]
-        self.lab = Lab(folder, seed, faults)
-        self.sites: list[Site] = [
-            self.lab.site("living-room", "tracker"),
-            self.lab.site("astrid", "sonar", "encoder", "odometry", "control", "drive", "pippi"),
-        ]
-        for name in COMPONENTS:
-            self.lab.component(name)
+    def __init__(self, script: Script, folder: Path) -> None:
+        from tests.faults.invariants import Watch
+
+        self.script = script
+        self.lab = Lab(folder, script.seed, script.faults)
+        self.network = self.lab.network
+        self.told: list[str] = []
+        self.lives: list[Life] = []
+        self.sites: dict[str, Site] = {}
+        self.tasks: dict[str, TaskRunner] = {}
         self.agents: list[TaskRunner] = []
-        self.alone: list[TaskRunner | Site | str] = []
-        self.policy = self.chance.choice(list(Policy))
-        self.patient = self.chance.random() < 0.7
+        """Every configurator there has been, the dead ones too."""
+        self._nodes: dict[str, MemoryBus] = {}
+        self._isolated: set[str] = set()
+        self._powerless: list[MemoryBus] = []
+        for name in SITES:
+            self._begin_site(name)
+        for name in (name for names in SITES.values() for name in names):
+            self._begin_life(name)
+        self.watch = Watch(self)
+        self.network.stepped = self.watch.look
+
+    @property
+    def broken(self) -> list[str]:
+        """What was not as it must be, and when."""
+        return self.watch.broken
 
     def run(self) -> None:
-        """Let everything go wrong for a while, and then nothing any more."""
-        self._new_configurator()
-        for _ in range(self.chance.randint(2, 12)):
-            self.lab.let_pass(self.chance.choice((0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)))
-            self.chance.choice(
-                (
-                    self._fail,
-                    self._crash,
-                    self._come_back,
-                    self._restart,
-                    self._restart,
-                    self._refuse,
-                    self._isolate,
-                    self._isolate,
-                    self._rejoin,
-                    self._emit,
-                    self._replace_configurator,
-                    self._stop_configurator,
-                    self._second_configurator,
-                )
-            )()
-        self.lab.network.faults = Faults()
-        while self.alone:
-            self._rejoin()
-        self._say("the faults cease")
+        """Play the script, then let nothing go wrong any more."""
+        for action in self.script.actions:
+            self.lab.let_pass(max(0.0, action.time - self.network.time))
+            if self.perform(action):
+                self.told.append(str(action))
+        self._cease()
         self.lab.let_pass(SETTLED)
+        self.watch.end()
 
-    def disorder(self) -> Iterator[str]:
-        """Everything that is not in order."""
-        wanted: dict[str, TaskRunner] = {}
-        names = {runtime.profile.component: name for name, runtime in self.lab.runtimes.items()}
-        for agent in self.living():
-            phase = agent.state.phase
-            if phase is Phase.RUNNING and agent.configuration is not None:
-                for component in agent.configuration.components:
-                    if names[component] in wanted:
-                        yield f"two configurators hold {names[component]}"
-                    wanted[names[component]] = agent
-            elif phase not in (Phase.REFUSED, Phase.STOPPED):
-                yield f"{agent.name} is still {phase.value}"
-            elif phase is Phase.REFUSED and agent.state.patient:
-                yield from self._hasty_refusal(agent)
-        active = self.lab.active()
-        yield from (f"{name} acts for nobody" for name in sorted(active - set(wanted)))
-        yield from (f"{name} does not act" for name in sorted(set(wanted) - active))
-        for name in sorted(set(wanted) & active):
-            yield from self._wrong(name, wanted[name])
+    def perform(self, action: Action) -> bool:
+        """Do what an action says, if that is possible; whether it was."""
+        done: bool = getattr(self, f"_{action.kind}")(action)
+        return done
+
+    def _cease(self) -> None:
+        """Undo what is wrong with the network, and let everybody go on."""
+        self.told.append(f"{self.network.time:8.3f}  the faults cease")
+        self.network.faults = Faults()
+        for node in self._powerless:
+            node.close()
+        nodes = [node for node in self.network.nodes if node.open]
+        for node in nodes:
+            self.network.resume(node)
+        for number, left in enumerate(nodes):
+            for right in nodes[:number]:
+                self.network.reconnect(left, right)
+        self._isolated.clear()
+
+    # What there is.
 
     def living(self) -> list[TaskRunner]:
         """The configurators that have not died."""
         return [agent for agent in self.agents if self.lab.is_open(agent)]
 
-    def _wrong(self, name: str, agent: TaskRunner) -> Iterator[str]:
-        """What is wrong with a component that acts for a configurator."""
-        runtime, configuration = self.lab.runtimes[name], agent.configuration
-        assert configuration is not None
-        hold = runtime.activation.hold(agent.identity.task)
-        if hold is None or hold.claim.supervisor != agent.supervisor:
-            yield f"{name} obeys {hold}"
-        wires = wiring(configuration)[runtime.profile.component]
-        wanted = {(port, wire.component, wire.output) for port, followed in wires.items() for wire in followed}
-        followed = {(port, wire.component, wire.output) for port, wire in runtime.inputs.followed}
-        if wanted != followed:
-            yield f"{name} follows {sorted(followed)}, not {sorted(wanted)}"
-        said = self.lab.components[name].said
-        for setting in configuration.settings:
-            if setting.component == runtime.profile.component:
-                since = len(said) - said[::-1].index(("stopped",)) if ("stopped",) in said else 0
-                if (setting.name, str(setting.value)) not in said[since:]:
-                    yield f"{name} was not told its {setting.name}"
+    def life(self, name: str) -> Life | None:
+        """The latest life of a component, if it has not ended."""
+        return next(reversed(self.lives_of(name)), None)
 
-    def _hasty_refusal(self, agent: TaskRunner) -> Iterator[str]:
-        """A refusal that is waited out must still be right."""
-        alive = {
-            runtime.profile.component for name, runtime in self.lab.runtimes.items() if self.lab.node_of(name).open
-        }
-        found = {c: a for site in self.sites for c, a in site.shelf.advertisements.items() if c in alive}
-        if not isinstance(agent.request.compose(found, frozenset(agent.state.lost), None), Refusal):
-            yield f"{agent.name} has given up, although there is a configuration"
-        free = {
-            runtime.profile.component for runtime in self.lab.runtimes.values() if not runtime.activation.holds
-        }
-        for component, loss in agent.state.lost.items():
-            if component in alive and loss.cause is Cause.CRASH:
-                yield f"{agent.name} thinks that {component.short} is dead"
-            if component in alive and loss.busy and component in free:
-                yield f"{agent.name} thinks that {component.short} is busy"
+    def lives_of(self, name: str) -> list[Life]:
+        """All lives of a component that have not ended, the latest last."""
+        on = (life for life in self.lives if life.node.open and life.node not in self._powerless)
+        return [life for life in on if life.name == name]
 
-    # What goes wrong.
+    def node(self, who: str) -> MemoryBus | None:
+        """The node of a component, a site or a task, if it is there."""
+        node = self._nodes.get(who)
+        return node if node is not None and node.open else None
 
-    def _say(self, what: str) -> None:
-        self.told.append(f"{self.lab.network.time:8.3f}  {what}")
+    def _joined(self, who: str, node: MemoryBus) -> None:
+        self._nodes[who] = node
+        self._isolated.discard(who)
+        for other in self._isolated:
+            lone = self.node(other)
+            if lone is not None:
+                self.network.cut(node, lone)
 
-    def _some(self, alive: bool = True) -> str | None:
-        names = [name for name in COMPONENTS if self.lab.node_of(name).open == alive]
-        return self.chance.choice(names) if names else None
+    def _begin_site(self, name: str) -> None:
+        site = self.lab.site(name, *SITES[name])
+        self.sites[name] = site
+        assert isinstance(site.bus, MemoryBus)
+        self._joined(name, site.bus)
 
-    def _fail(self) -> None:
-        name = self._some()
-        if name is not None:
-            self._say(f"{name} fails")
-            self.lab.components[name].fail("seeded")
+    def _begin_life(self, name: str) -> Life:
+        recorder = self.lab.component(name)
+        life = Life(name, self.lab.runtimes[name], recorder, self.lab.node_of(name))
+        self.lives.append(life)
+        self._joined(name, life.node)
+        return life
 
-    def _crash(self) -> None:
-        name = self._some()
-        if name is not None:
-            self._say(f"{name} crashes")
-            self.lab.crash(name)
+    # What is done. Each action says whether it was possible.
 
-    def _come_back(self) -> None:
-        name = self._some(alive=False)
-        if name is not None:
-            self._revive(name)
+    def _fail(self, action: Action) -> bool:
+        life = self.life(action.who)
+        if life is None or not life.awake:
+            return False
+        life.recorder.fail("scripted")
+        return True
 
-    def _restart(self) -> None:
-        names = {runtime.profile.component: name for name, runtime in self.lab.runtimes.items()}
-        lost = sorted({names[component] for agent in self.living() for component in agent.state.lost})
-        name = self.chance.choice(lost or COMPONENTS)
-        if self.lab.node_of(name).open:
-            self._say(f"{name} is restarted")
-            self.lab.crash(name)
-            self.lab.let_pass(self.chance.choice((0.0, 0.01, 1.0)))
-        self._revive(name)
+    def _emit(self, action: Action) -> bool:
+        life = self.life(action.who)
+        if life is None or not life.awake:
+            return False
+        for output in life.runtime.profile.outputs:
+            life.recorder.emit(output.name, self.network.time)
+        return True
 
-    def _revive(self, name: str) -> None:
-        self._say(f"{name} comes back")
-        self.alone = [alone for alone in self.alone if alone != name]
-        self.lab.component(name)
+    def _crash(self, action: Action) -> bool:
+        lives = self.lives_of(action.who)
+        for life in lives:
+            life.node.close()
+        return bool(lives)
 
-    def _refuse(self) -> None:
-        name = self._some()
-        if name is not None:
-            self._say(f"{name} will refuse to start, or will not any more")
-            recorder = self.lab.components[name]
-            recorder.refusal = None if recorder.refusal else Refused("seeded")
+    def _start(self, action: Action) -> bool:
+        if self.life(action.who) is not None:
+            return False
+        self._begin_life(action.who)
+        return True
 
-    def _emit(self) -> None:
-        name = self._some()
-        if name is not None:
-            for output in self.lab.runtimes[name].profile.outputs:
-                self.lab.components[name].emit(output.name, self.lab.network.time)
+    def _duplicate(self, action: Action) -> bool:
+        if self.life(action.who) is None:
+            return False
+        self._begin_life(action.who)
+        return True
 
-    def _isolate(self) -> None:
-        candidates: list[TaskRunner | Site | str] = [*self.living(), *self.sites]
-        candidates += [name for name in COMPONENTS if self.lab.node_of(name).open]
-        who = self.chance.choice(candidates)
-        self._say(f"{_name(who)} is cut off")
-        self.lab.isolate(who)
-        self.alone.append(who)
+    def _lose_power(self, action: Action) -> bool:
+        """Others notice after the lease only."""
+        life = self.life(action.who)
+        if life is None:
+            return False
+        self.network.pause(life.node)
+        self._powerless.append(life.node)
+        return True
 
-    def _rejoin(self) -> None:
-        if self.alone:
-            who = self.alone.pop(self.chance.randrange(len(self.alone)))
-            self._say(f"{_name(who)} is reached again")
-            self.lab.rejoin(who)
+    def _refuse(self, action: Action) -> bool:
+        life = self.life(action.who)
+        if life is None:
+            return False
+        life.recorder.refusal = None if life.recorder.refusal else Refused("scripted")
+        return True
 
-    def _new_configurator(self) -> None:
-        agent = self.lab.agent(policy=self.policy, patient=self.patient)
-        self._say(f"{agent.name} begins")
+    def _slow(self, action: Action) -> bool:
+        life = self.life(action.who)
+        if life is None:
+            return False
+        life.recorder.slow = action.seconds
+        return True
+
+    def _crash_site(self, action: Action) -> bool:
+        node = self.node(action.who)
+        if node is not None:
+            node.close()
+        return node is not None
+
+    def _start_site(self, action: Action) -> bool:
+        if self.node(action.who) is not None:
+            return False
+        self._begin_site(action.who)
+        return True
+
+    def _begin(self, action: Action) -> bool:
+        if self.node(action.who) is not None:
+            return False
+        plan = self.script.tasks[action.who]
+        agent = self.lab.agent(
+            policy=Policy.DISMANTLE if plan.dismantles else Policy.REPAIR,
+            patient=plan.patient,
+            clock=self.script.clocks.get(action.who, 0.0),
+        )
+        self.tasks[action.who] = agent
         self.agents.append(agent)
+        assert isinstance(agent.bus, MemoryBus)
+        self._joined(action.who, agent.bus)
+        return True
 
-    def _replace_configurator(self) -> None:
-        for agent in self.living():
-            self._say(f"{agent.name} crashes")
-            self.alone = [alone for alone in self.alone if alone is not agent]
-            self.lab.crash(agent)
-        self._new_configurator()
+    def _crash_task(self, action: Action) -> bool:
+        node = self.node(action.who)
+        if node is not None:
+            node.close()
+        return node is not None
 
-    def _second_configurator(self) -> None:
-        if len(self.living()) < 2:
-            self._new_configurator()
+    def _stop_task(self, action: Action) -> bool:
+        node = self.node(action.who)
+        if node is None or node.paused:
+            return False
+        self.tasks[action.who].stop()
+        return True
 
-    def _stop_configurator(self) -> None:
-        agents = self.living()
-        if len(agents) > 1:
-            self._say(f"{agents[0].name} is stopped")
-            agents[0].stop()
+    def _isolate(self, action: Action) -> bool:
+        node = self.node(action.who)
+        if node is None or action.who in self._isolated:
+            return False
+        self._isolated.add(action.who)
+        for other in self.network.nodes:
+            if other is not node and other.open:
+                self.network.cut(node, other)
+        return True
 
+    def _rejoin(self, action: Action) -> bool:
+        node = self.node(action.who)
+        if node is None or action.who not in self._isolated:
+            return False
+        self._isolated.discard(action.who)
+        for other in self.network.nodes:
+            if other is not node and other.open:
+                self.network.reconnect(node, other)
+        return True
 
-def _name(who: TaskRunner | Site | str) -> str:
-    return who if isinstance(who, str) else who.name
+    def _link(self, action: Action) -> tuple[MemoryBus, MemoryBus] | None:
+        left, right = self.node(action.who), self.node(action.other)
+        return (left, right) if left is not None and right is not None else None
+
+    def _cut(self, action: Action) -> bool:
+        link = self._link(action)
+        if link is not None:
+            self.network.cut(*link)
+        return link is not None
+
+    def _mute(self, action: Action) -> bool:
+        link = self._link(action)
+        if link is not None:
+            self.network.mute(*link)
+        return link is not None
+
+    def _mend(self, action: Action) -> bool:
+        link = self._link(action)
+        if link is not None:
+            self.network.reconnect(*link)
+        return link is not None
+
+    def _pause(self, action: Action) -> bool:
+        node = self.node(action.who)
+        if node is None or node.paused:
+            return False
+        self.network.pause(node)
+        self.network.after(action.seconds, lambda: None if node in self._powerless else self.network.resume(node))
+        return True

@@ -1,0 +1,299 @@
+"""What must hold at every step of a history, and what must hold once the faults have ceased.
+
+Some of it may fail for a moment: until the news has travelled, and the grace is over. So an invariant names conditions
+that may not last for longer than its bound; a bound of zero means never. What must hold in the end has no bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from selfconf.bus.memory import MemoryBus
+from selfconf.configurator.state import Phase
+from selfconf.deployment import TaskRunner
+from selfconf.model.refusal import Refusal
+from selfconf.protocol.messages import Cause
+from selfconf.sdk.supervision import GRACE
+from tests.faults.histories import History, Life
+
+CALLS = 2.0
+"""Seconds after which a configurator looks again at a call that was not answered."""
+LOOKS = 10.0
+"""Seconds within which a configurator notices that a component does not act any more without having said so."""
+
+
+@dataclass(frozen=True, slots=True)
+class Invariant:
+    """Conditions that may not last for longer than a bound, in seconds; each is described by a text."""
+
+    name: str
+    conditions: Callable[[History], Iterator[str]]
+    bound: Callable[[History], float] = lambda history: 0.0
+
+
+def travel(history: History) -> float:
+    """How long news may take from one node to another, and back, in seconds."""
+    faults = history.script.faults
+    return 2 * (faults.most_delay + faults.most_event_delay) + 0.2
+
+
+def retries(history: History) -> float:
+    """How long it may take until a call has got through, in seconds."""
+    return 20 * CALLS if history.script.faults.loss else 2 * CALLS
+
+
+def supervisor(history: History, life: Life) -> TaskRunner | None:
+    """The living configurator that a component obeys."""
+    for agent in history.living():
+        if agent.supervisor == life.runtime.activation.supervisor:
+            return agent
+    return None
+
+
+def node_of(agent: TaskRunner) -> MemoryBus:
+    """The node of a configurator."""
+    assert isinstance(agent.bus, MemoryBus)
+    return agent.bus
+
+
+def awake(history: History) -> Iterator[Life]:
+    """The lives that are neither over, nor paused, nor busy."""
+    return (life for life in history.lives if life.awake)
+
+
+def two_lives_act(history: History) -> Iterator[str]:
+    """One life acts: of several processes of one component at most one is active."""
+    acting: dict[str, int] = {}
+    for life in awake(history):
+        if life.runtime.active:
+            acting[life.name] = acting.get(life.name, 0) + 1
+    yield from (f"{name} acts in {number} lives" for name, number in acting.items() if number > 1)
+
+
+def acts_for_nobody(history: History) -> Iterator[str]:
+    """A component that acts is held by a configurator that lives, and that it sees."""
+    for life in awake(history):
+        if life.runtime.active:
+            agent = supervisor(history, life)
+            if agent is None or not history.network.reaches(node_of(agent), life.node):
+                yield f"{life.name} {life.runtime.life} acts for {life.runtime.activation.supervisor}, which is gone"
+
+
+def acts_unknown(history: History) -> Iterator[str]:
+    """The configurator of a component that acts counts on it, or wants it released."""
+    for life in awake(history):
+        agent = supervisor(history, life)
+        if life.runtime.active and agent is not None and not node_of(agent).paused:
+            component = life.runtime.profile.component
+            if component not in agent.state.held and component not in agent.state.owed:
+                yield f"{life.name} {life.runtime.life} acts for {agent.name}, which does not know"
+
+
+def runs_without(history: History) -> Iterator[str]:
+    """A task is running only as long as each of its components acts for it."""
+    for agent in history.living():
+        if agent.state.phase is Phase.RUNNING and not node_of(agent).paused and agent.configuration is not None:
+            for component in agent.configuration.components:
+                if not _acts_for(history, agent, component):
+                    yield f"{agent.name} is running without {component.short}"
+
+
+def _acts_for(history: History, agent: TaskRunner, component: str) -> bool:
+    return any(
+        life.runtime.profile.component == component
+        and life.runtime.active
+        and life.runtime.activation.supervisor == agent.supervisor
+        for life in history.lives
+        if life.node.open
+    )
+
+
+def shares_what_it_needs_alone(history: History) -> Iterator[str]:
+    """No two tasks run with one component."""
+    running: dict[str, str] = {}
+    for agent in history.living():
+        if agent.state.phase is Phase.RUNNING and not node_of(agent).paused and agent.configuration is not None:
+            for component in agent.configuration.components:
+                if component in running:
+                    yield f"{agent.name} and {running[component]} both run with {component.short}"
+                running[component] = agent.name
+
+
+def network_overflows(history: History) -> Iterator[str]:
+    """What waits is bounded."""
+    if len(history.network._events) > 20_000:
+        yield "more than 20,000 messages and timers wait"
+
+
+STEPS = (
+    Invariant("one life acts", two_lives_act, lambda history: GRACE + travel(history) + 1.0),
+    Invariant("nobody acts for nobody", acts_for_nobody, lambda history: GRACE + travel(history)),
+    Invariant("who acts is known", acts_unknown, lambda history: retries(history) + travel(history)),
+    Invariant("running means running", runs_without, lambda history: LOOKS + retries(history) + travel(history)),
+    Invariant("each runs with its own", shares_what_it_needs_alone, lambda h: LOOKS + retries(h) + travel(h)),
+    Invariant("what waits is bounded", network_overflows),
+)
+"""What must hold at every step."""
+
+
+def undecided(history: History) -> Iterator[str]:
+    """Every task is running or refused."""
+    for agent in history.living():
+        if agent.state.phase not in (Phase.RUNNING, Phase.REFUSED, Phase.STOPPED):
+            yield f"{agent.name} is still {agent.state.phase.value}"
+
+
+def refused_in_vain(history: History) -> Iterator[str]:
+    """No task that waits could run."""
+    alive = {life.runtime.profile.component for life in history.lives if life.node.open}
+    sites = [site for name, site in history.sites.items() if history.node(name) is not None]
+    found = {c: a for site in sites for c, a in site.shelf.advertisements.items() if c in alive}
+    free = {
+        life.runtime.profile.component
+        for life in history.lives
+        if life.node.open and life.runtime.activation.supervisor is None
+    }
+    for agent in history.living():
+        if agent.state.phase is not Phase.REFUSED or not agent.state.patient:
+            continue
+        if not isinstance(agent.request.compose(found, frozenset(agent.state.lost), None), Refusal):
+            yield f"{agent.name} has given up, although there is a configuration"
+        for component, loss in agent.state.lost.items():
+            if component in alive and loss.cause is Cause.CRASH:
+                yield f"{agent.name} thinks that {component.short} is dead"
+            if component in alive and loss.busy and component in free:
+                yield f"{agent.name} thinks that {component.short} is busy"
+
+
+def acts_otherwise(history: History) -> Iterator[str]:
+    """What a configuration needs acts as it says, and nothing else acts."""
+    wanted = {
+        component: agent
+        for agent in history.living()
+        if agent.state.phase is Phase.RUNNING and agent.configuration is not None
+        for component in agent.configuration.components
+    }
+    for life in history.lives:
+        if life.node.open and life.runtime.active and life.runtime.profile.component not in wanted:
+            yield f"{life.name} acts for nobody"
+    for component, agent in wanted.items():
+        if not _acts_for(history, agent, component):
+            yield f"{component.short} does not act for {agent.name}"
+
+
+def wired_otherwise(history: History) -> Iterator[str]:
+    """Every input follows what the configuration says."""
+    for agent in history.living():
+        if agent.state.phase is Phase.RUNNING and agent.configuration is not None:
+            for life in awake(history):
+                if life.runtime.active and life.runtime.activation.supervisor == agent.supervisor:
+                    component = life.runtime.profile.component
+                    wanted = {
+                        (c.input, c.source, c.output) for c in agent.configuration.connections if c.sink == component
+                    }
+                    followed = {(port, wire.component, wire.output) for port, wire in life.runtime.inputs.followed}
+                    if wanted != followed:
+                        yield f"{life.name} follows {sorted(followed)}, not {sorted(wanted)}"
+
+
+def lacks_a_value(history: History) -> Iterator[str]:
+    """Every component that acts has the parameters of its configuration."""
+    for agent in history.living():
+        if agent.state.phase is Phase.RUNNING and agent.configuration is not None:
+            for life in awake(history):
+                if life.runtime.active and life.runtime.activation.supervisor == agent.supervisor:
+                    said = since_rest(life)
+                    for setting in agent.configuration.settings:
+                        mine = setting.component == life.runtime.profile.component
+                        if mine and (setting.name, str(setting.value)) not in said:
+                            yield f"{life.name} was not told its {setting.name}"
+
+
+def since_rest(life: Life) -> list[tuple[object, ...]]:
+    """What a component was told since it was stopped last before it was started last."""
+    said = life.recorder.said
+    started = len(said) - said[::-1].index(("started",)) if ("started",) in said else 0
+    before = said[:started]
+    return said[len(before) - before[::-1].index(("stopped",)) if ("stopped",) in before else 0 :]
+
+
+ENDS = (
+    Invariant("every task is decided", undecided),
+    Invariant("nobody waits in vain", refused_in_vain),
+    Invariant("what acts is wanted", acts_otherwise),
+    Invariant("wired as composed", wired_otherwise),
+    Invariant("parameters are set", lacks_a_value),
+)
+"""What must hold in the end."""
+
+
+class Watch:
+    """Looks at the invariants of a history at every step, and notes what has lasted for too long."""
+
+    def __init__(self, history: History) -> None:
+        self._history = history
+        self._bounds = {invariant.name: invariant.bound(history) for invariant in STEPS}
+        self._since: dict[tuple[str, str], float] = {}
+        self._noted: set[tuple[str, str]] = set()
+        self._seen: object = None
+        self._kept: list[object] = []
+        self.broken: list[str] = []
+        self.names: set[str] = set()
+        """The names of the invariants that were broken."""
+        self.longest: dict[str, float] = {}
+        """How long a condition of each invariant has lasted at most."""
+
+    def look(self) -> None:
+        """Look at the ecology as it is now; conditions need a second look only if something has changed."""
+        seen = self._fingerprint()
+        if seen != self._seen:
+            self._seen = seen
+            self._compare()
+        now = self._history.network.time
+        for (name, condition), since in self._since.items():
+            if now - since > self._bounds[name] and (name, condition) not in self._noted:
+                self._noted.add((name, condition))
+                self._note(name, f"{condition}, since {since:.3f}")
+
+    def end(self) -> None:
+        """Look at what must hold in the end."""
+        self.look()
+        for invariant in ENDS:
+            for condition in invariant.conditions(self._history):
+                self._note(invariant.name, condition)
+
+    def _compare(self) -> None:
+        now = self._history.network.time
+        present = {(one.name, condition) for one in STEPS for condition in one.conditions(self._history)}
+        for name, condition in list(self._since):
+            if (name, condition) not in present:
+                lasted = now - self._since.pop((name, condition))
+                self.longest[name] = max(lasted, self.longest.get(name, 0.0))
+        for name, condition in present:
+            self._since.setdefault((name, condition), now)
+
+    def _note(self, name: str, what: str) -> None:
+        self.names.add(name)
+        self.broken.append(f"{self._history.network.time:8.3f}  {name}: {what}")
+
+    def _fingerprint(self) -> object:
+        """What the conditions depend on; values that are replaced when they change are compared by identity.
+
+        They are kept until the next look, or another value might come to lie at the same place.
+        """
+        history = self._history
+        self._kept = [
+            *(life.runtime.activation for life in history.lives),
+            *(agent.state for agent in history.agents),
+        ]
+        return (
+            [
+                (life.node.open, life.node.paused, life.runtime.active, id(life.runtime.activation))
+                for life in history.lives
+            ],
+            [(id(agent.state), node_of(agent).open, node_of(agent).paused) for agent in history.agents],
+            len(history.network._cut),
+            sum(node.expelled for node in history.network.nodes),
+            len(history.network._events) > 20_000,
+        )

@@ -1,0 +1,85 @@
+"""Play a history again, and say what happened and what was not as it must be.
+
+    python -m tests.faults.replay SEED
+    python -m tests.faults.replay SEED --shrink     drop whatever is not needed for it to go wrong
+    python -m tests.faults.replay SEED --log        show what sites, components and configurators log
+
+The exit code is 1 if an invariant was broken.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from selfconf.bus.memory import Faults
+from tests.faults.histories import History
+from tests.faults.script import Script, write
+
+
+def played(script: Script, folder: Path) -> History:
+    """A history that was played to its end."""
+    history = History(script, folder)
+    history.run()
+    return history
+
+
+def shrink(script: Script, folder: Path) -> Script:
+    """Return a script that breaks the same invariants, or some of them, and of which nothing can be left out."""
+    wrong = played(script, folder).watch.names
+    shorter: Script | None = script
+    while shorter is not None and wrong:
+        script = shorter
+        shorter = next((one for one in _shorter(script) if played(one, folder).watch.names & wrong), None)
+    return script
+
+
+def _shorter(script: Script) -> Iterator[Script]:
+    """Every script with something less in it, those that lack most first."""
+    count = len(script.actions)
+    for part in (2, 4):
+        size = count // part
+        for begin in range(0, count, size) if size > 1 else ():
+            yield replace(script, actions=script.actions[:begin] + script.actions[begin + size :])
+    for number in range(count):
+        yield replace(script, actions=script.actions[:number] + script.actions[number + 1 :])
+    if script.clocks:
+        yield replace(script, clocks={})
+    calm = Faults()
+    for name in ("loss", "doubling", "most_delay", "most_event_delay"):
+        if getattr(script.faults, name) != getattr(calm, name):
+            yield replace(script, faults=replace(script.faults, **{name: getattr(calm, name)}))
+
+
+def account(history: History) -> str:
+    """What happened in a history, in order, and what was not as it must be."""
+    lines = [str(replace(history.script, actions=())), *history.told]
+    return "\n".join([*lines, "", *(history.broken or ["nothing was wrong"])])
+
+
+def main() -> int:
+    """Play the history of a seed."""
+    parser = argparse.ArgumentParser(prog="python -m tests.faults.replay", description=__doc__.partition("\n")[0])
+    parser.add_argument("seed", type=int)
+    parser.add_argument("--shrink", action="store_true", help="drop whatever is not needed for it to go wrong")
+    parser.add_argument("--log", action="store_true", help="show what sites, components and configurators log")
+    arguments = parser.parse_args()
+    logging.basicConfig(level=logging.DEBUG if arguments.log else logging.CRITICAL, format="%(name)s: %(message)s")
+    with tempfile.TemporaryDirectory() as folder:
+        script = write(arguments.seed)
+        if arguments.shrink:
+            logging.disable(logging.CRITICAL)
+            script = shrink(script, Path(folder))
+            logging.disable(logging.NOTSET)
+        history = played(script, Path(folder))
+    print(account(history))
+    return 1 if history.broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

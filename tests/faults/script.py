@@ -1,0 +1,122 @@
+"""What goes wrong in a history: a list of timed actions, made from a seed, that can be printed, played and shortened.
+
+An action names whom it is done to; it does nothing where that is not possible, so that any action may be left out and
+the rest can still be played. `KINDS` are the kinds of actions, each with its weight and what it is done to.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from selfconf.bus.memory import Faults
+
+SITES = {
+    "living-room": ("tracker",),
+    "astrid": ("sonar", "encoder", "odometry", "control", "drive", "pippi"),
+}
+"""The sites, each with what it advertises."""
+COMPONENTS = tuple(sorted(name for names in SITES.values() for name in names))
+TASKS = ("task-1", "task-2", "task-3")
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """Something that is done at a time of a history."""
+
+    time: float
+    kind: str
+    who: str = ""
+    other: str = ""
+    seconds: float = 0.0
+
+    def __str__(self) -> str:
+        words = [self.kind.replace("_", " "), self.who]
+        words += [f"and {self.other}"] if self.other else []
+        words += [f"for {self.seconds:g} s"] if self.seconds else []
+        return f"{self.time:8.3f}  {' '.join(words)}"
+
+
+@dataclass(frozen=True, slots=True)
+class TaskPlan:
+    """How a task of a history is run."""
+
+    priority: int = 0
+    patient: bool = True
+    dismantles: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """Everything that decides a history."""
+
+    seed: int
+    faults: Faults = field(default_factory=Faults)
+    clocks: Mapping[str, float] = field(default_factory=dict)
+    """By how many seconds the clock of a task's node is wrong."""
+    tasks: Mapping[str, TaskPlan] = field(default_factory=dict)
+    actions: tuple[Action, ...] = ()
+
+    def __str__(self) -> str:
+        lines = [f"seed {self.seed}: {self.faults}"]
+        lines += [f"    {name}: {plan}, clock {self.clocks.get(name, 0.0):+g} s" for name, plan in self.tasks.items()]
+        return "\n".join([*lines, *map(str, self.actions)])
+
+
+KINDS = {
+    "fail": (2, COMPONENTS),
+    "crash": (2, COMPONENTS),
+    "start": (4, COMPONENTS),
+    "lose_power": (1, COMPONENTS),
+    "duplicate": (1, COMPONENTS),
+    "refuse": (1, COMPONENTS),
+    "slow": (1, COMPONENTS),
+    "emit": (1, COMPONENTS),
+    "crash_site": (1, tuple(SITES)),
+    "start_site": (2, tuple(SITES)),
+    "begin": (3, TASKS),
+    "crash_task": (2, TASKS),
+    "stop_task": (1, TASKS),
+    "isolate": (2, (*COMPONENTS, *SITES, *TASKS)),
+    "rejoin": (3, (*COMPONENTS, *SITES, *TASKS)),
+    "cut": (2, (*COMPONENTS, *SITES, *TASKS)),
+    "mute": (1, (*COMPONENTS, *SITES, *TASKS)),
+    "mend": (2, (*COMPONENTS, *SITES, *TASKS)),
+    "pause": (2, (*COMPONENTS, *SITES, *TASKS)),
+}
+"""The kinds of actions: how often each comes, and whom it may be done to."""
+PAIRED = ("cut", "mute", "mend")
+"""The kinds that are done to a link between two."""
+PAUSES = (0.5, 2.0, 10.0)
+SLOWNESS = (0.3, 3.0, 6.0)
+MOMENTS = (0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)
+
+
+def write(seed: int, without: tuple[str, ...] = ()) -> Script:
+    """Make the script of a seed.
+
+    `without` are kinds of actions that are left out; `late` stands for events that are delayed beyond the grace.
+    """
+    chance = random.Random(seed)
+    faults = Faults(
+        loss=chance.choice((0.0, 0.0, 0.02, 0.1, 0.3)),
+        doubling=chance.choice((0.0, 0.1, 0.5)),
+        least_delay=0.0005,
+        most_delay=chance.choice((0.0005, 0.02, 0.2, 1.0)),
+        most_event_delay=chance.choice((0.0, 0.0, 0.0, 0.1, 0.0 if "late" in without else 1.5)),
+    )
+    clocks = {name: chance.choice((0.0, 0.0, -300.0, 300.0)) for name in TASKS}
+    dismantles = chance.random() < 0.3
+    tasks = {name: TaskPlan(chance.choice((0, 0, 0, 1, 2)), chance.random() < 0.7, dismantles) for name in TASKS}
+    time, actions = 0.0, [Action(0.0, "begin", TASKS[0])]
+    kinds = [kind for kind in KINDS if kind not in without]
+    weights = [KINDS[kind][0] for kind in kinds]
+    for _ in range(chance.randint(2, 14)):
+        time += chance.choice(MOMENTS)
+        (kind,) = chance.choices(kinds, weights)
+        who = chance.choice(KINDS[kind][1])
+        other = chance.choice([one for one in KINDS[kind][1] if one != who]) if kind in PAIRED else ""
+        seconds = chance.choice(PAUSES if kind == "pause" else SLOWNESS) if kind in ("pause", "slow") else 0.0
+        actions.append(Action(time, kind, who, other, seconds))
+    return Script(seed, faults, clocks, tasks, tuple(actions))
