@@ -1,0 +1,100 @@
+"""A component without physics that a site starts: `python -m benchmarks.faults.actor NAME`.
+
+It tells the witness of the benchmark, a datagram socket, that it is born, and every 20 ms that it acts. It fails when
+it is sent SIGUSR1.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from selfconf.sdk import Component, Host, Signal, Termination
+from selfconf.sdk.program import open_host
+
+ADVERTISEMENTS = Path(__file__).parent / "ads"
+OUTPUTS = {
+    "sonar": "ranges",
+    "encoder": "odometry",
+    "tracker": "pose",
+    "odometry": "pose",
+    "control": "set.velocity",
+    "drive": "",
+}
+"""The actors, each with its output."""
+BEAT = 0.02
+"""Seconds between two signs of an actor that acts."""
+
+
+class Actor(Component):
+    """Emits and says that it acts, as long as it does."""
+
+    name = output = ""
+    witness: Witness
+
+    def started(self) -> None:
+        """Begin to act."""
+        self.witness.note(self.name, "started")
+        self.every(BEAT, self.beat)
+        self.beat()
+
+    def stopped(self) -> None:
+        """Cease to act."""
+        self.witness.note(self.name, "stopped")
+
+    def beat(self) -> None:
+        """Act once."""
+        self.witness.note(self.name, "acts")
+        if self.output:
+            self.emit(self.output, {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"})
+
+    def received(self, port: str, signal: Signal) -> None:
+        """Pass over what is heard."""
+
+
+class Witness:
+    """Tells the benchmark what this process does; what does not get through is not waited for."""
+
+    def __init__(self, address: str) -> None:
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
+        self._address = address
+
+    def note(self, name: str, what: str) -> None:
+        """Say what a component does now."""
+        with suppress(OSError):  # the benchmark is gone, or does not read for a moment
+            self._socket.sendto(json.dumps([name, os.getpid(), what, time.monotonic()]).encode(), self._address)
+
+
+def actor(name: str, witness: Witness) -> type[Actor]:
+    """The class of one of the advertisements."""
+    (advertisement,) = ADVERTISEMENTS.glob(f"*/{name}.ttl")
+    members = {"advertisement": str(advertisement), "output": OUTPUTS[name], "name": name, "witness": witness}
+    return type("Actor", (Actor,), members)
+
+
+def main() -> None:
+    """Run one actor until told to end."""
+    name = sys.argv[1]
+    witness = Witness(os.environ["FAULTS_WITNESS"])
+    witness.note(name, "born")
+    host = open_host()
+    ending = Termination(host.bus)
+    component = _joined(host, name, witness)
+    signal.signal(signal.SIGUSR1, lambda *_: component.fail("told to"))
+    host.run(ending)
+    host.close()
+
+
+def _joined(host: Host, name: str, witness: Witness) -> Component:
+    return host.add(actor(name, witness)())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,315 @@
+"""One trial: a configurator runs, something happens to somebody at some moment, and every promise is looked at.
+
+A trial is decided by its seed: which phase of the run is waited for, how long after it the fault comes, whom it hits,
+what it is, and whether a second one follows. `PROMISES` are what is looked at, each with the seconds it may take.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import partial
+
+from benchmarks.faults.actor import OUTPUTS
+from benchmarks.faults.ecology import PATIENCE, SITES, Ecology, Sign, lives_at_once
+
+PHASES = {
+    "discovery": ("query",),
+    "reservation": ("waking",),
+    "activation": ("activating",),
+    "running": ("running",),
+    "repair": ("running", "lost"),
+}
+"""The phases of a run, each with the acts that are waited for; before `lost` a position sensor is made to fail."""
+KINDS = {"kill": 0.0, "end": 0.0, "stop 0.5 s": 0.5, "stop 2 s": 2.0, "stop 10 s": 10.0}
+"""What happens to a process, and for how many seconds it stands still."""
+VICTIMS = ("component", "component", "site", "configurator", "configurator")
+
+GRACE = 1.0
+LEASE = 1.0
+SLACK = 0.7
+"""Seconds that a busy machine may add."""
+STEADY = 1.5
+"""Seconds for which a task must run before it counts as running: what is wrong may not have been noticed before."""
+HEALS = 25.0
+"""Seconds after which a run must be running again: a site starts a component within 15."""
+
+PROMISES = {
+    "after the fault the task is running again": HEALS,
+    "without its configurator nobody acts": LEASE + GRACE + SLACK,
+    "no component acts in two processes at once": LEASE + GRACE + SLACK,
+    "the drive does not act blind": LEASE + 2 * GRACE + SLACK,
+    "status names the task that runs": 10.0,
+    "once a run has ended nobody acts": SLACK,
+    "Ctrl-C ends the run with exit code 0": 15.0,
+    "no process is left when its site has ended": 5.0,
+}
+"""What is looked at, with the seconds that it may take."""
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What came of a trial: how long each promise took to be kept, and which were not kept."""
+
+    trial: str
+    fault: str
+    took: dict[str, float] = field(default_factory=dict)
+    broken: dict[str, str] = field(default_factory=dict)
+
+    def judge(self, promise: str, seconds: float, detail: str = "") -> None:
+        """Note how long a promise took."""
+        self.took[promise] = max(seconds, self.took.get(promise, 0.0))
+        if seconds > PROMISES[promise]:
+            self.broken[promise] = f"{seconds:.2f} s {detail}".strip()
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something that happens to a process of the ecology."""
+
+    victim: str
+    kind: str
+    name: str
+    delay: float
+    """Seconds after the phase, or after the first fault."""
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What happens in a trial."""
+
+    trial: str
+    phase: str
+    faults: tuple[Fault, ...]
+
+    def __str__(self) -> str:
+        return f"{self.phase}: {', then '.join(map(str, self.faults))}"
+
+
+def plan(seed: int, number: int, longest: float) -> Plan:
+    """The plan of a trial; nobody stands still for longer than `longest` seconds."""
+    chance = random.Random(f"{seed}/{number}")
+
+    def fault(delay: float) -> Fault:
+        victim = chance.choice(VICTIMS)
+        name = {"component": chance.choice(sorted(OUTPUTS)), "site": chance.choice(SITES)}.get(victim, victim)
+        kind = chance.choice([kind for kind, seconds in KINDS.items() if seconds <= longest])
+        return Fault(victim, kind, name, delay)
+
+    faults = [fault(chance.choice((0.0, 0.001, 0.005, 0.03, 0.2)))]
+    if chance.random() < 0.25:
+        faults.append(fault(chance.choice((0.0, 0.05, 0.5, 1.5))))
+    return Plan(f"{seed}/{number}", chance.choice(sorted(PHASES)), tuple(faults))
+
+
+class Trial:
+    """A plan that is carried out in an ecology."""
+
+    def __init__(self, ecology: Ecology, planned: Plan) -> None:
+        self.ecology, self.plan = ecology, planned
+        self.outcome = Outcome(planned.trial, str(planned))
+        self.configurator = ecology.run()
+        self._stopped: list[tuple[float, int]] = []
+        """The processes that stand still, with the time at which they go on."""
+        self._restart: list[tuple[float, str]] = []
+        self._still: list[tuple[float, float]] = []
+        """The times between which anybody stood still: whoever did could not keep a promise."""
+        self.began = time.monotonic()
+
+    def carry_out(self) -> Outcome:
+        """Wait for the phase, let the faults happen, and look at every promise."""
+        self._await_phase()
+        for fault in self.plan.faults:
+            self._wait(fault.delay)
+            self._do(fault)
+        self._look_for_orphans()
+        self._heal()
+        self._judge_signs()
+        self._judge_status()
+        self._judge_end()
+        return self.outcome
+
+    # What happens.
+
+    def _await_phase(self) -> None:
+        for act in PHASES[self.plan.phase]:
+            if act == "lost":
+                self._make_fail()
+            self.ecology.until(partial(self._has_done, act), PATIENCE)
+
+    def _has_done(self, act: str) -> bool:
+        return not {act, "refused"}.isdisjoint(self.configurator.acts)
+
+    def _make_fail(self) -> None:
+        process = self.ecology.witnesses.process_of("tracker") or self.ecology.witnesses.process_of("odometry")
+        if process is not None:
+            os.kill(process, signal.SIGUSR1)
+
+    def _process(self, fault: Fault) -> int | None:
+        if fault.victim == "component":
+            return self.ecology.witnesses.process_of(fault.name)
+        program = self.configurator if fault.victim == "configurator" else self.ecology.sites[fault.name]
+        return program.number if program.ended is None else None
+
+    def _do(self, fault: Fault) -> None:
+        process = self._process(fault)
+        if process is None:
+            return
+        seconds = KINDS[fault.kind]
+        if seconds:
+            os.kill(process, signal.SIGSTOP)
+            now = time.monotonic()
+            self._stopped.append((now + seconds, process))
+            self._still.append((now, now + seconds))
+            return
+        os.kill(process, signal.SIGKILL if fault.kind == "kill" else signal.SIGTERM)
+        if fault.victim == "site":
+            self._restart.append((time.monotonic() + 0.5, fault.name))
+
+    def _wait(self, seconds: float) -> None:
+        """Let time pass, in which stopped processes go on and sites come back."""
+        until = time.monotonic() + seconds
+        while True:
+            now = time.monotonic()
+            for moment, process in [one for one in self._stopped if one[0] <= now]:
+                self._stopped.remove((moment, process))
+                with suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGCONT)
+            for moment, name in [one for one in self._restart if one[0] <= now]:
+                self._restart.remove((moment, name))
+                self.ecology.forget(self.ecology.sites[name])
+                self.ecology.start_site(name)
+            if now >= until:
+                return
+            self.ecology.let_pass(min(until - now, 0.02))
+
+    def _settled(self) -> bool:
+        return not self._stopped and not self._restart
+
+    # What is looked at.
+
+    def _look_for_orphans(self) -> None:
+        """If the configurator is gone, or stands still, everybody must be off after a while."""
+        hit = [fault for fault in self.plan.faults if fault.victim == "configurator"]
+        promise = "without its configurator nobody acts"
+        if not hit or KINDS[hit[0].kind] == 0.5:
+            return
+        fell = time.monotonic()
+        bound = PROMISES[promise]
+        if KINDS[hit[0].kind] == 2.0:
+            return  # it is back just when they would be off
+        self._wait(bound + 0.3)
+        if self.plan.faults[0] is not hit[0] or len(self.plan.faults) > 1:
+            late = [sign for sign in self.ecology.witnesses.acting(fell + bound) if not self._was_still(sign.time)]
+        else:
+            late = self.ecology.witnesses.acting(fell + bound)
+        acting = self.ecology.witnesses.acting(fell)
+        last = max((sign.time for sign in acting), default=fell) - fell
+        self.outcome.judge(promise, last if not late else max(last, bound + 0.01), _names(late))
+
+    def _was_still(self, moment: float) -> bool:
+        return any(begin <= moment <= end + LEASE + GRACE for begin, end in self._still)
+
+    def _heal(self) -> None:
+        """Wait until the task runs again; where its configurator is gone, another one is begun."""
+        while not self._settled():
+            self._wait(0.05)
+        if self.configurator.ended is not None or _signalled(self.plan):
+            self.ecology.until(lambda: self.configurator.ended is not None, 10.0)
+            if self.configurator.ended is None:
+                self.outcome.judge("Ctrl-C ends the run with exit code 0", 99.0, "it does not end")
+            self.ecology.forget(self.configurator)
+            self.configurator = self.ecology.run()
+        began = steady = time.monotonic()
+        while time.monotonic() < min(steady + STEADY, began + HEALS + STEADY):
+            self._wait(0.05)
+            if not self._runs():
+                steady = time.monotonic()
+        took = steady - began
+        self.outcome.judge("after the fault the task is running again", took, f"acts: {self.configurator.acts[-6:]}")
+
+    def _runs(self) -> bool:
+        """Whether all five act, in the eyes of the witness, and the configurator says so."""
+        self.configurator.read()
+        states = [act for act in self.configurator.acts if act in ("running", "lost", "waiting", "cut off")]
+        if not states or states[-1] != "running":
+            return False
+        now = time.monotonic()
+        acting = {sign.name for sign in self.ecology.witnesses.acting(now - 0.3)}
+        return len(acting) == 5 and {"sonar", "encoder", "control", "drive"} < acting
+
+    def _judge_signs(self) -> None:
+        signs = self.ecology.witnesses.acting(self.began)
+        doubles = lives_at_once(signs)
+        longest = max(doubles.values(), default=0.0)
+        self.outcome.judge("no component acts in two processes at once", longest, str(doubles))
+        blind = max(self._blind(), default=0.0)
+        self.outcome.judge("the drive does not act blind", blind)
+
+    def _blind(self) -> Iterator[float]:
+        """For how many seconds the drive acted, at each sign of it, without anybody who controls it."""
+        controlled = 0.0
+        for sign in self.ecology.witnesses.signs:
+            if sign.time < self.began:
+                continue
+            if sign.name == "control" or (sign.name == "drive" and sign.what == "started"):
+                controlled = sign.time
+            elif sign.name == "drive" and sign.what == "acts" and not self._drive_was_still(sign.time):
+                yield sign.time - (controlled or sign.time)
+
+    def _drive_was_still(self, moment: float) -> bool:
+        hit = any(fault.name == "drive" and KINDS[fault.kind] for fault in self.plan.faults)
+        return hit and self._was_still(moment)
+
+    def _judge_status(self) -> None:
+        began = time.monotonic()
+        try:
+            said = subprocess.run(
+                [sys.executable, "-m", "selfconf", "status", "--format", "json", "--ecology", self.ecology.name],
+                env=self.ecology.environment,
+                capture_output=True,
+                text=True,
+                timeout=20,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            self.outcome.judge("status names the task that runs", 20.0, "it hangs")
+            return
+        named = said.returncode == 0 and '"running"' in said.stdout
+        seconds = time.monotonic() - began
+        self.outcome.judge("status names the task that runs", seconds if named else 99.0, said.stdout + said.stderr)
+
+    def _judge_end(self) -> None:
+        self.configurator.send(signal.SIGINT)
+        began = time.monotonic()
+        ended = self.ecology.until(lambda: self.configurator.ended is not None, 15.0)
+        took = time.monotonic() - began
+        good = ended and self.configurator.ended == 0
+        promise = "Ctrl-C ends the run with exit code 0"
+        self.outcome.judge(promise, took if good else 99.0, f"exit code {self.configurator.ended}")
+        over = time.monotonic()
+        self.ecology.let_pass(PROMISES["once a run has ended nobody acts"] + 0.2)
+        late = self.ecology.witnesses.acting(over)
+        last = max((sign.time for sign in late), default=over) - over
+        self.outcome.judge("once a run has ended nobody acts", last, _names(late))
+        self.ecology.forget(self.configurator)
+        self.ecology.witnesses.forget(time.monotonic())
+
+
+def _signalled(planned: Plan) -> bool:
+    """Whether the configurator was told to end."""
+    return any(fault.victim == "configurator" and not KINDS[fault.kind] for fault in planned.faults)
+
+
+def _names(signs: list[Sign]) -> str:
+    return ", ".join(sorted({sign.name for sign in signs}))

@@ -1,0 +1,56 @@
+"""The benchmark of real faults: its short run works, a seed decides its trials, and it sees what is broken."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from benchmarks.faults.__main__ import report
+from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS
+from benchmarks.faults.ecology import Sign, lives_at_once
+from benchmarks.faults.trial import KINDS, PHASES, PROMISES, Outcome, plan
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.mark.process
+def test_the_short_run_runs() -> None:
+    command = [sys.executable, "-m", "benchmarks.faults", "--smoke"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "1 trials" in done.stdout
+
+
+def test_a_trial_is_decided_by_its_seed_and_every_fault_comes_at_every_phase() -> None:
+    plans = [plan(1, number, 10.0) for number in range(500)]
+    assert plans == [plan(1, number, 10.0) for number in range(500)]
+    seen = {(one.phase, one.faults[0].victim, one.faults[0].kind) for one in plans}
+    assert len(seen) == len(PHASES) * 3 * len(KINDS)
+    assert any(len(one.faults) == 2 for one in plans)
+    assert not any("10 s" in str(plan(1, number, 0.5)) for number in range(100))
+
+
+def test_two_processes_that_act_at_once_are_noticed_and_one_after_the_other_is_not() -> None:
+    first = [Sign("drive", 1, "acts", moment / 10) for moment in range(10)]
+    then = [Sign("drive", 2, "acts", moment / 10) for moment in range(10, 20)]
+    assert lives_at_once([*first, *then]) == {}
+    both = [Sign("drive", 2, "acts", moment / 10) for moment in range(5, 20)]
+    assert lives_at_once([*first, *both])["drive"] == pytest.approx(0.5, abs=0.11)
+
+
+def test_the_table_counts_what_was_broken() -> None:
+    outcome = Outcome("1/0", "running: kill drive")
+    outcome.judge("status names the task that runs", 0.3)
+    outcome.judge("once a run has ended nobody acts", 5.0, "drive")
+    assert outcome.broken == {"once a run has ended nobody acts": "5.00 s drive"}
+    lines = {line.split(" | ")[0].strip("| "): line for line in report([outcome]).splitlines()}
+    assert lines["once a run has ended nobody acts"].split(" | ")[2:4] == ["1", "1"]
+    assert lines["status names the task that runs"].split(" | ")[2:4] == ["1", "0"]
+    assert set(PROMISES) < set(lines)
+
+
+def test_every_actor_has_an_advertisement() -> None:
+    assert {path.stem for path in ADVERTISEMENTS.glob("*/*.ttl")} == set(OUTPUTS)
