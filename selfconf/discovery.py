@@ -57,15 +57,32 @@ class EcologyView:
 
     def __init__(self, bus: Bus, name: str) -> None:
         self.bus, self.keys = bus, Keys(name)
-        self.lives: dict[str, str] = {}
-        """The life of each living component, by the component's chunk."""
+        self.lives: dict[str, tuple[str, ...]] = {}
+        """The lives of each living component, sorted, by the component's chunk: more than one where processes clash."""
         self.discovery = Discovery()
         self._followed = False
         self._undo: list[Undo] = []
 
     def life(self, component: IRI) -> str | None:
-        """The life of a component, or None if it does not live."""
-        return self.lives.get(component_chunk(component))
+        """The life of a component, or None if it does not live; of several the one that stays."""
+        lives = self.lives.get(component_chunk(component))
+        return lives[0] if lives else None
+
+    def lives_on(self, component: IRI, life: str) -> bool:
+        """Whether a component lives a certain life."""
+        return life in self.lives.get(component_chunk(component), ())
+
+    def began(self, chunk: str, life: str) -> None:
+        """Note that a life has begun."""
+        self.lives[chunk] = tuple(sorted({*self.lives.get(chunk, ()), life}))
+
+    def ended(self, chunk: str, life: str) -> None:
+        """Note that a life has ended."""
+        left = tuple(one for one in self.lives.get(chunk, ()) if one != life)
+        if left:
+            self.lives[chunk] = left
+        else:
+            self.lives.pop(chunk, None)
 
     @property
     def followed(self) -> bool:
@@ -116,7 +133,9 @@ class _Inquiry:
             self.bus.roll_call(self.keys.any_life(), DISCOVERY, self._living)
 
     def _living(self, keys: tuple[str, ...]) -> None:
-        self.ecology.lives = {owner_of(key): life_of(key) for key in keys}
+        self.ecology.lives = {}
+        for key in keys:
+            self.ecology.began(owner_of(key), life_of(key))
         self._call_sites()
 
     def _call_sites(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +85,7 @@ def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
         task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
         composer = method.composer(task)
 
-    def compose(found: dict[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+    def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
         answer = composed(composer, found, lost, running, TimeLimit(method.seconds))
         return answer.configuration if isinstance(answer, Optimum) else answer
 

@@ -57,9 +57,7 @@ class LivingTask:
         """A task that a configurator runs."""
         name = task_name(status.task)
         phase, template, components = status.phase, status.template, status.components
-        return cls(
-            name, status.priority, status.beginning, phase, template, status.configurator, detached, components
-        )
+        return cls(name, status.priority, status.beginning, phase, template, status.configurator, detached, components)
 
     @classmethod
     def kept(cls, record: TaskRecord) -> LivingTask:
@@ -155,7 +153,9 @@ class LivingEcology(Ecology):
         found: list[Status] = []
         rejected: list[str] = []
         keys = self._view.keys
-        living = {owner_of(key) for key in self._wait(partial(self._bus.roll_call, keys.any_configurator_life(), ROLL_CALL))}
+        living = {
+            owner_of(key) for key in self._wait(partial(self._bus.roll_call, keys.any_configurator_life(), ROLL_CALL))
+        }
         for sample in self._ask(keys.configurator_call("*", "status")).samples:
             try:
                 status = decode(sample.payload, Status)
@@ -241,9 +241,7 @@ class LivingEcology(Ecology):
         """
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         chosen = option(Policy, "policy", policy)
-        return Run(
-            task, method, self.name, self.endpoints, chosen, wait, name=name, priority=priority, upgrade=upgrade
-        )
+        return Run(task, method, self.name, self.endpoints, chosen, wait, name=name, priority=priority, upgrade=upgrade)
 
     def detach(
         self,
@@ -275,8 +273,9 @@ class LivingEcology(Ecology):
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them.
 
-        Returns the names of the configurators, and of tasks that live in the sites and that none was running. Raises NetworkError if there is none of that name, if one does not answer or does not end in time, or if a
-        component does not obey.
+        Returns the names of the configurators, and of tasks that live in the sites and that none was running. Raises
+        NetworkError if there is none of that name, if one does not answer or does not end in time, or if a component
+        does not obey.
         """
         running = [s for s in self.tasks if name in (None, s.configurator, task_name(s.task))]
         silent = [one for one in self.silent if name in (None, one)]

@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--priority",
         metavar="N",
         type=int,
-        help="a task of higher priority gets the components that one of lower priority holds (default: sc:priority, or 0)",
+        help="a task gets components that one of lower priority holds (default: its sc:priority, or 0)",
     )
     parser.add_argument(
         "--upgrade",
@@ -134,9 +134,7 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
             return
         site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect))
         described = partial(_described, given.ads or ())
-        running = begun(
-            site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described
-        )
+        running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)
         yield stack.enter_context(running), site
 
 
@@ -144,13 +142,17 @@ def _check_name(given: argparse.Namespace) -> None:
     """Raises NetworkError if a task of that name lives already."""
     with joined(given) as ecology:
         if any(task.name == given.name for task in ecology.all_tasks()):
-            raise NetworkError(f"a task {given.name!r} lives already; give another name, or `selfconf stop {given.name}`")
+            raise NetworkError(
+                f"a task {given.name!r} lives already; give another name, or `selfconf stop {given.name}`"
+            )
 
 
 def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
     """Hand the task to the sites of the living ecology."""
     if given.ads is not None or given.endpoint is not None:
-        raise AuthorError("a detached task lives in the sites that there are: start them with `selfconf site`, without --ads")
+        raise AuthorError(
+            "a detached task lives in the sites that there are: start them with `selfconf site`, without --ads"
+        )
     method = method_of(given, task)
     with joined(given) as ecology:
         name = ecology.detach(
@@ -168,7 +170,9 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
     if given.format == "json":
         print(json.dumps({"ecology": ecology.name, "task": name}))
     else:
-        print(f"the sites of ecology {ecology.name} run {name}; `selfconf tasks` shows it, `selfconf stop {name}` ends it")
+        print(
+            f"the sites of ecology {ecology.name} run {name}; `selfconf tasks` shows it, `selfconf stop {name}` ends it"
+        )
     return 0
 
 

@@ -23,8 +23,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once every configurator has answered, also if nothing is deployed; 2 if one lives and does not answer."""
-    from selfconf.rdf.sparql import QUERY_PREFIXES
     from selfconf.protocol.keys import task_name
+    from selfconf.rdf.sparql import QUERY_PREFIXES
     from selfconf.render import Names
 
     with joined(given) as ecology:

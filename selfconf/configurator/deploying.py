@@ -78,7 +78,8 @@ def proceed(state: State) -> Reaction:
     if state.pending:
         return state, ()
     if state.phase is Phase.RESERVING:
-        assert state.target is not None and state.order is not None
+        assert state.target is not None
+        assert state.order is not None
         free = sorted(component for component in state.target.components if not state.held[component].reserved)
         if free and not (len(free) == 1 and free[0] not in state.order.actuators):
             return _reserve(state, free[0])
@@ -171,7 +172,11 @@ def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:
         return False
     if holder.priority < state.priority:
         return True  # it is asked to yield, and made to
-    return state.patient and not holder.acting and not any(one > component for one in state.held if state.held[one].reserved)
+    return (
+        state.patient
+        and not holder.acting
+        and not any(one > component for one in state.held if state.held[one].reserved)
+    )
 
 
 def await_release(state: State, component: IRI) -> Reaction:

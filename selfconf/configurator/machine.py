@@ -153,7 +153,9 @@ def _coveted(state: State, event: Composed) -> State:
     if not isinstance(event.outcome, Configuration):
         return state
     busy = {
-        component: Loss(Cause.REFUSED, f"the task {task_name(holder.task)} (priority {holder.priority}) holds it", "", True)
+        component: Loss(
+            Cause.REFUSED, f"the task {task_name(holder.task)} (priority {holder.priority}) holds it", "", True
+        )
         for component, holder in state.taken.items()
         if component in event.outcome.components
     }
@@ -203,10 +205,8 @@ def _unasked(state: State, event: Answered) -> Reaction:
 
 def _stand_down(state: State) -> Reaction:
     """Another configurator goes on with this task: leave everything as it is to that one."""
-    effects = (*(Unwatch(component) for component in sorted(state.watched)), Finish())
-    left = replace(
-        state, phase=Phase.STOPPED, held={}, owed={}, pending=frozenset(), watched=frozenset(), target=None
-    )
+    effects: tuple[Effect, ...] = (*(Unwatch(component) for component in sorted(state.watched)), Finish())
+    left = replace(state, phase=Phase.STOPPED, held={}, owed={}, pending=frozenset(), watched=frozenset(), target=None)
     return left, effects
 
 

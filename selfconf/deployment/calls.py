@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
 from selfconf.configurator.effects import ApplyTo, AwaitRelease, QueueFor, ReleaseFrom, ReserveOf, WakeUp
@@ -68,6 +69,17 @@ AUDITED = 20
 """How many components are looked at in one of them; they take turns."""
 
 
+class _ClaimFields(TypedDict):
+    """The fields of `selfconf.protocol.messages.Claim`, which every call has."""
+
+    epoch: int
+    supervisor: str
+    task: str
+    life: str
+    priority: int
+    beginning: float
+
+
 class Calls:
     """Makes the calls of one configurator, and feeds its machine with what becomes of them."""
 
@@ -85,6 +97,8 @@ class Calls:
         self._waking: dict[IRI, tuple[WakeUp, Undo]] = {}
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""
+        self._lives: dict[IRI, str] = {}
+        """The life of each component that has obeyed a call of this task, and not yet a release."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
         self._audited = 0
@@ -94,6 +108,9 @@ class Calls:
     def wake(self, effect: WakeUp) -> None:
         """Have a component live: one that is dormant is started by its site."""
         found = self.ecology.discovery.found.get(effect.component)
+        held = self._lives.get(effect.component)
+        if held is not None and not self.ecology.lives_on(effect.component, held):
+            del self._lives[effect.component]
         if self.ecology.life(effect.component) is not None:
             self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
         elif found is not None and found.startable:
@@ -155,8 +172,8 @@ class Calls:
 
     def apply(self, effect: ApplyTo) -> None:
         """Activate a component with its parameters, and connect its inputs."""
-        life = self.ecology.life(effect.component)
-        if life is None:
+        life = self._life(effect.component)
+        if life is None or not self.ecology.lives_on(effect.component, life):
             self._unreachable(effect.component, Call.APPLY, effect.epoch, "it does not live any more")
             return
         inputs = self._with_promises(effect.inputs)
@@ -189,13 +206,14 @@ class Calls:
         component = effect.component
         self._connections.pop(component, None)
         self._awaited.discard(component)
-        if self.ecology.life(component) is None:
+        if not self._lives_on(component):
+            self._lives.pop(component, None)
             off = Answered(component, Call.RELEASE, effect.epoch, None)
             self.bus.wake_up(lambda: self._step(off))
             return
 
         def again() -> None:
-            if self._state().owed.get(component) == effect.epoch and self.ecology.life(component):
+            if self._state().owed.get(component) == effect.epoch and self._lives_on(component):
                 self.release(effect)
 
         self.bus.later(2 * CALL, again)
@@ -203,7 +221,7 @@ class Calls:
 
     def _end(self, component: IRI) -> None:
         """Have the site end a component that does not obey its release: it may act on for nobody."""
-        found, life = self.ecology.discovery.found.get(component), self.ecology.life(component)
+        found, life = self.ecology.discovery.found.get(component), self._life(component)
         if found is not None and found.startable and life is not None:
             message = encode(End(component, life))
             self.bus.ask(self.keys.end(found.site), message, CALL, lambda replies: None)
@@ -214,7 +232,7 @@ class Calls:
         """Ask a component for its actual state; `seen` receives None if it does not answer."""
 
         def answered(replies: Replies) -> None:
-            answer = self._answer_in(replies, self.ecology.life(component))
+            answer = self._answer_in(replies, self._life(component))
             if answer is None and not replies.complete and attempts > 1:
                 self.look(component, seen, attempts - 1)
             else:
@@ -295,11 +313,14 @@ class Calls:
             if call is Call.APPLY:
                 self._report(CallDeclined(component, detail))
         elif call is Call.RELEASE:
+            self._lives.pop(component, None)
             self._report(ComponentReleased(component, detail))
         elif isinstance(message, Apply):
             if message.values:
                 self._report(ParametersSet(component, detail))
             self._report(ComponentActivated(component, detail))
+        if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
+            self._lives[component] = answer.life
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
@@ -311,16 +332,25 @@ class Calls:
         answer = Answered(component, call, epoch, None, detail=detail)
         self.bus.wake_up(lambda: self._step(answer))
 
-    def _claim(self, component: IRI, epoch: int) -> dict[str, int | float | str]:
+    def _claim(self, component: IRI, epoch: int) -> _ClaimFields:
         """What every call says: see `selfconf.protocol.messages.Claim`."""
         return {
             "epoch": epoch,
             "supervisor": self.supervisor,
             "task": self.identity.task,
-            "life": self.ecology.life(component) or "",
+            "life": self._life(component) or "",
             "priority": self.identity.priority,
             "beginning": self.identity.beginning,
         }
+
+    def _life(self, component: IRI) -> str | None:
+        """The life of a component that calls mean: the one that is held, else the one that it lives."""
+        return self._lives.get(component) or self.ecology.life(component)
+
+    def _lives_on(self, component: IRI) -> bool:
+        """Whether the life that is held lives; where none is, whether the component lives at all."""
+        held = self._lives.get(component)
+        return self.ecology.life(component) is not None if held is None else self.ecology.lives_on(component, held)
 
     def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
         return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}

@@ -50,8 +50,8 @@ class Liveness:
         self._state, self._step, self._report, self._calls = state, step, report, calls
         self._sites: set[str] = set()
         """The liveliness keys of the sites that have answered: a site that was started again has another one."""
-        self._unseen: dict[str, str] = {}
-        """The lives of the roll-call that the watch has not shown yet, by the component's chunk."""
+        self._unseen: set[tuple[str, str]] = set()
+        """The lives of the roll-call that the watch has not shown yet, with the component's chunk."""
         self._link, self._cut_off = self.bus.link, False
         self._ask_again: Undo = lambda: None
 
@@ -59,7 +59,7 @@ class Liveness:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
         self._sites.update(key for key in discovery.site_tokens if owner_of(key) not in discovery.missing)
         if not self.ecology.followed:
-            self._unseen = dict(self.ecology.lives)
+            self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
             self.bus.later(SETTLING, self._end_unseen)
         self.ecology.follow(self._life_changed, self._site_changed)
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
@@ -69,10 +69,10 @@ class Liveness:
     def _life_changed(self, key: str, alive: bool) -> None:
         chunk, life = owner_of(key), life_of(key)
         component = self._component(chunk)
-        known = self.ecology.lives.get(chunk) == life
-        self._unseen.pop(chunk, None)
+        known = life in self.ecology.lives.get(chunk, ())
+        self._unseen.discard((chunk, life))
         if alive and not known:
-            self.ecology.lives[chunk] = life
+            self.ecology.began(chunk, life)
             if component is not None:
                 self._calls.woken(component)
             self._step(Appeared({component: life} if component is not None else {}))
@@ -82,18 +82,17 @@ class Liveness:
     def _ended(self, chunk: str, life: str) -> None:
         """A life has ended, or only the way to it: a client that changes its router seems to end for a moment."""
         component = self._component(chunk)
-        known = self.ecology.lives.get(chunk) == life
-        if known:
-            del self.ecology.lives[chunk]
+        known = life in self.ecology.lives.get(chunk, ())
+        self.ecology.ended(chunk, life)
 
         def look_again() -> None:
-            now = self.ecology.lives.get(chunk)
+            now = self.ecology.lives.get(chunk, ())
             if self.bus.link != self._link:
                 self._await_link()
-            elif component is not None and now != life:
+            elif component is not None and life not in now:
                 self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
-                if now is not None:
-                    self._step(Appeared({component: now}))
+                if now:
+                    self._step(Appeared({component: now[0]}))
             elif component is not None and self._held_life(component) == life:
                 self._calls.look(component, partial(self._seen, component, life))
 
@@ -123,7 +122,7 @@ class Liveness:
 
     def _end_unseen(self) -> None:
         """A life that ended between the roll-call and the beginning of the watch was called, but never seen since."""
-        for chunk, life in self._unseen.items():
+        for chunk, life in sorted(self._unseen):
             self._ended(chunk, life)
         self._unseen.clear()
 

@@ -106,7 +106,7 @@ class TaskRunner:
         task: str = "",
         beginning: float | None = None,
     ) -> None:
-        """`task` and `beginning` are those of a task that another configurator has begun; by default it is a new one."""
+        """`task` and `beginning` are those of a task that another configurator has begun; by default it is new."""
         self.bus, self.request, self.clock = bus, request, clock
         self.ecology = EcologyView(bus, ecology)
         self.keys = self.ecology.keys
@@ -114,9 +114,7 @@ class TaskRunner:
         task = task or task_identity(request.name or safe_name(request.task.template.iri.short), self.name)
         self.identity = TaskIdentity(task, request.priority, clock() if beginning is None else beginning)
         self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
-        self.state = State(
-            policy=request.policy, patient=request.patient, task=task, priority=self.identity.priority
-        )
+        self.state = State(policy=request.policy, patient=request.patient, task=task, priority=self.identity.priority)
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""

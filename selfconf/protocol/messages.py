@@ -235,11 +235,13 @@ class TaskRecord:
     ontologies: tuple[str, ...] = ()
     """Turtle documents of further ontologies."""
     options: Mapping[str, Any] = field(default_factory=dict)
-    """How it is configured: `policy`, `strategy`, `reasoning`, `steps`, `seconds`, `upgrade`, as on the command line."""
+    """`policy`, `strategy`, `reasoning`, `steps`, `seconds`, `upgrade`, as the command `run` has them."""
     epoch: int = 0
     """The newest epoch in which it was deployed; zero: never yet."""
     configuration: Mapping[str, Any] = field(default_factory=dict)
     """What is deployed, as `selfconf configure --format json` prints it; empty if nothing is."""
 
 
-Message = Reserve | Apply | Release | StateOf | CallAnswer | Fail | Free | Wake | End | Page | Stamp | Status | TaskRecord
+Message = (
+    Reserve | Apply | Release | StateOf | CallAnswer | Fail | Free | Wake | End | Page | Stamp | Status | TaskRecord
+)

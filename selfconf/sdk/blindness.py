@@ -18,7 +18,7 @@ class Blindness:
     """The unfed inputs of one component, and whether it rests because of them."""
 
     def __init__(self, bus: Bus, tolerates: float | None, rest: Callable[[], None]) -> None:
-        """`rest` is called on the bus's thread when an input has been unfed for too long; None: for as long as it likes."""
+        """`rest` is called on the bus's thread when an input was unfed for too long; `tolerates` None: never."""
         self._bus, self._tolerates, self._rest = bus, tolerates, rest
         self.unfed: set[str] = set()
         self._timer: Undo | None = None

@@ -42,7 +42,9 @@ class Host:
         self.superseded: str | None = None
         """Why a component had to leave, where another process is the same one."""
         self.code = CodeThread(inline=not bus.run_aside())
-        self._hung, self._overdue = hung, None
+        self._hung = hung
+        self._overdue: RunningCode | None = None
+        """The code that was found to hang last."""
         if not self.code.inline:
             bus.wake_up(self._watch_code)
 
@@ -54,12 +56,14 @@ class Host:
         profile = profile_of(type(component))
         self._check_alone(profile)
 
-        def join() -> ComponentRuntime:
-            return ComponentRuntime(
-                self.bus, self.keys, profile, component, life, self.code, superseded=self._be_superseded
+        def join(done: Callable[[ComponentRuntime], None]) -> None:
+            done(
+                ComponentRuntime(
+                    self.bus, self.keys, profile, component, life, self.code, superseded=self._be_superseded
+                )
             )
 
-        self.runtimes.append(self._on_bus_thread(lambda done: done(join())))
+        self.runtimes.append(self._on_bus_thread(join))
         return component
 
     def poll(self, seconds: float = 0.0) -> None:
@@ -151,7 +155,7 @@ class Host:
         overdue = self.code.overdue()
         if overdue is None or overdue is self._overdue:
             return
-        self._overdue: RunningCode | None = overdue
+        self._overdue = overdue
         for runtime in self.runtimes:
             if runtime.code is overdue.owner:
                 runtime.hung(overdue.what, overdue.limit)

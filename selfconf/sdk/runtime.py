@@ -21,12 +21,24 @@ from selfconf.bus.port import Bus, Request, Undo, Urgency
 from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.protocol import activation as table
-from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
+from selfconf.protocol.activation import Activation, ActivationStep
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of, life_of, owner_of, task_name
-from selfconf.protocol.messages import Apply, CallAnswer, Cause, Claim, Fail, Free, Release, Reserve, StateOf, Verdict, Wire
+from selfconf.protocol.messages import (
+    Apply,
+    CallAnswer,
+    Cause,
+    Claim,
+    Fail,
+    Free,
+    Release,
+    Reserve,
+    StateOf,
+    Verdict,
+    Wire,
+)
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.component import Component, Signal
+from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputEvents, Inputs
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
@@ -45,7 +57,7 @@ OFFER = 0.2
 YIELDING = 2.0
 """Seconds that a task has to let go of a component that a task of higher priority asks for."""
 LOOKS_FOR_OTHERS = (0.0, 1.0)
-"""Seconds after the beginning of a life at which it is looked whether another process began to be the same component."""
+"""Seconds after the beginning of a life at which it is looked whether another process is the same component."""
 ROLL_CALL = 3.0
 """Seconds that this may take."""
 Reply = Callable[[CallAnswer], None]

@@ -86,7 +86,7 @@ class Wiring:
         found: dict[Input, int] = {}
         feeding: dict[str, Sources | None] = {}
         for wanted in inputs:
-            name, signal = wanted
+            name, signal = wanted.name, wanted.signal
             if name not in feeding:
                 of_name = self.problem.feeding(role, name)
                 feeding[name] = None if self._fed_later(of_name) else of_name
