@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -19,6 +19,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.holder import Holder
 from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
@@ -197,6 +198,9 @@ class Inquiry:
         partitioner = self.composer.partitioner
         wider = (method.wider() if ecology.remote else None) or partitioner.hierarchy
         self.ecology = ecology.for_task(partitioner, wider)
+        priority = self.task.document.task.priority
+        self.holders = {c: holder for c, holder in ecology.holders().items() if holder.priority >= priority}
+        """Who holds components that this task cannot have: tasks of the same or a higher priority."""
         self.seconds["load"] = ecology.read_seconds + time.perf_counter() - began
         began = time.perf_counter()
         partition = self.composer.partition(self.ecology)
@@ -221,12 +225,14 @@ class Inquiry:
         """The configuration, or why there is none, within the time of the method."""
         limit = TimeLimit(self.method.seconds)
         began = time.perf_counter()
-        found = composed(self.composer, self.ecology, frozenset(), None, limit)
+        found = composed(self.composer, self.ecology, frozenset(self.holders), None, limit)
         self.seconds["search"] = time.perf_counter() - began
         if isinstance(found, Undecided):
             return found
         if isinstance(found, Refusal):
-            return refusal_with_places(self.composer, self.ecology, found, self.method, limit)
+            free = {c: one for c, one in self.ecology.items() if c not in self.holders}
+            found = replace(found, held=self._held(limit))
+            return refusal_with_places(self.composer, free if self.holders else self.ecology, found, self.method, limit)
         optimum = found if isinstance(found, Optimum) else None
         plain = found.configuration if isinstance(found, Optimum) else found
         consequences = limit.within(lambda: self.composer.what_if(self.ecology, plain), None) if what_if else None
@@ -241,6 +247,16 @@ class Inquiry:
             unknown=() if optimum is None else self._unknown(optimum),
             what_if=None if consequences is None else tuple(consequences),
         )
+
+    def _held(self, limit: TimeLimit) -> tuple[tuple[IRI, Holder], ...]:
+        """The components of other tasks that there would be a configuration with."""
+        if not self.holders:
+            return ()
+        found = composed(self.composer, self.ecology, frozenset(), None, limit)
+        wanted = found.configuration if isinstance(found, Optimum) else found
+        if not isinstance(wanted, Configuration):
+            return ()
+        return tuple((c, self.holders[c]) for c in wanted.components if c in self.holders)
 
     def _unknown(self, optimum: Optimum) -> tuple[IRI, ...]:
         """The properties of unknown terms that no component in the ecology has a number for."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.holder import Holder
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, BlankNode, Literal, Term
@@ -103,6 +104,10 @@ class Ecology(ABC):
     def components(self) -> Components:
         """The components, each with its profile."""
         return Components(self.advertisements())
+
+    def holders(self) -> Mapping[IRI, Holder]:
+        """The tasks that hold components which they do not share, by component; none where nothing runs."""
+        return {}
 
     @abstractmethod
     def advertisements(self) -> Mapping[IRI, Advertisement]:

@@ -18,8 +18,10 @@ from selfconf.api.task import TaskSpecification
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh_bus import client
 from selfconf.configurator.state import Policy
+from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import NetworkError, PeerError, TurtleError
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
@@ -131,6 +133,12 @@ class LivingEcology(Ecology):
     def advertisements(self) -> Mapping[IRI, Advertisement]:
         """All advertisements by component, as they are now."""
         return {component: found.advertisement for component, found in self.discover().found.items()}
+
+    def holders(self) -> Mapping[IRI, Holder]:
+        """The tasks that hold components which they do not share, by component; as of the last discovery."""
+        replies = self._ask(self._view.keys.configurator_call("*", "status"))
+        shared = {c for c, one in self.discovery.found.items() if one.advertisement.profile.is_shareable}
+        return {c: holder for c, holder in holders_in(replies, self._view.keys).items() if c not in shared}
 
     def state(self, component: IRI) -> str:
         """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.

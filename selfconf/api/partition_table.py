@@ -10,6 +10,7 @@ from selfconf.api.arguments import Paths
 from selfconf.api.ecology import Ecology
 from selfconf.api.tables import Tabular
 from selfconf.api.task import TaskSpecification
+from selfconf.model.holder import Holder
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.partition import Candidate
 from selfconf.model.template import Role
@@ -32,6 +33,11 @@ class RolePartition(Tabular):
     def eligible(self) -> tuple[IRI, ...]:
         """The eligible components, in the order in which they are tried."""
         return tuple(candidate.profile.component for candidate in self.candidates)
+
+    @property
+    def held(self) -> Mapping[IRI, Holder]:
+        """The eligible components that other tasks hold, as of the same or a higher priority, and by whom."""
+        return {c: self._inquiry.holders[c] for c in self.eligible if c in self._inquiry.holders}
 
     @cached_property
     def excluded(self) -> tuple[Exclusion, ...]:
@@ -59,7 +65,8 @@ class RolePartition(Tabular):
 
     def _cells(self) -> Iterator[list[str]]:
         names = self._inquiry.task.names
-        yield from ([names(component), str(number), ""] for number, component in enumerate(self.eligible, 1))
+        for number, component in enumerate(self.eligible, 1):
+            yield [names(component), str(number), str(self.held.get(component, ""))]
         yield from ([names(one.component), "no", ", ".join(map(str, one.obstacles))] for one in self.excluded)
 
 
@@ -80,7 +87,7 @@ class PartitionTable(Tabular, Mapping[str, RolePartition]):
     @property
     def sufficient(self) -> bool:
         """Whether every role has as many candidates as it asks for."""
-        return all(len(one.candidates) >= one.role.minimum for one in self.roles)
+        return all(len(one.candidates) - len(one.held) >= one.role.minimum for one in self.roles)
 
     def __getitem__(self, role: str) -> RolePartition:
         for one in self.roles:

@@ -77,7 +77,9 @@ def _exported(inquiry: Inquiry, how: str) -> str:
 
 def _lines(one: RolePartition, names: Names) -> Iterator[str]:
     yield f"{names(one.role.iri)}  {len(one.eligible) or 'nobody is'} eligible"
-    yield from (f"  {number}. {names(component)}" for number, component in enumerate(one.eligible, 1))
+    for number, component in enumerate(one.eligible, 1):
+        held = one.held.get(component)
+        yield f"  {number}. {names(component)}" + (f"  ({held})" if held is not None else "")
     if one.excluded:
         yield "  kept out"
         yield from (f"    {names(e.component)}: {', '.join(map(str, e.obstacles))}" for e in one.excluded[:SHOWN])
@@ -86,7 +88,7 @@ def _lines(one: RolePartition, names: Names) -> Iterator[str]:
 
 
 def _body(found: PartitionTable) -> dict[str, Any]:
-    from selfconf.render import value_body
+    from selfconf.render import holder_body, value_body
 
     return {
         "template": found.inquiry.task.iri,
@@ -95,6 +97,7 @@ def _body(found: PartitionTable) -> dict[str, Any]:
             {
                 "role": one.role.iri,
                 "eligible": list(one.eligible),
+                **({"held": [{"component": c, **holder_body(h)} for c, h in one.held.items()]} if one.held else {}),
                 "excluded": [
                     {"component": e.component, "of_its_class": e.akin, "obstacles": list(map(str, e.obstacles))}
                     for e in one.excluded

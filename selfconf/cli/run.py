@@ -7,6 +7,7 @@ import json
 import queue
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -153,6 +154,8 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
         raise AuthorError(
             "a detached task lives in the sites that there are: start them with `selfconf site`, without --ads"
         )
+    from selfconf.model.run_event import TaskDetached
+
     method = method_of(given, task)
     with joined(given) as ecology:
         name = ecology.detach(
@@ -167,12 +170,8 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
             priority=given.priority,
             upgrade=given.settle if given.upgrade else None,
         )
-    if given.format == "json":
-        print(json.dumps({"ecology": ecology.name, "task": name}))
-    else:
-        print(
-            f"the sites of ecology {ecology.name} run {name}; `selfconf tasks` shows it, `selfconf stop {name}` ends it"
-        )
+    report = json_lines if given.format == "json" else TextLines(task)
+    report(TaskDetached(name, time=time.time()))
     return 0
 
 

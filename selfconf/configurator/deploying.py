@@ -30,9 +30,10 @@ from selfconf.configurator.effects import (
     WakeUp,
     Watch,
 )
-from selfconf.configurator.events import Answered, Call, Holder
+from selfconf.configurator.events import Answered, Call
 from selfconf.configurator.order import parameter_values, starting_order, wiring
 from selfconf.configurator.state import Held, Phase, State
+from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 
 Reaction = tuple[State, tuple[Effect, ...]]

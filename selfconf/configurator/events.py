@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -20,18 +21,6 @@ class Call(str, Enum):
     RESERVE = "reserve"
     APPLY = "apply"
     RELEASE = "release"
-
-
-@dataclass(frozen=True, slots=True)
-class Holder:
-    """Who holds a component: a task, its priority and beginning, and its configurator."""
-
-    task: str
-    priority: int = 0
-    beginning: float = 0.0
-    configurator: str = ""
-    acting: bool = True
-    """Whether the component acts for it: else it has only been reserved."""
 
 
 @dataclass(frozen=True, slots=True)

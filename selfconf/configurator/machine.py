@@ -56,7 +56,6 @@ from selfconf.configurator.order import parameter_values, resting_next, wiring
 from selfconf.configurator.state import Held, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import Cause, Verdict
 
 OBEYED = (Verdict.DONE, Verdict.STALE, Verdict.OTHER_LIFE)
@@ -153,9 +152,7 @@ def _coveted(state: State, event: Composed) -> State:
     if not isinstance(event.outcome, Configuration):
         return state
     busy = {
-        component: Loss(
-            Cause.REFUSED, f"the task {task_name(holder.task)} (priority {holder.priority}) holds it", "", True
-        )
+        component: Loss(Cause.REFUSED, str(holder), "", True)
         for component, holder in state.taken.items()
         if component in event.outcome.components
     }

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from selfconf.configurator.events import Call, Holder
+from selfconf.configurator.events import Call
 from selfconf.configurator.order import InputWires, StartingOrder
 from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause

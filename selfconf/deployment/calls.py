@@ -14,7 +14,7 @@ from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
 from selfconf.configurator.effects import ApplyTo, AwaitRelease, QueueFor, ReleaseFrom, ReserveOf, WakeUp
-from selfconf.configurator.events import Answered, Call, Event, Failed, Holder, WaitedLong
+from selfconf.configurator.events import Answered, Call, Event, Failed, WaitedLong
 from selfconf.configurator.order import parameter_values, wiring
 from selfconf.configurator.state import Phase, State
 from selfconf.deployment.identity import TaskIdentity
@@ -22,6 +22,7 @@ from selfconf.deployment.run_request import EventListener, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.holder import Holder
 from selfconf.model.run_event import (
     ActivationSent,
     CallDeclined,

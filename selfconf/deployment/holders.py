@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from selfconf.bus.port import Bus, Replies
-from selfconf.configurator.events import Holder
 from selfconf.errors import PeerError
+from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys

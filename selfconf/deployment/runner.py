@@ -39,7 +39,6 @@ from selfconf.configurator.events import (
     Failed,
     Freed,
     HandedOver,
-    Holder,
     Improvable,
     Reconnected,
     Stopped,
@@ -55,6 +54,7 @@ from selfconf.deployment.run_request import RunRequest
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import PeerError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.run_event import (
     AnswerRejected,

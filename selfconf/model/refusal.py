@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Place
 from selfconf.model.relaxation import Relaxation
@@ -217,6 +218,8 @@ class Refusal:
     hint: str | None = None
     missing_sites: tuple[str, ...] = field(default=())
     repairs: tuple[Relaxation, ...] = ()
+    held: tuple[tuple[IRI, Holder], ...] = ()
+    """The components without which there is no configuration, and which other tasks hold."""
     irreducible: bool = True
     """Whether each reason was proved to need all of its requirements; not when the steps for that were used up."""
 

@@ -198,6 +198,14 @@ class TaskStopped(RunEvent):
 
 
 @dataclass(frozen=True, slots=True)
+class TaskDetached(RunEvent):
+    """The task was handed to the sites of the ecology, which go on with it."""
+
+    act: ClassVar[str] = "detached"
+    task: str
+
+
+@dataclass(frozen=True, slots=True)
 class EcologyUnreachable(RunEvent):
     """The configurator has lost its link to the ecology, and believes nothing until it is back."""
 

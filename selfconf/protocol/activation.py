@@ -15,7 +15,8 @@ that supervises the task is BUSY while that one is alive. A call of a task that 
 that do is BUSY, and the task *waits*: higher priority first, then the earlier beginning. Once the component is free,
 it is *offered* to the first that waits; until that one has reserved it or the offer is over, tasks that come later are
 BUSY. An offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot
-come for it, as each waits for the other, would have it offered to them for ever.
+come for it, as each waits for the other, would have it offered to them for ever. A task that has not come for it waits
+on, but no task is asked to yield for its sake until it asks again: its configurator may be gone.
 
 A component that has failed stays failed for the epoch it failed in: an apply of that epoch, repeated or late, is
 REFUSED, or it would hide the failure. An actuator, a component without outputs, is never applied to by a task that does
@@ -84,6 +85,8 @@ class Activation:
     """The task that a component which is free is kept for."""
     passed: frozenset[str] = frozenset()
     """The tasks that wait and have been offered the component since it was held last."""
+    lapsed: frozenset[str] = frozenset()
+    """The tasks that wait, but did not come for the component when it was kept for them last."""
     ended: tuple[tuple[str, int], ...] = ()
     """The newest epoch obeyed for each task that holds the component no more."""
 
@@ -146,22 +149,31 @@ def obey(
         return activation, Verdict.NOT_HELD, ActivationStep.NONE
     if served.phase is ActivationPhase.FAILED and own is not None and own.active and call.epoch == own.claim.epoch:
         return activation, Verdict.REFUSED, ActivationStep.NONE
-    others = tuple(hold for hold in served.holds if hold is not own and hold.claim.supervisor not in gone)
-    active = replace(
-        served,
+    return _activate(served, call, gone), Verdict.DONE, _START[served.phase]
+
+
+def _activate(activation: Activation, call: Apply, gone: frozenset[str]) -> Activation:
+    """Act for a task, and no more for tasks whose supervisor is gone: those cannot say any more what they want."""
+    others = [hold for hold in activation.holds if hold.claim.task != call.task]
+    left = {hold.claim.task: hold.claim.epoch for hold in others if hold.claim.supervisor in gone}
+    return replace(
+        activation,
         phase=ActivationPhase.ACTIVE,
-        holds=(*others, Hold(call, True)),
-        ended=_ended(served, call),
+        holds=(*(hold for hold in others if hold.claim.task not in left), Hold(call, True)),
+        ended=(*_ended(activation, call), *left.items())[-MOST_ENDED:],
         passed=frozenset(),
     )
-    return active, Verdict.DONE, _START[served.phase]
 
 
 def _reserve(activation: Activation, own: Hold | None, call: Reserve) -> Activation:
-    """Hold the component; one that acts already goes on as it is, until it is applied to."""
+    """Hold the component; one that acts already goes on as it is, until it is applied to.
+
+    One that has failed waits for the apply of a newer epoch than the one that it failed in.
+    """
     others = tuple(hold for hold in activation.holds if hold is not own)
-    claim = call if own is None or not own.active else replace(own.claim, epoch=call.epoch, supervisor=call.supervisor)
-    held = Hold(claim, own is not None and own.active)
+    held = Hold(call)
+    if own is not None and own.active and (activation.phase is ActivationPhase.ACTIVE or call.epoch == own.claim.epoch):
+        held = Hold(replace(own.claim, epoch=call.epoch, supervisor=call.supervisor), True)
     return replace(activation, holds=(*others, held), ended=_ended(activation, call), passed=frozenset())
 
 
@@ -176,13 +188,15 @@ def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gon
 def _wait(activation: Activation, call: Reserve | Apply) -> Activation:
     """Let a task wait, in its place; a call that it has made before is forgotten."""
     rest = [claim for claim in activation.waiting if claim.task != call.task]
-    return replace(activation, waiting=tuple(sorted([*rest, call], key=_rank)[:MOST_WAITING]))
+    waiting = tuple(sorted([*rest, call], key=_rank)[:MOST_WAITING])
+    return replace(activation, waiting=waiting, lapsed=activation.lapsed - {call.task})
 
 
 def _no_longer_waiting(activation: Activation, task: str) -> Activation:
     waiting = tuple(claim for claim in activation.waiting if claim.task != task)
     kept_for = "" if activation.kept_for == task else activation.kept_for
-    return replace(activation, waiting=waiting, kept_for=kept_for, passed=activation.passed - {task})
+    passed, lapsed = activation.passed - {task}, activation.lapsed - {task}
+    return replace(activation, waiting=waiting, kept_for=kept_for, passed=passed, lapsed=lapsed)
 
 
 def _rank(claim: Claim) -> tuple[int, float, str]:
@@ -220,9 +234,10 @@ def orphan(activation: Activation, supervisor: str) -> tuple[Activation, Activat
 
 def outranked(activation: Activation) -> tuple[str, ...]:
     """The tasks that hold a component although one of higher priority than all of them waits for it."""
-    if not activation.waiting:
+    first = next((claim for claim in activation.waiting if claim.task not in activation.lapsed), None)
+    if first is None:
         return ()
-    lower = [hold.claim for hold in activation.holds if hold.claim.priority < activation.waiting[0].priority]
+    lower = [hold.claim for hold in activation.holds if hold.claim.priority < first.priority]
     return tuple(claim.task for claim in lower) if len(lower) == len(activation.holds) else ()
 
 
@@ -238,4 +253,7 @@ def offer(activation: Activation) -> tuple[Activation, Claim | None]:
 
 def withdraw(activation: Activation, task: str) -> Activation:
     """Keep the component no longer for a task that has not reserved it."""
-    return replace(activation, kept_for="") if activation.kept_for == task else activation
+    if activation.kept_for != task:
+        return activation
+    waiting = {claim.task for claim in activation.waiting}
+    return replace(activation, kept_for="", lapsed=(activation.lapsed | {task}) & waiting)

@@ -163,6 +163,14 @@ def _number(value: object) -> float:
         raise PeerError("a number that a float can hold was expected") from None
 
 
+def _moment(value: object) -> float:
+    """Tasks are served by their beginnings, and what is no number in JSON either has no place in an order."""
+    moment = _number(value)
+    if not math.isfinite(moment):
+        raise PeerError("a finite number was expected")
+    return moment
+
+
 def _truth(value: object) -> bool:
     if not isinstance(value, bool):
         raise PeerError("true or false was expected")
@@ -226,7 +234,7 @@ _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "supervisor"): _text for kind in (Reserve, Apply, Release, CallAnswer)},
     **{(kind, "task"): _text for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Free, Status, TaskRecord)},
     **{(kind, "priority"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
-    **{(kind, "beginning"): _number for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
+    **{(kind, "beginning"): _moment for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Free, Wake, End, Stamp)},
     **{(kind, "life"): _text for kind in (Reserve, Apply, Release, CallAnswer, Fail, Free, End, Stamp)},
     **{(kind, "detail"): _text for kind in (CallAnswer, Fail)},

@@ -1,7 +1,7 @@
 """The messages of the control plane, as values.
 
-Everything that can be stale carries a *life* (which incarnation of a component) or an *epoch* (which deployment). A
-component obeys the newest epoch that it knows of and refuses an older one.
+Everything that can be stale carries a *life* (which incarnation of a component) or an *epoch* (which deployment of a
+task). Of the calls of one task a component obeys the newest epoch that it knows of and refuses an older one.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from typing import Any
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
+from selfconf.model.holder import Holder
 from selfconf.model.number import plain_number
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
@@ -89,7 +90,18 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
             for miss in refusal.near_misses
         ],
         "repairs": repairs,
+        **({"held": [{"component": c, **holder_body(h)} for c, h in refusal.held]} if refusal.held else {}),
         **({"missing_sites": list(refusal.missing_sites)} if refusal.missing_sites else {}),
+    }
+
+
+def holder_body(holder: Holder) -> dict[str, Any]:
+    """Who holds a component, and since when."""
+    return {
+        "task": holder.name,
+        "priority": holder.priority,
+        "since": holder.beginning,
+        "configurator": holder.configurator,
     }
 
 

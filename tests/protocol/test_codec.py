@@ -13,7 +13,7 @@ from selfconf.errors import PeerError
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.codec import LARGEST, decode, decode_term, encode, encode_term
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Message, Release, Stamp, Wire
+from selfconf.protocol.messages import Apply, Message, Release, Reserve, Stamp, StateOf, Wire
 from tests.protocol import strategies
 
 KINDS: tuple[type[Any], ...] = get_args(Message)
@@ -127,11 +127,31 @@ def test_half_a_surrogate_pair_is_no_text(lonely: str) -> None:
 def test_a_port_without_a_name_is_refused_for_there_is_no_key_for_it() -> None:
     supervisor = Keys("home").configurator_life("c", "1")
     for inputs in ({"": (Wire(IRI("urn:a"), "pose"),)}, {"position": (Wire(IRI("urn:a"), ""),)}):
-        with pytest.raises(PeerError, match="name"):
-            decode(encode(Apply(1, supervisor, inputs)), Apply)
+        for kind in (Reserve, Apply):
+            with pytest.raises(PeerError, match="name"):
+                decode(encode(kind(1, supervisor, inputs=inputs)), kind)
 
 
 @pytest.mark.parametrize("period", [0.0, -1.0, float("nan"), float("inf")])
 def test_a_promise_is_a_pause_that_one_can_wait_for(period: float) -> None:
     with pytest.raises(PeerError, match="period"):
-        decode(encode(Apply(1, "s", {"position": (Wire(IRI("urn:a"), "pose", period),)})), Apply)
+        decode(encode(Apply(1, "s", inputs={"position": (Wire(IRI("urn:a"), "pose", period),)})), Apply)
+
+
+@pytest.mark.parametrize("beginning", [float("nan"), float("inf"), float("-inf")])
+def test_a_task_begins_at_a_moment_for_tasks_are_served_in_that_order(beginning: float) -> None:
+    with pytest.raises(PeerError, match="finite"):
+        decode(encode(Reserve(1, "s", "t~1", beginning=beginning)), Reserve)
+
+
+@pytest.mark.parametrize("kind", [Reserve, Apply, Release])
+def test_a_call_of_an_older_peer_names_no_task_and_no_life(kind: type[Reserve | Apply | Release]) -> None:
+    old = json.dumps({"kind": kind.__name__.lower(), "epoch": 7, "supervisor": "s", "inputs": {}}).encode()
+    call = decode(old, kind)
+    assert (call.epoch, call.task, call.life, call.priority, call.beginning) == (7, "", "", 0, 0.0)
+
+
+def test_a_question_for_the_state_says_of_which_task_it_is() -> None:
+    assert decode(b'{"kind": "state", "task": "tidy~1"}', StateOf) == StateOf("tidy~1")
+    with pytest.raises(PeerError, match="task"):
+        decode(b'{"kind": "state"}', StateOf)

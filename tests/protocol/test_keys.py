@@ -29,9 +29,11 @@ def every_key(component: IRI, port: str) -> list[str]:
         HOME.advertisement("s", component),
         HOME.changed("s"),
         HOME.wake("s"),
+        HOME.end("s"),
         HOME.life(component, "1"),
         HOME.output(component, port),
         HOME.fail(component),
+        HOME.free(component),
         HOME.call(component, "apply"),
         HOME.configurator_life("c", "1"),
         HOME.configuration("c"),
@@ -68,13 +70,16 @@ def test_zenoh_takes_every_key(component: IRI, port: str) -> None:
 
 @given(iris, ports)
 def test_no_two_kinds_of_keys_are_equal(component: IRI, port: str) -> None:
-    assert len(set(every_key(component, port))) == 11
+    keys_of_it = every_key(component, port)
+    assert len(set(keys_of_it)) == len(keys_of_it)
 
 
 @given(iris, iris)
 def test_two_components_share_no_key(one: IRI, other: IRI) -> None:
     if one != other:
-        assert not set(every_key(one, "p")[4:8]) & set(every_key(other, "p")[4:8])
+        assert not {key for key in every_key(one, "p") if key.startswith("selfconf/home/c/")} & set(
+            every_key(other, "p")
+        )
 
 
 @given(iris)
@@ -85,7 +90,7 @@ def test_a_call_is_taken_apart_as_it_was_put_together(component: IRI) -> None:
 @pytest.mark.parametrize("broad", ["**", "selfconf/**", "selfconf/*/c/**", "selfconf/home/**", "*/**"])
 def test_no_broad_question_meets_a_control_call(broad: str) -> None:
     component = IRI("https://example.org/drive")
-    calls = (HOME.call(component, "apply"), HOME.wake("s"), HOME.configurator_call("c", "stop"))
+    calls = (HOME.call(component, "apply"), HOME.wake("s"), HOME.end("s"), HOME.configurator_call("c", "stop"))
     for call in calls:
         assert not zenoh.KeyExpr(broad).intersects(zenoh.KeyExpr(call))
         assert not intersects(broad, call)
@@ -100,6 +105,9 @@ def test_the_questions_of_an_ecology_meet_what_they_are_meant_for() -> None:
         (HOME.changed(), HOME.changed("s")),
         (HOME.any_life(), HOME.life(component, "1")),
         (HOME.lives(component), HOME.life(component, "1")),
+        (HOME.any_fail(), HOME.fail(component)),
+        (HOME.any_free(), HOME.free(component)),
+        (HOME.outputs(component), HOME.output(component, "pose")),
         (HOME.call(component), HOME.call(component, "apply")),
         (HOME.any_configurator_life(), HOME.configurator_life("c", "1")),
         (HOME.configuration(), HOME.configuration("c")),
@@ -164,3 +172,36 @@ def test_the_life_of_a_configurator_is_known_as_such(name: str, life: str) -> No
 )
 def test_nothing_else_passes_for_the_life_of_a_configurator(key: str) -> None:
     assert not HOME.is_configurator_life(key)
+
+
+@given(iris)
+def test_a_fail_names_its_component(component: IRI) -> None:
+    assert keys.owner_of_fail(HOME.fail(component)) == keys.component_chunk(component)
+
+
+@pytest.mark.parametrize("key", ["", "selfconf/home/c/aa/bb", "selfconf/home/c/aa/bb/free", "a/b/c/d/e/f/fail"])
+def test_what_is_no_fail_key_names_no_component(key: str) -> None:
+    with pytest.raises(PeerError):
+        keys.owner_of_fail(key)
+
+
+@pytest.mark.parametrize("key", ["", "a/b", "other/home/site/s/live/1"])
+def test_what_is_no_key_of_selfconf_names_no_ecology(key: str) -> None:
+    with pytest.raises(PeerError):
+        keys.ecology_of(key)
+
+
+@given(names, names)
+def test_a_task_is_known_to_its_user_by_its_name(name: str, token: str) -> None:
+    assert keys.task_name(keys.task_identity(name, token)) == name
+
+
+@given(st.text(max_size=80))
+def test_any_text_becomes_a_name_that_a_task_can_have(text: str) -> None:
+    name = keys.safe_name(text)
+    assert keys.task_name(keys.task_identity(name, "1")) == name
+
+
+def test_a_name_that_no_key_can_hold_is_no_name_of_a_task() -> None:
+    with pytest.raises(AuthorError, match="cannot name a task"):
+        keys.task_identity("tidy up", "1")

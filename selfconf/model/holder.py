@@ -1,0 +1,29 @@
+"""Who holds a component: a task of the living ecology."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Holder:
+    """Who holds a component: a task, its priority and beginning, and its configurator."""
+
+    task: str
+    """The identity of the task: its name, a tilde, and a text that no other task has."""
+    priority: int = 0
+    beginning: float = 0.0
+    """When the task began, in seconds of the Unix epoch."""
+    configurator: str = ""
+    acting: bool = True
+    """Whether the component acts for it: else it has only been reserved."""
+
+    @property
+    def name(self) -> str:
+        """The name of the task, as its user knows it."""
+        return self.task.partition("~")[0]
+
+    def __str__(self) -> str:
+        since = time.strftime("%H:%M:%S", time.localtime(self.beginning))
+        return f"the task {self.name} (priority {self.priority}) holds it since {since}"
