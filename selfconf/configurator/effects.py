@@ -66,6 +66,14 @@ class QueueFor:
 
 
 @dataclass(frozen=True, slots=True)
+class Decline:
+    """Tell a component that is kept for this task, and that it cannot take now, to go to the next that waits."""
+
+    component: IRI
+    epoch: int
+
+
+@dataclass(frozen=True, slots=True)
 class ApplyTo:
     """Act 4: give a component the values of its parameters, activate it, and connect its inputs."""
 
@@ -113,6 +121,7 @@ Effect = (
     | WakeUp
     | ReserveOf
     | QueueFor
+    | Decline
     | ApplyTo
     | ReleaseFrom
     | AwaitRelease

@@ -34,7 +34,17 @@ from dataclasses import replace
 
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import Reaction, then
-from selfconf.configurator.effects import Compose, Discover, Effect, Finish, QueueFor, ReleaseFrom, Unwatch, Watch
+from selfconf.configurator.effects import (
+    Compose,
+    Decline,
+    Discover,
+    Effect,
+    Finish,
+    QueueFor,
+    ReleaseFrom,
+    Unwatch,
+    Watch,
+)
 from selfconf.configurator.events import (
     Accepted,
     Adopted,
@@ -296,7 +306,8 @@ def _freed(state: State, component: IRI) -> Reaction:
     known = replace(state, lost=lost, taken=taken, queued=state.queued - {component}, news=True)
     if state.phase is Phase.REFUSED and state.patient:
         return _discover(known)
-    return (known, ()) if state.phase not in (Phase.IDLE, Phase.STOPPED) else (state, ())
+    decline = Decline(component, state.epoch)
+    return (known if state.phase not in (Phase.IDLE, Phase.STOPPED) else state), (decline,)
 
 
 def _appeared(state: State, event: Appeared) -> Reaction:

@@ -13,7 +13,7 @@ from functools import partial
 from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
-from selfconf.configurator.effects import ApplyTo, AwaitRelease, QueueFor, ReleaseFrom, ReserveOf, WakeUp
+from selfconf.configurator.effects import ApplyTo, AwaitRelease, Decline, QueueFor, ReleaseFrom, ReserveOf, WakeUp
 from selfconf.configurator.events import Answered, Call, Event, Failed, WaitedLong
 from selfconf.configurator.order import parameter_values, wiring
 from selfconf.configurator.state import Phase, State
@@ -161,6 +161,11 @@ class Calls:
         """Have a component remember that this task waits; what it answers is not waited for."""
         message = Reserve(**self._claim(effect.component, effect.epoch), waits=True)
         self.bus.ask(self.keys.call(effect.component, Call.RESERVE.value), encode(message), CALL, lambda replies: None)
+
+    def decline(self, effect: Decline) -> None:
+        """Let a component that is kept for this task go to the next that waits; nothing depends on the answer."""
+        message = Release(**self._claim(effect.component, effect.epoch))
+        self.bus.ask(self.keys.call(effect.component, Call.RELEASE.value), encode(message), CALL, lambda replies: None)
 
     def await_release(self, effect: AwaitRelease) -> None:
         """Ask again after a while for a component that another task holds."""

@@ -18,6 +18,7 @@ from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
     Compose,
+    Decline,
     Discover,
     Effect,
     Finish,
@@ -305,6 +306,8 @@ class TaskRunner:
                 self._calls.reserve(effect)
             case QueueFor():
                 self._calls.queue(effect)
+            case Decline():
+                self._calls.decline(effect)
             case AwaitRelease():
                 self._calls.await_release(effect)
             case ApplyTo():
