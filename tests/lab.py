@@ -12,6 +12,7 @@ from selfconf.composition.composer import Composer
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.deployment.runner import AT_LEISURE
+from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
@@ -132,13 +133,16 @@ class Lab:
         shelf = Shelf([write_advertisements(self.folder / name, *names)], self.complaints.append)
         return Site(self.network.node(), "lab", name, shelf)
 
+    def profile(self, name: str) -> Profile:
+        """The profile in one of the advertisements."""
+        (advertisement,), _ = advertisements.read_document(turtle.parse(PREFIXES + ADVERTISEMENTS[name], name))
+        return advertisement.profile
+
     def component(self, name: str, recorder: Recorder | None = None) -> Recorder:
         """A living component with one of the advertisements."""
-        document = turtle.parse(PREFIXES + ADVERTISEMENTS[name], name)
-        (advertisement,), _ = advertisements.read_document(document)
         recorder = recorder or Recorder()
         life = f"{name}{len(self.network.nodes)}"
-        self.runtimes[name] = ComponentRuntime(self.network.node(), self.keys, advertisement.profile, recorder, life)
+        self.runtimes[name] = ComponentRuntime(self.network.node(), self.keys, self.profile(name), recorder, life)
         self.components[name] = recorder
         return recorder
 

@@ -13,6 +13,7 @@ import itertools
 import random
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeVar
 
 from selfconf.bus.port import Replies, Sample, Urgency
@@ -20,6 +21,7 @@ from selfconf.bus.port import Replies, Sample, Urgency
 _T = TypeVar("_T")
 
 
+@lru_cache(maxsize=1 << 14)
 def intersects(left: str, right: str) -> bool:
     """Whether two key expressions meet: `*` is one chunk, `**` any number of them, neither stands for `@...`."""
     return _intersect(left.split("/"), right.split("/"))

@@ -139,11 +139,33 @@ class History:
         self._joined(name, site.bus)
 
     def _begin_life(self, name: str) -> Life:
-        recorder = self.lab.component(name)
-        life = Life(name, self.lab.runtimes[name], recorder, self.lab.node_of(name))
-        self.lives.append(life)
-        self._joined(name, life.node)
-        return life
+        """Let a component live, on a node of its own; one that has to leave later leaves with its node."""
+        node = self.network.node()
+        recorder = Recorder()
+        life = f"{name}{node.number}"
+        runtime = ComponentRuntime(
+            node, self.lab.keys, self.lab.profile(name), recorder, life, superseded=lambda reason: node.close()
+        )
+        self.lives.append(Life(name, runtime, recorder, node))
+        self._joined(name, node)
+        return self.lives[-1]
+
+    def _try_to_begin(self, name: str, attempts: int = 8) -> None:
+        """Start a process of a component, as its site does: it ends if it sees another one, and is started again."""
+        scout = self.network.node()
+        for other in self._isolated:
+            lone = self.node(other)
+            if lone is not None:
+                self.network.cut(scout, lone)
+
+        def called(lives: tuple[str, ...]) -> None:
+            scout.close()
+            if not lives:
+                self._begin_life(name)
+            elif attempts > 1 and all(not life.node.open for life in self.lives if life.name == name):
+                self.network.after(1.0, lambda: self._try_to_begin(name, attempts - 1))
+
+        scout.roll_call(self.lab.keys.lives(self.lab.profile(name).component), 1.0, called)
 
     # What is done. Each action says whether it was possible.
 
@@ -171,12 +193,21 @@ class History:
     def _start(self, action: Action) -> bool:
         if self.life(action.who) is not None:
             return False
-        self._begin_life(action.who)
+        self._try_to_begin(action.who)
         return True
 
     def _duplicate(self, action: Action) -> bool:
+        """A second process of a component that lives is started."""
         if self.life(action.who) is None:
             return False
+        self._try_to_begin(action.who, 1)
+        return True
+
+    def _twins(self, action: Action) -> bool:
+        """Two processes of a component begin at once."""
+        if self.life(action.who) is not None:
+            return False
+        self._begin_life(action.who)
         self._begin_life(action.who)
         return True
 
@@ -222,6 +253,8 @@ class History:
         agent = self.lab.agent(
             policy=Policy.DISMANTLE if plan.dismantles else Policy.REPAIR,
             patient=plan.patient,
+            name=action.who,
+            priority=plan.priority,
             clock=self.script.clocks.get(action.who, 0.0),
         )
         self.tasks[action.who] = agent

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from selfconf.bus.memory import MemoryBus
+from selfconf.bus.memory import LEASE, MemoryBus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.model.refusal import Refusal
@@ -43,12 +43,16 @@ def retries(history: History) -> float:
     return 20 * CALLS if history.script.faults.loss else 2 * CALLS
 
 
-def supervisor(history: History, life: Life) -> TaskRunner | None:
-    """The living configurator that a component obeys."""
-    for agent in history.living():
-        if agent.supervisor == life.runtime.activation.supervisor:
-            return agent
-    return None
+def holds(life: Life) -> dict[str, bool]:
+    """The supervisors of the tasks that hold a component, each with whether it acts for it."""
+    activation = life.runtime.activation
+    return {hold.claim.supervisor: hold.active and life.runtime.active for hold in activation.holds}
+
+
+def supervisors(history: History, life: Life) -> Iterator[TaskRunner]:
+    """The living configurators that a component acts for."""
+    held = holds(life)
+    return (agent for agent in history.living() if held.get(agent.supervisor))
 
 
 def node_of(agent: TaskRunner) -> MemoryBus:
@@ -75,19 +79,58 @@ def acts_for_nobody(history: History) -> Iterator[str]:
     """A component that acts is held by a configurator that lives, and that it sees."""
     for life in awake(history):
         if life.runtime.active:
-            agent = supervisor(history, life)
-            if agent is None or not history.network.reaches(node_of(agent), life.node):
-                yield f"{life.name} {life.runtime.life} acts for {life.runtime.activation.supervisor}, which is gone"
+            seen = [one for one in supervisors(history, life) if history.network.reaches(node_of(one), life.node)]
+            if not seen:
+                yield f"{life.name} {life.runtime.life} acts for {sorted(holds(life))}, which is gone"
 
 
 def acts_unknown(history: History) -> Iterator[str]:
     """The configurator of a component that acts counts on it, or wants it released."""
     for life in awake(history):
-        agent = supervisor(history, life)
-        if life.runtime.active and agent is not None and not node_of(agent).paused:
-            component = life.runtime.profile.component
-            if component not in agent.state.held and component not in agent.state.owed:
+        component = life.runtime.profile.component
+        for agent in supervisors(history, life) if life.runtime.active else ():
+            known = component in agent.state.held or component in agent.state.owed
+            if not known and not node_of(agent).paused:
                 yield f"{life.name} {life.runtime.life} acts for {agent.name}, which does not know"
+
+
+def held_for_nothing(history: History) -> Iterator[str]:
+    """A component is held only by tasks that know of it."""
+    for life in awake(history):
+        component = life.runtime.profile.component
+        held = holds(life)
+        for agent in history.living():
+            known = component in agent.state.held or component in agent.state.owed
+            if agent.supervisor in held and not known and not node_of(agent).paused:
+                yield f"{life.name} {life.runtime.life} is held for {agent.name}, which does not know"
+
+
+def obeys_two(history: History) -> Iterator[str]:
+    """No component acts for two tasks that disagree."""
+    for life in awake(history):
+        wants = {str(hold.wants) for hold in life.runtime.activation.holds if hold.active}
+        if life.runtime.active and len(wants) > 1:
+            yield f"{life.name} {life.runtime.life} acts for tasks that disagree"
+
+
+def acts_on_part(history: History) -> Iterator[str]:
+    """An actuator acts only while no other task holds a part of its configuration."""
+    for life in awake(history):
+        if life.runtime.active and not life.runtime.profile.outputs:
+            for agent in supervisors(history, life):
+                for component in agent.configuration.components if agent.configuration is not None else ():
+                    for other in strangers(history, component, agent):
+                        yield f"{life.name} acts for {agent.name}, and {component.short} is held by {other}"
+
+
+def strangers(history: History, component: str, agent: TaskRunner) -> Iterator[str]:
+    """The other tasks that hold a component which cannot be shared, and its only life."""
+    lives = [life for life in history.lives if life.node.open and life.runtime.profile.component == component]
+    if not any(holds(life).get(agent.supervisor) is not None for life in lives):
+        for life in lives:
+            for hold in life.runtime.activation.holds:
+                if not life.runtime.profile.is_shareable:
+                    yield hold.claim.task
 
 
 def runs_without(history: History) -> Iterator[str]:
@@ -101,20 +144,19 @@ def runs_without(history: History) -> Iterator[str]:
 
 def _acts_for(history: History, agent: TaskRunner, component: str) -> bool:
     return any(
-        life.runtime.profile.component == component
-        and life.runtime.active
-        and life.runtime.activation.supervisor == agent.supervisor
+        life.runtime.profile.component == component and holds(life).get(agent.supervisor)
         for life in history.lives
         if life.node.open
     )
 
 
-def shares_what_it_needs_alone(history: History) -> Iterator[str]:
-    """No two tasks run with one component."""
+def runs_with_anothers(history: History) -> Iterator[str]:
+    """No two tasks run with one component that cannot be shared."""
     running: dict[str, str] = {}
+    alone = {life.runtime.profile.component for life in history.lives if not life.runtime.profile.is_shareable}
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and not node_of(agent).paused and agent.configuration is not None:
-            for component in agent.configuration.components:
+            for component in alone.intersection(agent.configuration.components):
                 if component in running:
                     yield f"{agent.name} and {running[component]} both run with {component.short}"
                 running[component] = agent.name
@@ -131,7 +173,10 @@ STEPS = (
     Invariant("nobody acts for nobody", acts_for_nobody, lambda history: GRACE + travel(history)),
     Invariant("who acts is known", acts_unknown, lambda history: retries(history) + travel(history)),
     Invariant("running means running", runs_without, lambda history: LOOKS + retries(history) + travel(history)),
-    Invariant("each runs with its own", shares_what_it_needs_alone, lambda h: LOOKS + retries(h) + travel(h)),
+    Invariant("each runs with its own", runs_with_anothers, lambda h: LOOKS + retries(h) + travel(h)),
+    Invariant("held is known", held_for_nothing, lambda history: retries(history) + travel(history)),
+    Invariant("nobody obeys two", obeys_two),
+    Invariant("no actuator acts on part", acts_on_part, lambda history: GRACE + LEASE + travel(history)),
     Invariant("what waits is bounded", network_overflows),
 )
 """What must hold at every step."""
@@ -145,25 +190,26 @@ def undecided(history: History) -> Iterator[str]:
 
 
 def refused_in_vain(history: History) -> Iterator[str]:
-    """No task that waits could run."""
+    """No task that waits could run, with what is free or held by tasks of lower priority."""
     alive = {life.runtime.profile.component for life in history.lives if life.node.open}
     sites = [site for name, site in history.sites.items() if history.node(name) is not None]
     found = {c: a for site in sites for c, a in site.shelf.advertisements.items() if c in alive}
-    free = {
-        life.runtime.profile.component
-        for life in history.lives
-        if life.node.open and life.runtime.activation.supervisor is None
-    }
     for agent in history.living():
         if agent.state.phase is not Phase.REFUSED or not agent.state.patient:
             continue
-        if not isinstance(agent.request.compose(found, frozenset(agent.state.lost), None), Refusal):
-            yield f"{agent.name} has given up, although there is a configuration"
+        taken = {
+            life.runtime.profile.component
+            for life in history.lives
+            for hold in life.runtime.activation.holds
+            if life.node.open and not life.runtime.profile.is_shareable and hold.claim.priority >= agent.state.priority
+        }
+        broken = {c for c, loss in agent.state.lost.items() if not loss.busy and loss.cause is not Cause.CRASH}
+        outcome = agent.request.compose(found, frozenset(taken | broken), None)
+        if not isinstance(outcome, Refusal):
+            yield f"{agent.name} waits, although it could run with {[c.short for c in outcome.components]}"
         for component, loss in agent.state.lost.items():
             if component in alive and loss.cause is Cause.CRASH:
                 yield f"{agent.name} thinks that {component.short} is dead"
-            if component in alive and loss.busy and component in free:
-                yield f"{agent.name} thinks that {component.short} is busy"
 
 
 def acts_otherwise(history: History) -> Iterator[str]:
@@ -187,7 +233,7 @@ def wired_otherwise(history: History) -> Iterator[str]:
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and agent.configuration is not None:
             for life in awake(history):
-                if life.runtime.active and life.runtime.activation.supervisor == agent.supervisor:
+                if holds(life).get(agent.supervisor):
                     component = life.runtime.profile.component
                     wanted = {
                         (c.input, c.source, c.output) for c in agent.configuration.connections if c.sink == component
@@ -202,7 +248,7 @@ def lacks_a_value(history: History) -> Iterator[str]:
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and agent.configuration is not None:
             for life in awake(history):
-                if life.runtime.active and life.runtime.activation.supervisor == agent.supervisor:
+                if holds(life).get(agent.supervisor):
                     said = since_rest(life)
                     for setting in agent.configuration.settings:
                         mine = setting.component == life.runtime.profile.component

@@ -70,6 +70,7 @@ KINDS = {
     "start": (4, COMPONENTS),
     "lose_power": (1, COMPONENTS),
     "duplicate": (1, COMPONENTS),
+    "twins": (1, COMPONENTS),
     "refuse": (1, COMPONENTS),
     "slow": (1, COMPONENTS),
     "emit": (1, COMPONENTS),
