@@ -16,14 +16,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
 from selfconf.sdk.component import Refused
+from selfconf.sdk.program import HUNG_ENDS
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Site
 from tests.faults.script import SITES, Action, Script
+from tests.faults.simulated_code import ReportsLate, SimulatedCodeThread
 from tests.lab import Lab, Recorder
 
 SETTLED = 60.0
@@ -42,7 +45,7 @@ class Life:
     @property
     def awake(self) -> bool:
         """Whether it lives, and does something with what arrives."""
-        return self.node.open and not self.node.paused and self.node.network.time >= self.node.busy_until
+        return self.node.open and not self.node.paused
 
 
 class History:
@@ -142,10 +145,24 @@ class History:
         """Let a component live, on a node of its own; one that has to leave later leaves with its node."""
         node = self.network.node()
         recorder = Recorder()
-        life = f"{name}{node.number}"
+
+        def hung(what: str, limit: float) -> None:
+            runtime.hung(what, limit)
+            self.network.after(HUNG_ENDS, node.close)
+
+        thread = SimulatedCodeThread(node, hung)
+        recorder.spend = thread.spend
         runtime = ComponentRuntime(
-            node, self.lab.keys, self.lab.profile(name), recorder, life, superseded=lambda reason: node.close()
+            node,
+            self.lab.keys,
+            self.lab.profile(name),
+            recorder,
+            f"{name}{node.number}",
+            thread,
+            superseded=lambda reason: node.close(),
         )
+        late: Any = ReportsLate(node, thread)
+        runtime.code._bus = late
         self.lives.append(Life(name, runtime, recorder, node))
         self._joined(name, node)
         return self.lives[-1]

@@ -90,7 +90,7 @@ KINDS = {
 PAIRED = ("cut", "mute", "mend")
 """The kinds that are done to a link between two."""
 PAUSES = (0.5, 2.0, 10.0)
-SLOWNESS = (0.3, 3.0, 6.0)
+SLOWNESS = (0.3, 3.0, 6.0, 12.0)
 MOMENTS = (0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)
 
 

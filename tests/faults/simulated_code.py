@@ -1,0 +1,70 @@
+"""The thread of a component's code in simulated time: apart from that of the bus, and busy for as long as it says.
+
+Code runs at once, but what follows from its end (reports to the bus, the next piece of code) comes when the time is
+over that it spends. Code that spends more than its deadline is noticed as the host of a real process does.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from selfconf.bus.memory import MemoryBus
+from selfconf.sdk.code_thread import Action, CodeThread
+
+
+class SimulatedCodeThread(CodeThread):
+    """Runs the code of one component on its node; `hung` hears what has not returned within its deadline, and that."""
+
+    def __init__(self, node: MemoryBus, hung: Callable[[str, float], None]) -> None:
+        super().__init__(inline=False)
+        self._node, self._network, self._hung = node, node.network, hung
+        self._due = False
+        self.busy_until = 0.0
+
+    def spend(self, seconds: float) -> None:
+        """Be busy for some time, from within the code."""
+        self.busy_until = self._free() + seconds
+
+    def _free(self) -> float:
+        return max(self._network.time, self.busy_until)
+
+    def _put(self, queue: deque[Action], action: Action) -> None:
+        queue.append(action)
+        self._schedule()
+
+    def _schedule(self) -> None:
+        if not self._due:
+            self._due = True
+            self._network.at(self._free(), self._node, self._run_next)
+
+    def _run_next(self) -> None:
+        self._due = False
+        if self._network.time >= self.busy_until:
+            action = self._next(0.0)
+            if action is None:
+                return
+            action()
+        self._schedule()
+
+    def limited(self, owner: object, what: str, limit: float, action: Callable[[], object]) -> None:
+        """Run code of a component; note when it would have to have returned."""
+        began = self._free()
+        action()
+        if self.busy_until - began > limit:
+            self._network.at(began + limit, self._node, lambda: self._hung(what, limit))
+
+
+class ReportsLate:
+    """A bus on which the code's thread reports once it is not busy any more."""
+
+    def __init__(self, node: MemoryBus, thread: SimulatedCodeThread) -> None:
+        self._node, self._thread = node, thread
+
+    def wake_up(self, action: Callable[[], None]) -> None:
+        """Call `action` when the code has returned."""
+        self._node.network.at(max(self._node.network.time, self._thread.busy_until), self._node, action)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._node, name)
