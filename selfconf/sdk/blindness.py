@@ -20,14 +20,15 @@ class Blindness:
     def __init__(self, bus: Bus, tolerates: float | None, rest: Callable[[], None]) -> None:
         """`rest` is called on the bus's thread when an input was unfed for too long; `tolerates` None: never."""
         self._bus, self._tolerates, self._rest = bus, tolerates, rest
-        self.unfed: set[str] = set()
+        self.unfed: dict[str, float] = {}
+        """The inputs that are unfed, each with the time since when, by the clock of the bus."""
         self._timer: Undo | None = None
 
     def begin(self, port: str) -> bool:
         """Note on the bus's thread that an input is unfed; whether that is new."""
         if port in self.unfed:
             return False
-        self.unfed.add(port)
+        self.unfed[port] = self._bus.now()
         if self._timer is None and self._tolerates is not None:
             self._timer = self._bus.later(self._tolerates, self._too_long)
         return True
@@ -36,7 +37,7 @@ class Blindness:
         """Note on the thread of the component's code that an input is fed; whether it was unfed."""
         if port not in self.unfed:
             return False
-        self.unfed.discard(port)
+        self.unfed.pop(port, None)
         self._bus.wake_up(self._look)
         return True
 
@@ -52,5 +53,10 @@ class Blindness:
 
     def _too_long(self) -> None:
         self._timer = None
-        if self.unfed:
+        longest = max((self._bus.now() - since for since in list(self.unfed.values())), default=None)
+        if longest is None or self._tolerates is None:
+            return
+        if longest < self._tolerates:  # another input was unfed when the timer began, and is fed by now
+            self._timer = self._bus.later(self._tolerates - longest, self._too_long)
+        else:
             self._rest()

@@ -45,12 +45,12 @@ class ComponentCode:
         self._name = profile.component.short
         self._deadline = DEADLINE if profile.deadline is None else profile.deadline
         self._start_deadline = max(STARTING_DEADLINE, self._deadline)
-        self.active = False
-        """Whether the component acts; ended by a FAIL in whatever thread raises it."""
         self.stopping = False
         """Whether the code was told to stop, and is not at rest yet."""
         self.turn = 0
         """Counts starts and stops: what belongs to an earlier one is not run any more."""
+        self._acting_turn = -1
+        self._rests = 0
         self._on = self._resting = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
         self._blindness = Blindness(bus, None if profile.outputs else tolerates, self._rest)
@@ -61,7 +61,25 @@ class ComponentCode:
         """Whether there is no other thread."""
         return self._thread.inline
 
+    @property
+    def active(self) -> bool:
+        """Whether the component acts; ended by a stop or a FAIL at once, in whatever thread that comes from."""
+        return self._acting_turn == self.turn
+
+    @property
+    def stint(self) -> tuple[int, int]:
+        """What changes whenever the code is started or stopped: a timer belongs to one such stretch."""
+        return self.turn, self._rests
+
     # What the runtime asks for.
+
+    def end_acting(self) -> None:
+        """Be inactive at once; may be called from any thread."""
+        self._acting_turn = -1
+
+    def give_up(self) -> None:
+        """Do not go on with a start that has not come to its end."""
+        self.turn += 1
 
     def start(self, values: Mapping[str, Term], done: Done) -> None:
         """Set the parameters, then start."""
@@ -70,9 +88,7 @@ class ComponentCode:
 
         def start() -> None:
             self._resting = False
-            trouble = "it was turned off again" if turn != self.turn else self._set(values) or self._start()
-            if turn != self.turn:
-                self.active = False
+            trouble = self._over(turn) or self._set(values) or self._over(turn) or self._start(turn)
             self._report(done, trouble)
 
         self._values = dict(values)
@@ -90,7 +106,6 @@ class ComponentCode:
     def stop(self, done: Callable[[], None]) -> None:
         """Be inactive at once, and at rest as soon as what runs now has returned."""
         self.turn += 1
-        self.active = False
         self.stopping = True
         self._blindness.forget()
 
@@ -132,6 +147,7 @@ class ComponentCode:
             if turn == self.turn and self.active and self._blindness.unfed:
                 log.warning("%s: an input is unfed; at rest until it is fed", self._name)
                 self._stop()
+                self._rests += 1
                 self._resting = True
 
         self._thread.call(rest)
@@ -140,17 +156,28 @@ class ComponentCode:
 
     def _wake(self) -> None:
         self._resting = False
-        trouble = self._set(self._values) or self._start()
+        self._rests += 1
+        turn = self.turn
+        trouble = self._set(self._values) or self._over(turn)
+        if trouble is None:
+            self._on = True
+            trouble = self._started()
         if trouble is not None:
-            self.active = True  # so that the failure is reported
             self._fail(trouble)
 
-    def _start(self) -> str | None:
-        self.active = self._on = True  # before `started`, which may emit
-        trouble = self._carried_out("started", self._start_deadline, self._component.started, "it refuses")
+    def _over(self, turn: int) -> str | None:
+        return None if turn == self.turn else "it was turned off again"
+
+    def _start(self, turn: int) -> str | None:
+        self._on = True
+        self._acting_turn = turn  # before `started`, which may emit
+        trouble = self._started()
         if trouble is not None:
-            self.active = False
+            self._acting_turn = -1
         return trouble
+
+    def _started(self) -> str | None:
+        return self._carried_out("started", self._start_deadline, self._component.started, "it refuses")
 
     def _stop(self) -> None:
         if not self._on:

@@ -29,7 +29,7 @@ from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Fail, Stamp, Wire
+from selfconf.protocol.messages import Apply, Cause, Fail, Stamp, Wire
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
 from selfconf.sdk.outputs import RAW, SIGNALS_FIRST
@@ -204,6 +204,8 @@ class InputSubscription:
     def _received(self, sample: Sample) -> None:
         self._heard_at = self._bus.now()
         with self._lock:
+            if self.muted:
+                self._queue.clear()
             full = len(self._queue) == self._queue.maxlen
             self._queue.append(sample)
         if self.muted:
@@ -264,7 +266,7 @@ class InputSubscription:
             fail = decode(sample.payload, Fail)
         except PeerError:
             return
-        if fail.component == self._wire.component and fail.life:
+        if fail.component == self._wire.component and fail.life and fail.cause is not Cause.YIELD:
             self._lose(self._heard_at)
 
     def _lose(self, heard: float) -> None:

@@ -86,7 +86,9 @@ class ComponentRuntime:
         self.code = ComponentCode(bus, thread, profile, component, self.fail)
         self._timers: dict[int, Undo] = {}
         self._timer_numbers = itertools.count()
-        self._asked_to_yield = self._closed = False
+        self._closed = False
+        self._preemption: Undo | None = None
+        """Set while a task of higher priority waits for those that hold the component to yield."""
         self._after_start: list[Callable[[str | None], None]] = []
         """What waits for the code to have started."""
         self._after_stop: list[Callable[[], None]] = []
@@ -129,22 +131,31 @@ class ComponentRuntime:
     def fail(self, reason: str, cause: Cause = Cause.FAIL) -> None:
         """Raise FAIL, at once; may be called from any thread."""
         if self.active:
-            self.code.active = False
+            self.code.end_acting()
             self._put_fail(cause, reason)
             self.bus.wake_up(self._failed)
 
     def hung(self, what: str, limit: float) -> None:
-        """Raise FAIL for code that has not returned; called on the bus's thread."""
-        self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
+        """Raise FAIL for code that has not returned; called on the bus's thread.
+
+        Code that is to start, but hangs in a parameter, is not active yet and fails all the same.
+        """
+        detail = f"`{what}` has not returned within {limit:g} s"
+        if self.active:
+            self.fail(detail, Cause.HUNG)
+        elif self.activation.phase is ActivationPhase.ACTIVE:
+            self.code.give_up()
+            self._put_fail(Cause.HUNG, detail)
+            self._failed()
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` at that interval until the component stops or fails; a call that is late is not made up for."""
-        number, turn = next(self._timer_numbers), self.code.turn
+        number, stint = next(self._timer_numbers), self.code.stint
         due = False
 
         def tick() -> None:
             nonlocal due
-            if not self.active or turn != self.code.turn:
+            if not self.active or stint != self.code.stint:
                 self._timers.pop(number, None)
                 return
             self._timers[number] = self.bus.later(seconds, tick)
@@ -158,7 +169,7 @@ class ComponentRuntime:
             action()
 
         def begin() -> None:
-            if turn == self.code.turn:
+            if stint == self.code.stint:
                 self._timers[number] = self.bus.later(seconds, tick)
 
         if self.code.on_bus_thread:
@@ -250,9 +261,14 @@ class ComponentRuntime:
         def answer(trouble: str | None) -> None:
             self.bus.later(SIGNALS_FIRST, partial(started, trouble))
 
+        def change(trouble: str | None) -> None:
+            if trouble is None and self.activation.hold(message.task) is not None:
+                self.code.change(message.values, answer)
+            else:
+                answer(trouble)
+
         if step is ActivationStep.NONE and self._after_start:  # it is still starting, for an earlier call
-            self.code.change(message.values, lambda trouble: None)
-            self._after_start.append(answer)
+            self._after_start.append(change)
         elif step is ActivationStep.NONE:
             self.code.change(message.values, answer)
         else:
@@ -301,16 +317,15 @@ class ComponentRuntime:
 
     def _ask_to_yield(self) -> None:
         """Tell those that hold the component that a task of higher priority asks for it, once."""
-        if self._asked_to_yield or not table.outranked(self.activation):
+        if self._preemption is not None or not table.outranked(self.activation):
             return
-        self._asked_to_yield = True
         claim = self.activation.waiting[0]
         self._put_fail(Cause.YIELD, f"the task {task_name(claim.task)} of priority {claim.priority} asks for it")
-        self.bus.later(YIELDING, self._preempt)
+        self._preemption = self.bus.later(YIELDING, self._preempt)
 
     def _preempt(self) -> None:
         """Take the component from tasks that have not let go of it in time."""
-        self._asked_to_yield = False
+        self._preemption = None
         outranked = table.outranked(self.activation)
         if outranked:
             log.warning("%s: taken from %s", self.profile.component.short, ", ".join(map(task_name, outranked)))
@@ -342,8 +357,11 @@ class ComponentRuntime:
         if step in (ActivationStep.STOP, ActivationStep.RESTART):
             self._stop()
         if step is ActivationStep.RAISE_FAIL:
-            self.code.active = False  # again: another thread's FAIL may have been overtaken by a release and an apply
+            self.code.end_acting()  # again: another thread's FAIL may have been overtaken by a release and an apply
         self.supervision.watch({hold.claim.supervisor for hold in activation.holds})
+        if self._preemption is not None and not table.outranked(activation):
+            self._preemption()
+            self._preemption = None
 
     def _drop(self, tasks: list[str] | tuple[str, ...], epoch: int = 0) -> None:
         self._become(*table.drop(self.activation, tasks, epoch))

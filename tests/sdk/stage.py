@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
-from selfconf.model.term import IRI
+from selfconf.model.term import IRI, Term
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
     Fail,
-    Message,
+    Free,
     Release,
-    SetParameters,
+    Reserve,
+    StateOf,
     Wire,
 )
 from selfconf.sdk.component import Component
@@ -23,13 +27,17 @@ from tests.lab import Recorder
 
 KEYS = Keys("lab")
 US, THEM = KEYS.configurator_life("us", "1"), KEYS.configurator_life("them", "1")
-CAP, TRACKER = IRI("urn:c:cap"), IRI("urn:c:tracker")
+TASKS = {US: "task~us", THEM: "task~them"}
+"""The task of each configurator."""
+CAP, DRIVE, TRACKER = IRI("urn:c:cap"), IRI("urn:c:drive"), IRI("urn:c:tracker")
 XSD = "http://www.w3.org/2001/XMLSchema#"
 CAP_PROFILE = Profile(
     CAP,
     ports=Ports((Input("position", IRI("urn:s:Pose")),), (Output("velocity", IRI("urn:s:Velocity")),)),
     parameters=(OperationalParameter("goal", IRI("urn:p:Goal")),),
 )
+DRIVE_PROFILE = Profile(DRIVE, ports=Ports((Input("position", IRI("urn:s:Pose")),)), parameters=CAP_PROFILE.parameters)
+"""An actuator: it has no outputs."""
 TRACKER_PROFILE = Profile(TRACKER, ports=Ports(outputs=(Output("pose", IRI("urn:s:Pose")),)))
 
 
@@ -47,6 +55,9 @@ class Stage:
         self.runtime = ComponentRuntime(self.network.node(), KEYS, profile, self.component, "life-1")
         self.fails: list[Fail] = []
         self.caller.subscribe(KEYS.any_fail(), lambda sample: self.fails.append(decode(sample.payload, Fail)))
+        self.freed: list[str] = []
+        """The tasks to which the component was offered, in order."""
+        self.caller.subscribe(KEYS.any_free(), lambda sample: self.freed.append(decode(sample.payload, Free).task))
         self.let_pass(0.1)
 
     def let_pass(self, seconds: float) -> None:
@@ -60,27 +71,51 @@ class Stage:
         assert self.network.run(lambda: bool(replies), 5.0)
         return replies[0]
 
-    def call(self, message: Message) -> CallAnswer:
+    def call(self, message: Reserve | Apply | Release) -> CallAnswer:
         """Make a call; the answer."""
-        name = {Apply: "apply", SetParameters: "set", Release: "release"}[type(message)]
+        name = {Reserve: "reserve", Apply: "apply", Release: "release"}[type(message)]
         (sample,) = self.ask(name, encode(message)).samples
         return decode(sample.payload, CallAnswer)
 
-    def state(self) -> CallAnswer:
+    def state(self, task: str = "") -> CallAnswer:
         """What the component says of itself."""
-        (sample,) = self.ask("state", b"").samples
+        (sample,) = self.ask("state", encode(StateOf(task)) if task else b"").samples
         return decode(sample.payload, CallAnswer)
 
-    def neighbour(self, rate: float | None = None) -> ComponentRuntime:
+    def neighbour(self, rate: float | None = None, life: str = "life-t") -> ComponentRuntime:
         """A tracker that is active."""
         profile = Profile(TRACKER, ports=Ports(outputs=(Output("pose", IRI("urn:s:Pose"), rate),)))
-        runtime = ComponentRuntime(self.network.node(), KEYS, profile, Component(), "life-t")
+        runtime = ComponentRuntime(self.network.node(), KEYS, profile, Component(), life)
         replies: list[Replies] = []
-        self.caller.ask(KEYS.call(TRACKER, "apply"), encode(Apply(1, US)), 1.0, replies.append)
+        self.caller.ask(KEYS.call(TRACKER, "apply"), encode(apply()), 1.0, replies.append)
         assert self.network.run(lambda: bool(replies), 5.0)
         return runtime
 
 
-def follow(epoch: int = 1, period: float | None = None, supervisor: str = US) -> Apply:
+def apply(
+    epoch: int = 1,
+    supervisor: str = US,
+    inputs: Mapping[str, tuple[Wire, ...]] | None = None,
+    values: Mapping[str, Term] | None = None,
+    **claim: Any,
+) -> Apply:
+    """Be active; by default for the task of the supervisor, without inputs."""
+    task = claim.pop("task", TASKS.get(supervisor, "task~1"))
+    return Apply(epoch, supervisor, task, inputs=inputs or {}, values=values or {}, **claim)
+
+
+def reserve(epoch: int = 1, supervisor: str = US, **claim: Any) -> Reserve:
+    """Be held; by default for the task of the supervisor."""
+    task = claim.pop("task", TASKS.get(supervisor, "task~1"))
+    return Reserve(epoch, supervisor, task, **claim)
+
+
+def release(epoch: int = 1, supervisor: str = US, **claim: Any) -> Release:
+    """Be free; by default of the task of the supervisor."""
+    task = claim.pop("task", TASKS.get(supervisor, "task~1"))
+    return Release(epoch, supervisor, task, **claim)
+
+
+def follow(epoch: int = 1, period: float | None = None, supervisor: str = US, **claim: Any) -> Apply:
     """Be active, and follow the tracker."""
-    return Apply(epoch, supervisor, {"position": (Wire(TRACKER, "pose", period),)})
+    return apply(epoch, supervisor, {"position": (Wire(TRACKER, "pose", period),)}, **claim)

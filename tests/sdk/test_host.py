@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import os
+import socket
+import threading
 from pathlib import Path
 
 import pytest
 
 from selfconf.bus.memory import Network
-from selfconf.errors import AuthorError, ProgrammerError, TurtleError
+from selfconf.errors import AuthorError, NetworkError, ProgrammerError, TurtleError
 from selfconf.protocol.keys import Keys
 from selfconf.sdk import Component, Host
 from selfconf.sdk.host import profile_of
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
+from tests.sdk.living import PATIENCE, LivingStage, until
 
 
 def kind(advertisement: Path, component: str = "") -> type[Component]:
@@ -85,3 +89,107 @@ def test_a_host_runs_until_the_condition_holds(tmp_path: Path) -> None:
     host.bus.later(5.0, lambda: told.append(True))
     host.run(lambda: bool(told))
     assert network.time == 5.0
+
+
+def test_a_component_that_is_alive_already_is_not_begun_again(tmp_path: Path) -> None:
+    network, folder = Network(), write_advertisements(tmp_path)
+    first, second = Host(network.node(), "lab"), Host(network.node(), "lab")
+    first.add(kind(folder / "tracker.ttl")())
+    with pytest.raises(NetworkError) as refused:
+        second.add(kind(folder / "tracker.ttl")())
+    holder = f"process {os.getpid()} on {socket.gethostname()}"
+    assert str(refused.value) == f"{iri('person-tracker')} is alive already: {holder}; end that one first"
+    assert second.runtimes == []
+    first.close()
+    second.add(kind(folder / "tracker.ttl")())
+
+
+def test_a_component_that_is_alive_and_does_not_answer_is_not_begun_again_either(tmp_path: Path) -> None:
+    network, folder = Network(), write_advertisements(tmp_path)
+    network.node().announce(Keys("lab").life(iri("person-tracker"), "1"))
+    with pytest.raises(NetworkError, match="a process that does not answer; end that one first"):
+        Host(network.node(), "lab").add(kind(folder / "tracker.ttl")())
+
+
+LAMP = ':lamp a sc:Component, :Lamp ; sc:hasOutput [ sc:name "light" ; sc:signalType :Light ] .'
+
+
+def test_components_have_the_thread_that_runs_the_host_and_the_bus_has_another(living: LivingStage) -> None:
+    threads: list[threading.Thread] = []
+
+    class Lamp(Component):
+        component = "urn:c:lamp"
+
+        def started(self) -> None:
+            threads.append(threading.current_thread())
+
+    host = living.host()
+    host.add(living.advertised(Lamp, LAMP)())
+    answers = living.apply("urn:c:lamp")
+    host.run(lambda: bool(threads))
+    assert threads == [threading.current_thread()]
+    assert until(lambda: host.poll(0.01) or answers)
+    host.close()
+
+
+def test_a_living_component_is_refused_in_real_time_too(living: LivingStage) -> None:
+    class Lamp(Component):
+        component = "urn:c:lamp"
+
+    living.component(living.advertised(Lamp, LAMP)())
+    host = living.host()
+    with pytest.raises(NetworkError, match=rf"urn:c:lamp is alive already: process {os.getpid()} on "):
+        host.add(Lamp())
+    host.close()
+
+
+def test_a_host_of_which_a_component_is_superseded_ends_with_an_error(living: LivingStage) -> None:
+    """Its process began at the same moment as another one, whose life is the smaller."""
+
+    class Lamp(Component):
+        component = "urn:c:lamp"
+
+    living.advertised(Lamp, LAMP)
+    hosts = [living.host(), living.host()]
+    together = threading.Barrier(2)
+
+    def join(host: Host, life: str) -> None:
+        check = host._check_alone
+
+        def both(profile: object) -> None:
+            check(profile)  # type: ignore[arg-type]  # it is handed on
+            together.wait(PATIENCE)
+
+        host._check_alone = both  # type: ignore[method-assign]  # both look before either is alive
+        host.add(Lamp(), life)
+
+    threads = [threading.Thread(target=join, args=pair) for pair in zip(hosts, ("a", "b"), strict=True)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(PATIENCE)
+    with pytest.raises(NetworkError, match="urn:c:lamp is alive already, in the life a; this process leaves"):
+        hosts[1].run(lambda: False)
+    assert hosts[0].superseded is None
+    for host in hosts:
+        host.close()
+
+
+def test_closing_a_host_waits_until_its_components_are_at_rest(living: LivingStage) -> None:
+    class Lamp(Component):
+        component = "urn:c:lamp"
+        lit = False
+
+        def started(self) -> None:
+            self.lit = True
+
+        def stopped(self) -> None:
+            self.lit = False
+
+    host = living.host()
+    lamp = host.add(living.advertised(Lamp, LAMP)())
+    living.apply("urn:c:lamp")
+    host.run(lambda: lamp.lit)
+    host.close()
+    assert not lamp.lit
+    assert not lamp.active

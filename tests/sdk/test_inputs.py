@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
 import pytest
 
+from selfconf.bus.memory import Network
 from selfconf.bus.port import Urgency
+from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import (
-    Apply,
-    Cause,
-    Release,
-    Stamp,
-    Wire,
-)
-from selfconf.sdk.inputs import BEGINNING, PATIENCE
-from tests.sdk.stage import CAP, KEYS, TRACKER, US, Stage, follow
+from selfconf.protocol.messages import Cause, Stamp, Wire
+from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.inputs import BEGINNING, EVENTS, JUST_COME, PATIENCE, InputEvents, Inputs
+from selfconf.sdk.runtime import ComponentRuntime
+from tests.lab import Recorder
+from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER_PROFILE, TRACKER, US, Stage, apply, follow, release
 
 
 def test_rewiring_an_input_neither_stops_nor_starts_the_component() -> None:
@@ -24,10 +28,10 @@ def test_rewiring_an_input_neither_stops_nor_starts_the_component() -> None:
     stage.call(follow(1))
     tracker.emit("pose", 1, None)
     stage.let_pass(0.1)
-    stage.call(Apply(2, US, {"position": (Wire(IRI("urn:c:odometry"), "pose"),)}))
+    stage.call(apply(2, US, {"position": (Wire(IRI("urn:c:odometry"), "pose"),)}))
     tracker.emit("pose", 2, None)
     stage.let_pass(0.1)
-    stage.call(Apply(3, US, {"position": (Wire(TRACKER, "pose"),)}))
+    stage.call(apply(3, US, {"position": (Wire(TRACKER, "pose"),)}))
     tracker.emit("pose", 3, None)
     stage.let_pass(0.1)
     assert [said for said in stage.recorder.said if said != ("position", 2)] == [
@@ -45,7 +49,7 @@ def test_rewiring_an_input_neither_stops_nor_starts_the_component() -> None:
         (b"not json", encode(Stamp(TRACKER, "l", 1, 0.0))),
         (b"[" * 100_000, encode(Stamp(TRACKER, "l", 1, 0.0))),
         (b"1", encode(Stamp(CAP, "l", 1, 0.0))),
-        (b"1", encode(Release(1, US))),
+        (b"1", encode(release(1, US))),
         (b"\xff\xfe", encode(Stamp(TRACKER, "l", 1, 0.0))),
     ],
 )
@@ -123,6 +127,188 @@ def test_an_output_that_is_followed_no_more_may_be_silent() -> None:
     stage.call(follow(1, period=0.1))
     tracker.emit("pose", 1, None)
     stage.let_pass(0.05)
-    stage.call(Apply(2, US))
+    stage.call(apply(2, US))
     stage.let_pass(10)
     assert not silence(stage)
+
+
+# What an input that has lost its source says, and when it is fed again.
+
+
+class Watchful(Recorder):
+    """Writes down as well when it is blind."""
+
+    def unfed(self, port: str) -> None:
+        self.said.append(("unfed", port))
+
+    def fed(self, port: str) -> None:
+        self.said.append(("fed", port))
+
+
+def end(runtime: ComponentRuntime) -> None:
+    """End the process of a component, as kill -9 does."""
+    runtime.bus.close()
+
+
+def fall_silent(runtime: ComponentRuntime) -> None:
+    """Do nothing."""
+
+
+def raise_fail(runtime: ComponentRuntime) -> None:
+    """Raise FAIL."""
+    runtime.fail("broken")
+
+
+@pytest.mark.parametrize("loss", [end, fall_silent, raise_fail])
+def test_an_input_that_has_lost_its_only_source_says_so_and_again_when_there_is_another(
+    loss: Callable[[ComponentRuntime], None],
+) -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.call(follow(period=0.1))
+    tracker.emit("pose", 1, None)
+    stage.let_pass(0.05)
+    loss(tracker)
+    stage.let_pass(PATIENCE * 0.1 + 0.1)
+    assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
+    tracker.bus.close()
+    stage.let_pass(10)
+    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[2:] == [("unfed", "position"), ("fed", "position"), ("position", 2)]
+
+
+def test_an_input_that_follows_two_outputs_is_fed_while_one_of_them_is_left() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    odometry = other_source(stage)
+    both = (Wire(TRACKER, "pose"), Wire(ODOMETRY, "pose"))
+    stage.call(apply(1, US, {"position": both}))
+    stage.let_pass(0.1)
+    end(tracker)
+    stage.let_pass(1.0)
+    assert stage.recorder.said == [("started",)]
+    end(odometry)
+    stage.let_pass(1.0)
+    assert stage.recorder.said == [("started",), ("unfed", "position")]
+
+
+ODOMETRY = IRI("urn:c:odometry")
+
+
+def other_source(stage: Stage) -> ComponentRuntime:
+    """Another component with an output `pose`, which acts."""
+    profile = replace(TRACKER_PROFILE, component=ODOMETRY)
+    runtime = ComponentRuntime(stage.network.node(), KEYS, profile, Recorder(), "life-o")
+    stage.caller.ask(KEYS.call(ODOMETRY, "apply"), encode(apply()), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    return runtime
+
+
+def test_an_input_that_changes_its_source_is_unfed_until_the_first_signal_of_the_next() -> None:
+    stage = Stage(Watchful())
+    stage.neighbour()
+    odometry = other_source(stage)
+    stage.call(follow(1))
+    stage.call(apply(2, US, {"position": (Wire(ODOMETRY, "pose"),)}))
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("unfed", "position")]
+    odometry.emit("pose", 3, None)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[2:] == [("fed", "position"), ("position", 3)]
+
+
+def test_an_input_that_changes_to_an_output_that_stands_by_and_has_just_issued_is_never_unfed() -> None:
+    stage = Stage(Watchful())
+    stage.neighbour()
+    odometry = other_source(stage)
+    spare = {"position": (Wire(ODOMETRY, "pose"),)}
+    stage.call(replace(follow(1), standby=spare))
+    stage.let_pass(0.1)
+    odometry.emit("pose", "newest", None)
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",)]
+    stage.call(apply(2, US, spare))
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("position", "newest")]
+
+
+def test_what_an_output_that_stands_by_issued_long_ago_does_not_count() -> None:
+    stage = Stage(Watchful())
+    stage.neighbour()
+    odometry = other_source(stage)
+    spare = {"position": (Wire(ODOMETRY, "pose"),)}
+    stage.call(replace(follow(1), standby=spare))
+    stage.let_pass(0.1)
+    odometry.emit("pose", "old", None)
+    stage.let_pass(JUST_COME + 0.1)
+    stage.call(apply(2, US, spare))
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("unfed", "position")]
+
+
+# Queues, where the component's code has a thread of its own.
+
+
+class Slow:
+    """An input that follows one output, and a component whose code has no time until `poll` of its thread."""
+
+    def __init__(self, period: float | None = None, depth: int | None = None) -> None:
+        self.network, self.code = Network(), CodeThread(inline=False)
+        self.heard: list[Any] = []
+        profile = replace(CAP_PROFILE, ports=Ports((Input("position", IRI("urn:s:Pose"), depth),)))
+        events = InputEvents(lambda port, signal: self.heard.append(signal.value), lambda *_: None, lambda _: None)
+        self.inputs = Inputs(self.network.node(), KEYS, self.code, profile, events)
+        self.inputs.follow(follow(period=period))
+        self._source = self.network.node().publisher(KEYS.output(TRACKER, "pose"), Urgency.SIGNAL)
+        self._numbers = itertools.count(1)
+
+    def issue(self, count: int) -> None:
+        """Signals come, numbered from 1."""
+        for number in itertools.islice(self._numbers, count):
+            self._source.put(b"%d" % number, encode(Stamp(TRACKER, "l", number, 0.0)))
+        self.network.run(lambda: False, 0.1)
+
+
+def test_of_an_output_with_a_rate_a_slow_component_gets_the_newest_signal() -> None:
+    slow = Slow(period=0.1)
+    slow.issue(100)
+    slow.code.poll()
+    assert slow.heard == [100]
+    slow.issue(5)
+    slow.code.poll()
+    assert slow.heard == [100, 105]
+
+
+def test_of_an_output_without_a_rate_a_slow_component_gets_every_signal_up_to_a_bound() -> None:
+    slow = Slow()
+    slow.issue(EVENTS)
+    slow.code.poll()
+    assert slow.heard == [*range(1, EVENTS + 1)]
+    slow.heard.clear()
+    slow.issue(EVENTS + 7)
+    slow.code.poll()
+    assert slow.heard == [*range(EVENTS + 8, 2 * EVENTS + 8)]
+
+
+@pytest.mark.parametrize("period", [None, 0.1])
+def test_an_input_may_say_itself_how_many_signals_wait(period: float | None) -> None:
+    slow = Slow(period, depth=3)
+    slow.issue(10)
+    slow.code.poll()
+    assert slow.heard == [8, 9, 10]
+
+
+def test_what_is_dropped_is_counted() -> None:
+    slow = Slow(depth=3)
+    slow.issue(10)
+    slow.inputs.end()
+    assert slow.inputs.dropped == 7
+
+
+def test_what_waits_when_an_input_is_connected_to_something_else_is_not_delivered_any_more() -> None:
+    slow = Slow()
+    slow.issue(10)
+    slow.inputs.follow(apply(2))
+    slow.code.poll()
+    assert slow.heard == []

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from selfconf.bus.port import Replies, Sample
 from selfconf.errors import ProgrammerError
-from selfconf.model.profile import Ports, Profile
+from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import (
-    Apply,
-    Release,
-)
 from selfconf.sdk.component import Signal
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.lab import Recorder
-from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, US, Stage, follow
+from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, US, Stage, apply, follow, release
+
+POSE = IRI("urn:s:Pose")
 
 
 def test_what_is_emitted_arrives_with_its_source_number_and_time() -> None:
@@ -49,7 +48,7 @@ def test_the_signals_that_an_activation_sets_free_go_before_its_answer() -> None
     stage = Stage(Eager())
     order: list[str] = []
     stage.caller.subscribe(KEYS.output(CAP, "velocity"), lambda _: order.append("signal"))
-    stage.caller.ask(KEYS.call(CAP, "apply"), encode(Apply(1, US)), 1.0, lambda _: order.append("answer"))
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(apply(1, US)), 1.0, lambda _: order.append("answer"))
     stage.let_pass(0.1)
     assert order == ["signal", "answer"]
 
@@ -59,9 +58,9 @@ def test_nothing_is_emitted_while_a_component_is_not_active() -> None:
     heard: list[Sample] = []
     stage.others.subscribe(KEYS.output(CAP, "velocity"), heard.append)
     stage.component.emit("velocity", 1)
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     stage.component.emit("velocity", 2)
-    stage.call(Release(2, US))
+    stage.call(release(2, US))
     stage.component.emit("velocity", 3)
     stage.let_pass(0.1)
     assert [sample.payload for sample in heard] == [b"2"]
@@ -76,7 +75,7 @@ def test_an_output_that_is_not_advertised_is_the_programmers_error() -> None:
 @pytest.mark.parametrize("value", [math.nan, math.inf, {1, 2}, object()])
 def test_a_value_that_json_does_not_have_is_the_programmers_error(value: Any) -> None:
     stage = Stage()
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     with pytest.raises(ProgrammerError, match="velocity"):
         stage.component.emit("velocity", value)
 
@@ -89,20 +88,56 @@ def test_a_new_connection_carries_the_last_signal_at_once_and_an_old_one_does_no
     stage.call(follow())
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("position", "here")]
-    profile = Profile(IRI("urn:c:other"), ports=Ports(CAP_PROFILE.inputs))
-    again = ComponentRuntime(stage.network.node(), KEYS, profile, Recorder(), "l")
-    replies: list[Replies] = []
-    stage.caller.ask(KEYS.call(IRI("urn:c:other"), "apply"), encode(follow()), 1.0, replies.append)
-    stage.let_pass(0.1)
-    assert again.active
+    assert another_follower(stage).said == [("started",), ("position", "here")]
     assert stage.recorder.said.count(("position", "here")) == 1
+
+
+def another_follower(stage: Stage, name: str = "urn:c:other") -> Recorder:
+    """A second component that follows the tracker, once it has been activated."""
+    recorder = Recorder()
+    profile = Profile(IRI(name), ports=CAP_PROFILE.ports)
+    ComponentRuntime(stage.network.node(), KEYS, profile, recorder, "l")
+    stage.caller.ask(KEYS.call(IRI(name), "apply"), encode(follow()), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    return recorder
+
+
+def test_every_new_follower_gets_the_last_signal_though_others_follow_already() -> None:
+    """The bus says only that an output begins to be followed, not that it is followed by one more."""
+    stage = Stage()
+    tracker = stage.neighbour()
+    stage.others.subscribe(KEYS.output(TRACKER, "pose"), lambda _: None)
+    stage.let_pass(0.1)
+    tracker.emit("pose", "here", None)
+    stage.let_pass(1.0)
+    for number in range(3):
+        assert another_follower(stage, f"urn:c:{number}").said == [("started",), ("position", "here")]
+
+
+def test_an_output_that_is_asked_for_its_last_signal_answers_for_itself_and_only_while_it_acts() -> None:
+    stage = Stage(profile=replace(CAP_PROFILE, ports=Ports((), (Output("a", POSE), Output("b", POSE)))))
+    replies: list[Replies] = []
+
+    def last(port: str) -> list[bytes]:
+        stage.caller.ask(KEYS.output(CAP, port), b"", 1.0, replies.append)
+        stage.let_pass(0.1)
+        return [sample.payload for sample in replies[-1].samples]
+
+    stage.call(apply(1, US))
+    assert last("a") == []
+    stage.component.emit("a", 1)
+    stage.component.emit("a", 2)
+    stage.component.emit("b", 3)
+    assert (last("a"), last("b"), last("c")) == ([b"2"], [b"3"], [])
+    stage.call(release(2, US))
+    assert last("a") == []
 
 
 def test_a_signal_of_an_earlier_activation_is_not_latched() -> None:
     stage = Stage()
     tracker = stage.neighbour()
     tracker.emit("pose", "old", None)
-    for name, message in (("release", Release(2, US)), ("apply", Apply(3, US))):
+    for name, message in (("release", release(2, US)), ("apply", apply(3, US))):
         stage.caller.ask(KEYS.call(TRACKER, name), encode(message), 1.0, lambda _: None)
         stage.let_pass(0.1)
     assert tracker.active

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
 import pytest
 
 from selfconf.bus.zenoh_bus import client
-from selfconf.sdk import Component, main
+from selfconf.sdk import Component, main, parent_environment
+from selfconf.sdk.program import ENDING, HUNG_EXIT_CODE
 from tests.lab import write_advertisements
+from tests.sdk.living import PATIENCE, PREFIXES, LivingStage, until
 
 
 class Lamp(Component):
@@ -57,3 +65,124 @@ def test_help_tells_what_the_component_is(capsys: pytest.CaptureFixture[str]) ->
     with pytest.raises(SystemExit):
         main(Lamp, arguments=("--help",))
     assert "A lamp." in capsys.readouterr().out
+
+
+# Programs as processes of their own.
+
+PROGRAM = '''
+import sys, time
+from pathlib import Path
+from selfconf.sdk import Component, main
+
+class Lamp(Component):
+    """A lamp."""
+
+    advertisement = Path(__file__).parent / "lamp.ttl"
+
+    def started(self):
+        self.every(0.01, self.shine)
+
+    def shine(self):
+        if "hang" in sys.argv:
+            print("hanging", flush=True)
+            while True:
+                time.sleep(0.01)
+
+    def stopped(self):
+        print("at rest", flush=True)
+
+main(Lamp)
+'''
+LAMP = """:lamp a sc:Component, :Lamp ; sc:deadline [ sc:value 0.3 ; sc:unit unit:SEC ] ;
+    sc:hasOutput [ sc:name "light" ; sc:signalType :Light ] ."""
+
+
+class Programs:
+    """Processes that are one component, each started and ended by a test."""
+
+    def __init__(self, stage: LivingStage) -> None:
+        self.stage = stage
+        (stage.folder / "lamp.ttl").write_text(PREFIXES + LAMP)
+        (stage.folder / "lamp.py").write_text(PROGRAM)
+        self.started: list[subprocess.Popen[str]] = []
+
+    def start(self, *arguments: str, **environment: str) -> subprocess.Popen[str]:
+        """Start a program."""
+        command = (sys.executable, "lamp.py", "--ecology", self.stage.ecology, "--connect", self.stage.endpoint)
+        clean = {name: value for name, value in os.environ.items() if not name.startswith("SELFCONF_")}
+        path = {"PYTHONPATH": str(Path(__file__).parents[2])}
+        process = subprocess.Popen(
+            [*command, *arguments],
+            cwd=self.stage.folder,
+            env={**clean, **path, **environment},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.started.append(process)
+        return process
+
+    def lives(self) -> bool:
+        """Whether the component is alive."""
+        called: list[tuple[str, ...]] = []
+        self.stage.caller.roll_call(self.stage.keys.any_life(), PATIENCE, called.append)
+        return until(lambda: called) and bool(called[0])
+
+    def acting(self, *arguments: str, **environment: str) -> subprocess.Popen[str]:
+        """Start a program, and activate its component."""
+        process = self.start(*arguments, **environment)
+        assert until(self.lives, 2 * PATIENCE)
+        answers = self.stage.apply("urn:c:lamp")
+        assert until(lambda: answers)
+        return process
+
+
+@pytest.fixture
+def programs(living: LivingStage) -> Iterator[Programs]:
+    """Programs of one component in an ecology."""
+    programs = Programs(living)
+    yield programs
+    for process in programs.started:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.process
+def test_a_program_whose_component_lives_already_names_who_holds_it_and_exits_with_2(programs: Programs) -> None:
+    first = programs.start()
+    assert until(programs.lives, 2 * PATIENCE)
+    _, said = programs.start().communicate(timeout=2 * PATIENCE)
+    assert programs.started[1].returncode == 2
+    assert f"urn:c:lamp is alive already: process {first.pid} on " in said
+    assert said.count("\n") == 1
+
+
+@pytest.mark.process
+def test_a_program_ends_on_a_signal_with_its_component_at_rest(programs: Programs) -> None:
+    process = programs.acting()
+    process.send_signal(signal.SIGTERM)
+    said, _ = process.communicate(timeout=PATIENCE)
+    assert (process.returncode, said) == (0, "at rest\n")
+
+
+@pytest.mark.process
+def test_a_program_whose_code_hangs_ends_on_a_signal_all_the_same(programs: Programs) -> None:
+    process = programs.acting("hang")
+    assert until(lambda: programs.stage.fails)
+    assert process.poll() is None
+    began = time.monotonic()
+    process.send_signal(signal.SIGTERM)
+    _, said = process.communicate(timeout=2 * PATIENCE)
+    assert process.returncode == HUNG_EXIT_CODE
+    assert time.monotonic() - began < ENDING + 1.0
+    assert "urn:c:lamp: `every` has not returned within 0.3 s" in said
+
+
+@pytest.mark.process
+def test_a_program_that_a_site_has_started_ends_when_its_code_hangs_so_that_it_can_be_started_again(
+    programs: Programs,
+) -> None:
+    process = programs.acting("hang", **parent_environment())
+    assert process.wait(PATIENCE) == HUNG_EXIT_CODE
+    assert until(lambda: programs.stage.fails)
+    assert programs.stage.fails[0][1].detail == "`every` has not returned within 0.3 s"

@@ -3,35 +3,32 @@
 from __future__ import annotations
 
 import logging
+import os
+import socket
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from selfconf.bus.port import Replies
 from selfconf.errors import ProgrammerError
+from selfconf.model.profile import OperationalParameter
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import (
-    Apply,
-    Cause,
-    Fail,
-    Release,
-    SetParameters,
-    Verdict,
-    Wire,
-)
+from selfconf.protocol.messages import Apply, Cause, Fail, Release, Reserve, Verdict, Wire
 from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.runtime import OFFER, YIELDING, ComponentRuntime
 from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
-from tests.sdk.stage import CAP, KEYS, THEM, TRACKER, US, XSD, Stage, follow
+from tests.sdk.stage import CAP, CAP_PROFILE, DRIVE_PROFILE, KEYS, TASKS, THEM, TRACKER, US, XSD, Stage, apply, follow, release, reserve
 
 
 def test_a_component_is_idle_until_it_is_activated() -> None:
     stage = Stage()
     answer = stage.state()
     assert (answer.verdict, answer.active, answer.life, answer.component) == (Verdict.DONE, False, "life-1", CAP)
-    answer = stage.call(Apply(7, US))
+    answer = stage.call(apply(7, US))
     assert (answer.verdict, answer.active, answer.epoch) == (Verdict.DONE, True, 7)
     assert stage.recorder.said == [("started",)]
     assert stage.component.active
@@ -40,11 +37,11 @@ def test_a_component_is_idle_until_it_is_activated() -> None:
 def test_it_says_which_configurator_holds_it_and_a_busy_component_says_so_in_words() -> None:
     stage = Stage()
     assert stage.state().supervisor == ""
-    assert stage.call(Apply(1, US)).supervisor == US
+    assert stage.call(apply(1, US)).supervisor == US
     stage.others.announce(THEM)
-    answer = stage.call(Apply(2, THEM))
+    answer = stage.call(apply(2, THEM))
     assert (answer.verdict, answer.supervisor) == (Verdict.BUSY, US)
-    assert answer.detail == "the configurator us holds it"
+    assert answer.detail == "the task task (priority 0, configurator us) holds it"
     stage.component.fail("lost her")
     stage.let_pass(0.1)
     assert (stage.state().active, stage.state().supervisor) == (False, US)
@@ -56,22 +53,22 @@ def test_it_says_which_configurator_holds_it_and_a_busy_component_says_so_in_wor
 def test_an_activation_that_is_repeated_starts_nothing_anew() -> None:
     stage = Stage()
     for epoch in (1, 1, 2):
-        assert stage.call(Apply(epoch, US)).verdict is Verdict.DONE
+        assert stage.call(apply(epoch, US)).verdict is Verdict.DONE
     assert stage.recorder.said == [("started",)]
 
 
 def test_a_released_component_stops_and_may_be_activated_again() -> None:
     stage = Stage()
-    stage.call(Apply(1, US))
-    answer = stage.call(Release(2, US))
+    stage.call(apply(1, US))
+    answer = stage.call(release(2, US))
     assert (answer.verdict, answer.active) == (Verdict.DONE, False)
-    stage.call(Apply(3, US))
+    stage.call(apply(3, US))
     assert stage.recorder.said == [("started",), ("stopped",), ("started",)]
 
 
 def test_parameters_are_set_by_name_and_as_values_of_python() -> None:
     stage = Stage()
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     given: list[tuple[Term, Any]] = [
         (Literal("(AT BEDROOM)"), "(AT BEDROOM)"),
         (IRI("urn:x"), "urn:x"),
@@ -84,29 +81,59 @@ def test_parameters_are_set_by_name_and_as_values_of_python() -> None:
         (Literal("0", IRI(XSD + "boolean")), False),
     ]
     for value, _ in given:
-        assert stage.call(SetParameters(1, US, {"goal": value})).verdict is Verdict.DONE
+        assert stage.call(apply(1, US, values={"goal": value})).verdict is Verdict.DONE
     assert stage.recorder.said[1:] == [("goal", value) for _, value in given]
 
 
-def test_an_idle_component_takes_no_parameters() -> None:
+def test_parameters_are_set_before_the_component_is_started_and_once() -> None:
     stage = Stage()
-    assert stage.call(SetParameters(1, US, {"goal": Literal("x")})).verdict is Verdict.REFUSED
+    for _ in range(2):
+        assert stage.call(apply(1, US, values={"goal": Literal("x")})).verdict is Verdict.DONE
+    assert stage.recorder.said == [("goal", "x"), ("started",)]
+
+
+def test_a_parameter_that_changes_is_set_without_a_stop_and_the_others_are_not_set_again() -> None:
+    parameters = tuple(OperationalParameter(name, IRI("urn:p:Goal")) for name in ("goal", "speed"))
+    stage = Stage(profile=replace(CAP_PROFILE, parameters=parameters))
+    stage.call(apply(1, US, values={"goal": Literal("x"), "speed": Literal("slow")}))
+    stage.call(apply(2, US, values={"goal": Literal("x"), "speed": Literal("fast")}))
+    assert stage.recorder.said == [("goal", "x"), ("speed", "slow"), ("started",), ("speed", "fast")]
+
+
+def test_a_component_that_fails_and_is_started_again_has_its_parameters_set_again() -> None:
+    stage = Stage()
+    stage.call(apply(1, US, values={"goal": Literal("x")}))
+    stage.component.fail("lost her")
+    stage.let_pass(0.1)
+    stage.call(apply(2, US, values={"goal": Literal("x")}))
+    assert stage.recorder.said == [("goal", "x"), ("started",), ("stopped",), ("goal", "x"), ("started",)]
+
+
+def test_a_component_that_refuses_a_parameter_is_not_started() -> None:
+    class Picky(Recorder):
+        def parameter_set(self, name: str, value: Any) -> None:
+            raise Refused
+
+    stage = Stage(Picky())
+    answer = stage.call(apply(1, US, values={"goal": Literal("x")}))
+    assert (answer.verdict, answer.detail) == (Verdict.REFUSED, "it refuses goal = x")
     assert stage.recorder.said == []
+    assert stage.runtime.activation.phase is ActivationPhase.IDLE
 
 
 def test_a_parameter_that_is_not_declared_or_no_number_is_refused_with_a_reason() -> None:
     stage = Stage()
-    stage.call(Apply(1, US))
-    answer = stage.call(SetParameters(1, US, {"colour": Literal("red")}))
+    stage.call(apply(1, US))
+    answer = stage.call(apply(1, US, values={"colour": Literal("red")}))
     assert (answer.verdict, answer.detail) == (Verdict.REFUSED, "it declares no parameter 'colour'")
-    answer = stage.call(SetParameters(1, US, {"goal": Literal("three", IRI(XSD + "integer"))}))
+    answer = stage.call(apply(1, US, values={"goal": Literal("three", IRI(XSD + "integer"))}))
     assert answer.verdict is Verdict.REFUSED
     assert "goal" in answer.detail
 
 
 def test_an_input_that_is_not_there_is_refused_and_nothing_starts() -> None:
     stage = Stage()
-    answer = stage.call(Apply(1, US, {"sonar": (Wire(TRACKER, "pose"),)}))
+    answer = stage.call(apply(1, US, {"sonar": (Wire(TRACKER, "pose"),)}))
     assert (answer.verdict, answer.detail) == (Verdict.REFUSED, "it has no input 'sonar'")
     assert stage.recorder.said == []
 
@@ -116,13 +143,16 @@ def test_an_input_that_is_not_there_is_refused_and_nothing_starts() -> None:
     [
         ("apply", b""),
         ("apply", b"{}"),
-        ("apply", encode(Release(1, US))),
-        ("dance", encode(Apply(1, US))),
-        ("*", encode(Apply(1, US))),
-        ("set", b"\xff"),
-        ("apply", encode(Apply(1, "**"))),
-        ("apply", encode(Apply(1, "selfconf/lab/conf/*/live/*"))),
-        ("apply", encode(Apply(1, "selfconf/other/conf/us/live/1"))),
+        ("apply", encode(release(1, US))),
+        ("dance", encode(apply(1, US))),
+        ("*", encode(apply(1, US))),
+        ("apply", encode(Apply(1, US))),
+        ("release", encode(Release(1, US))),
+        ("reserve", b"\xff"),
+        ("state", b"\xff"),
+        ("apply", encode(apply(1, "**"))),
+        ("apply", encode(apply(1, "selfconf/lab/conf/*/live/*"))),
+        ("apply", encode(apply(1, "selfconf/other/conf/us/live/1"))),
     ],
 )
 def test_a_call_that_is_none_is_refused_and_changes_nothing(call: str, payload: bytes) -> None:
@@ -131,40 +161,40 @@ def test_a_call_that_is_none_is_refused_and_changes_nothing(call: str, payload: 
     assert replies.samples == ()
     assert len(replies.errors) == 1
     assert stage.recorder.said == []
-    assert stage.call(Apply(1, US)).verdict is Verdict.DONE
+    assert stage.call(apply(1, US)).verdict is Verdict.DONE
 
 
 def test_a_component_that_refuses_to_start_says_why_and_stays_free() -> None:
     stage = Stage()
     stage.recorder.refusal = Refused("no light")
-    answer = stage.call(Apply(1, US))
+    answer = stage.call(apply(1, US))
     assert (answer.verdict, answer.detail, answer.active) == (Verdict.REFUSED, "no light", False)
     stage.recorder.refusal = None
     stage.others.announce(THEM)
-    assert stage.call(Apply(2, THEM)).verdict is Verdict.DONE
+    assert stage.call(apply(2, THEM)).verdict is Verdict.DONE
 
 
 def test_a_component_that_breaks_when_it_is_started_says_how(caplog: pytest.LogCaptureFixture) -> None:
     stage = Stage()
     stage.recorder.refusal = ValueError("no camera")
     with caplog.at_level(logging.CRITICAL):
-        answer = stage.call(Apply(1, US))
+        answer = stage.call(apply(1, US))
     assert answer.verdict is Verdict.REFUSED
-    assert answer.detail == "it broke when it was started: ValueError: no camera"
+    assert answer.detail == "it broke in started: ValueError: no camera"
     assert not stage.component.active
 
 
 def test_a_component_that_failed_and_refuses_to_start_again_is_free() -> None:
     stage = Stage()
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     stage.component.fail("lost her")
     stage.let_pass(0.1)
     stage.recorder.refusal = Refused("still dark")
-    assert stage.call(Apply(2, US)).verdict is Verdict.REFUSED
+    assert stage.call(apply(2, US)).verdict is Verdict.REFUSED
     assert stage.runtime.activation.phase is ActivationPhase.IDLE
     stage.recorder.refusal = None
     stage.others.announce(THEM)
-    assert stage.call(Apply(3, THEM)).verdict is Verdict.DONE
+    assert stage.call(apply(3, THEM)).verdict is Verdict.DONE
 
 
 def test_a_component_that_breaks_on_a_signal_fails(caplog: pytest.LogCaptureFixture) -> None:
@@ -189,24 +219,24 @@ def test_a_component_that_breaks_when_it_is_stopped_is_off_all_the_same(caplog: 
             raise RuntimeError("stuck")
 
     stage = Stage(Clumsy())
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     with caplog.at_level(logging.CRITICAL):
-        answer = stage.call(Release(2, US))
+        answer = stage.call(release(2, US))
     assert (answer.verdict, answer.active) == (Verdict.DONE, False)
     stage.let_pass(1.0)
     assert not stage.fails
-    stage.call(Apply(3, US))
+    stage.call(apply(3, US))
     stage.component.fail("again")
     stage.let_pass(0.1)
     with caplog.at_level(logging.CRITICAL):
-        answer = stage.call(Apply(4, US))
+        answer = stage.call(apply(4, US))
     assert (answer.verdict, answer.active) == (Verdict.DONE, True)
     assert stage.runtime.activation.phase is ActivationPhase.ACTIVE
 
 
 def test_a_component_raises_fail_with_its_life_its_epoch_and_a_reason() -> None:
     stage = Stage()
-    stage.call(Apply(4, US))
+    stage.call(apply(4, US))
     stage.component.fail("lost her")
     stage.let_pass(0.1)
     assert stage.fails == [Fail(CAP, "life-1", 4, Cause.FAIL, "lost her")]
@@ -218,7 +248,7 @@ def test_a_component_fails_once_and_an_idle_one_never() -> None:
     stage = Stage()
     stage.component.fail("idle")
     stage.let_pass(0.1)
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     for _ in range(3):
         stage.component.fail("lost her")
     stage.let_pass(0.1)
@@ -231,17 +261,17 @@ def test_a_component_may_fail_as_it_is_started() -> None:
             self.fail("at once")
 
     stage = Stage(Hopeless())
-    assert stage.call(Apply(1, US)).verdict is Verdict.DONE
+    assert stage.call(apply(1, US)).verdict is Verdict.DONE
     stage.let_pass(0.1)
     assert [fail.detail for fail in stage.fails] == ["at once"]
 
 
 def test_a_component_that_failed_is_started_again_when_it_is_applied_to_again() -> None:
     stage = Stage()
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     stage.component.fail("lost her")
     stage.let_pass(0.1)
-    assert stage.call(Apply(2, US)).active
+    assert stage.call(apply(2, US)).active
     assert stage.recorder.said == [("started",), ("stopped",), ("started",)]
 
 
@@ -253,13 +283,13 @@ def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
             self.every(0.1, lambda: ticks.append(stage.network.time))
 
     stage = Stage(Ticking())
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     stage.let_pass(0.55)
     assert len(ticks) == 5
-    stage.call(Release(2, US))
+    stage.call(release(2, US))
     stage.let_pass(1.0)
     assert len(ticks) == 5
-    stage.call(Apply(3, US))
+    stage.call(apply(3, US))
     stage.let_pass(0.35)
     assert len(ticks) == 8
 
@@ -272,11 +302,11 @@ def test_a_timer_that_has_ticked_for_a_long_time_is_kept_once() -> None:
             self.every(0.1, lambda: ticks.append(stage.network.time))
 
     stage = Stage(Ticking())
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     stage.let_pass(100.05)
     assert len(ticks) == 1000
     assert len(stage.runtime._timers) == 1
-    stage.call(Release(2, US))
+    stage.call(release(2, US))
     assert not stage.runtime._timers
 
 
@@ -298,15 +328,15 @@ def test_a_component_that_is_part_of_no_ecology_says_so() -> None:
 
 def test_a_call_of_an_older_epoch_is_stale_and_names_the_newest() -> None:
     stage = Stage()
-    stage.call(Apply(5, US))
-    answer = stage.call(Release(4, US))
+    stage.call(apply(5, US))
+    answer = stage.call(release(4, US))
     assert (answer.verdict, answer.epoch) == (Verdict.STALE, 5)
     assert stage.component.active
 
 
 def test_closing_turns_the_component_off_and_ends_its_life() -> None:
     stage = Stage()
-    stage.call(Apply(1, US))
+    stage.call(apply(1, US))
     called: list[tuple[str, ...]] = []
     stage.runtime.close()
     stage.caller.roll_call(KEYS.any_life(), 1.0, called.append)
@@ -320,3 +350,218 @@ def test_closing_an_idle_component_does_not_stop_it() -> None:
     stage = Stage()
     stage.runtime.close()
     assert stage.recorder.said == []
+
+
+# Which life is meant, and who else is the component.
+
+
+@pytest.mark.parametrize("message", [apply(1, US, life="life-0"), reserve(1, US, life="life-0"), release(1, US, life="life-0")])
+def test_a_call_that_means_another_life_changes_nothing(message: Apply | Reserve | Release) -> None:
+    stage = Stage()
+    stage.call(apply(1, US, life="life-1"))
+    answer = stage.call(message)
+    assert (answer.verdict, answer.life) == (Verdict.OTHER_LIFE, "life-1")
+    assert stage.component.active
+    assert stage.recorder.said == [("started",)]
+
+
+def test_of_two_processes_that_begin_to_be_one_component_the_smaller_life_stays() -> None:
+    stage = Stage()
+    reasons: list[str] = []
+    larger = ComponentRuntime(
+        stage.network.node(), KEYS, CAP_PROFILE, Recorder(), "life-2", superseded=reasons.append
+    )
+    stage.let_pass(0.1)
+    assert reasons == [f"{CAP} is alive already, in the life life-1; this process leaves"]
+    called: list[tuple[str, ...]] = []
+    stage.caller.roll_call(KEYS.lives(CAP), 1.0, called.append)
+    stage.let_pass(2.0)
+    assert called == [(KEYS.life(CAP, "life-1"),)]
+    assert len(reasons) == 1
+    assert larger.activation.phase is ActivationPhase.IDLE
+
+
+def test_two_processes_that_see_each_other_only_a_moment_after_their_beginning_do_not_both_stay() -> None:
+    stage = Stage()
+    node = stage.network.node()
+    stage.network.cut(node, stage.network.nodes[2])
+    reasons: list[str] = []
+    ComponentRuntime(node, KEYS, CAP_PROFILE, Recorder(), "life-2", superseded=reasons.append)
+    stage.let_pass(0.5)
+    assert reasons == []
+    stage.network.reconnect(node, stage.network.nodes[2])
+    stage.let_pass(0.6)
+    assert len(reasons) == 1
+
+
+def test_a_component_that_is_superseded_is_at_rest_before_its_process_leaves() -> None:
+    stage = Stage()
+    seen: list[list[tuple[Any, ...]]] = []
+    recorder = Recorder()
+    node = stage.network.node()
+    stage.network.cut(node, stage.network.nodes[2])
+    larger = ComponentRuntime(node, KEYS, CAP_PROFILE, recorder, "life-2", superseded=lambda _: seen.append(recorder.said))
+    replies: list[Replies] = []
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(apply(1, US, life="life-2")), 1.0, replies.append)
+    stage.let_pass(0.1)
+    assert larger.active
+    stage.network.reconnect(node, stage.network.nodes[2])
+    stage.let_pass(1.0)
+    assert seen == [[("started",), ("stopped",)]]
+
+
+# Who holds it, and who comes next.
+
+
+def test_a_component_is_reserved_without_acting() -> None:
+    stage = Stage()
+    answer = stage.call(reserve(1, US))
+    assert (answer.verdict, answer.active, answer.task) == (Verdict.DONE, False, TASKS[US])
+    assert stage.recorder.said == []
+    stage.others.announce(THEM)
+    answer = stage.call(apply(1, THEM))
+    assert (answer.verdict, answer.task) == (Verdict.BUSY, TASKS[US])
+    assert stage.call(apply(2, US)).active
+    assert stage.recorder.said == [("started",)]
+
+
+def test_an_actuator_does_not_act_for_a_task_that_has_not_reserved_it() -> None:
+    stage = Stage(profile=DRIVE_PROFILE)
+    assert stage.call(apply(1, US)).verdict is Verdict.NOT_HELD
+    assert stage.recorder.said == []
+    stage.call(reserve(1, US))
+    assert stage.call(apply(1, US)).verdict is Verdict.DONE
+
+
+def test_a_component_that_is_free_is_offered_to_those_that_wait_in_order() -> None:
+    """Higher priority first, then the earlier beginning; each has a moment to come for it."""
+    stage = Stage()
+    stage.call(apply(1, US))
+    stage.others.announce(THEM)
+    for task, priority, beginning in (("late~1", 0, 9.0), ("early~1", 0, 3.0), ("high~1", 0, 1.0)):
+        message = reserve(1, THEM, task=task, priority=priority, beginning=beginning)
+        assert stage.call(message).verdict is Verdict.BUSY
+    assert stage.freed == []
+    stage.call(release(2, US))
+    stage.let_pass(0.05)
+    assert stage.freed == ["high~1"]
+    stage.let_pass(OFFER)
+    assert stage.freed == ["high~1", "early~1"]
+    assert stage.call(reserve(1, THEM, task="late~1", beginning=9.0)).verdict is Verdict.BUSY
+    assert stage.call(reserve(1, THEM, task="early~1", beginning=3.0)).verdict is Verdict.DONE
+    stage.let_pass(3 * OFFER)
+    assert stage.freed == ["high~1", "early~1"]
+
+
+def test_a_component_that_nobody_comes_for_is_offered_to_each_once_and_is_free_for_anybody_then() -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    stage.others.announce(THEM)
+    for task in ("a~1", "b~1"):
+        stage.call(reserve(1, THEM, task=task))
+    stage.call(release(2, US))
+    stage.let_pass(10 * OFFER)
+    assert stage.freed == ["a~1", "b~1"]
+    assert stage.call(apply(1, THEM, task="c~1")).verdict is Verdict.DONE
+
+
+def test_a_task_of_lower_priority_yields_when_it_is_asked_to() -> None:
+    stage = Stage()
+    stage.others.announce(THEM)
+    stage.call(apply(1, US))
+    assert stage.call(reserve(1, THEM, priority=1)).verdict is Verdict.BUSY
+    stage.let_pass(0.1)
+    assert [(fail.component, fail.cause) for fail in stage.fails] == [(CAP, Cause.YIELD)]
+    assert stage.component.active
+    stage.call(release(2, US))
+    stage.let_pass(0.1)
+    assert stage.freed == [TASKS[THEM]]
+    assert stage.call(apply(1, THEM, priority=1)).verdict is Verdict.DONE
+    stage.let_pass(2 * YIELDING)
+    assert stage.component.active
+    assert len(stage.fails) == 1
+
+
+def test_a_task_of_lower_priority_that_does_not_yield_is_preempted() -> None:
+    stage = Stage()
+    stage.others.announce(THEM)
+    stage.call(apply(1, US))
+    stage.call(reserve(1, THEM, priority=1))
+    stage.let_pass(YIELDING - 0.1)
+    assert stage.component.active
+    stage.let_pass(0.2)
+    assert stage.recorder.said == [("started",), ("stopped",)]
+    assert stage.freed == [TASKS[THEM]]
+    assert stage.call(reserve(1, THEM, priority=1)).verdict is Verdict.DONE
+
+
+def test_a_task_is_asked_to_yield_before_it_is_preempted_even_if_another_was_asked_just_before() -> None:
+    stage = Stage()
+    stage.others.announce(THEM)
+    stage.call(apply(1, US))
+    stage.call(reserve(1, THEM, priority=1))
+    stage.let_pass(YIELDING / 2)
+    stage.call(release(2, US))
+    stage.call(reserve(2, THEM, priority=1))
+    stage.call(release(3, THEM))
+    stage.call(apply(4, US))
+    stage.call(reserve(4, THEM, priority=1))
+    stage.let_pass(YIELDING - 0.1)
+    assert stage.component.active
+    assert [fail.cause for fail in stage.fails] == [Cause.YIELD] * 2
+    stage.let_pass(0.2)
+    assert not stage.component.active
+
+
+def test_tasks_of_one_priority_never_take_from_each_other() -> None:
+    stage = Stage()
+    stage.others.announce(THEM)
+    stage.call(apply(1, US, priority=1, beginning=9.0))
+    stage.call(reserve(1, THEM, priority=1, beginning=1.0))
+    stage.let_pass(10 * YIELDING)
+    assert stage.component.active
+    assert stage.fails == []
+
+
+def test_a_component_that_is_asked_to_yield_still_feeds_those_that_follow_it() -> None:
+    class Watchful(Recorder):
+        def unfed(self, port: str) -> None:
+            self.said.append(("unfed", port))
+
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.others.announce(THEM)
+    stage.call(follow())
+    tracker._put_fail(Cause.YIELD, "somebody asks for it")
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",)]
+
+
+def test_a_shared_component_acts_while_one_of_its_tasks_has_applied_to_it() -> None:
+    stage = Stage(profile=replace(CAP_PROFILE, shareable=True))
+    stage.others.announce(THEM)
+    for supervisor in (US, THEM):
+        assert stage.call(apply(1, supervisor)).verdict is Verdict.DONE
+    assert stage.call(apply(1, THEM, values={"goal": Literal("x")}, task="other~1")).verdict is Verdict.BUSY
+    assert stage.call(release(2, US)).verdict is Verdict.DONE
+    assert stage.component.active
+    assert (stage.state(TASKS[THEM]).active, stage.state(TASKS[US]).task) == (True, TASKS[THEM])
+    stage.call(release(2, THEM))
+    assert stage.recorder.said == [("started",), ("stopped",)]
+
+
+def test_a_component_that_failed_stays_failed_for_an_apply_that_comes_late() -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    stage.component.fail("lost her")
+    stage.let_pass(0.1)
+    assert stage.call(apply(1, US)).verdict is Verdict.REFUSED
+    assert not stage.component.active
+
+
+def test_what_a_component_says_of_itself_names_its_process_and_who_holds_it_since_when() -> None:
+    stage = Stage()
+    stage.call(apply(1, US, priority=3, beginning=12.0))
+    answer = stage.state()
+    assert (answer.task, answer.priority, answer.beginning, answer.supervisor) == (TASKS[US], 3, 12.0, US)
+    assert answer.place == f"process {os.getpid()} on {socket.gethostname()}"

@@ -1,0 +1,160 @@
+"""A component that is blind: an actuator rests after as long as it tolerates, and starts again when it is fed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from selfconf.model.profile import Input, Ports
+from selfconf.model.term import IRI, Literal
+from selfconf.protocol.messages import Cause, Wire
+from selfconf.sdk.blindness import TOLERATES
+from selfconf.sdk.component import Refused
+from selfconf.sdk.runtime import ComponentRuntime
+from tests.lab import Recorder
+from tests.sdk.stage import DRIVE, DRIVE_PROFILE, KEYS, TRACKER, US, Stage, apply, follow, release, reserve
+
+
+class Driving(Recorder):
+    """Writes down when it is blind, and counts the ticks of a timer that it begins in `started`."""
+
+    ticks = 0
+
+    def started(self) -> None:
+        super().started()
+        self.every(0.1, self.tick)
+
+    def tick(self) -> None:
+        self.ticks += 1
+
+    def unfed(self, port: str) -> None:
+        self.said.append(("unfed", port))
+
+    def fed(self, port: str) -> None:
+        self.said.append(("fed", port))
+
+
+def driving(tolerates: float | None = None) -> tuple[Stage, ComponentRuntime]:
+    """An actuator that acts and is fed by a tracker."""
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, tolerates=tolerates))
+    tracker = stage.neighbour()
+    stage.call(reserve())
+    stage.call(follow(values={"goal": Literal("x")}))
+    tracker.emit("pose", 1, None)
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("goal", "x"), ("started",), ("position", 1)]
+    stage.recorder.said.clear()
+    return stage, tracker
+
+
+@pytest.mark.parametrize(("tolerates", "seconds"), [(None, TOLERATES), (0.3, 0.3), (5.0, 5.0)])
+def test_an_actuator_rests_when_it_has_been_blind_for_longer_than_it_tolerates(
+    tolerates: float | None, seconds: float
+) -> None:
+    stage, tracker = driving(tolerates)
+    tracker.bus.close()
+    stage.let_pass(seconds - 0.05)
+    assert stage.recorder.said == [("unfed", "position")]
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
+    stage.let_pass(100)
+    assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
+
+
+def test_it_is_still_held_and_starts_again_with_its_parameters_when_it_is_fed() -> None:
+    stage, tracker = driving()
+    tracker.bus.close()
+    stage.let_pass(2 * TOLERATES)
+    assert stage.state().active
+    stage.recorder.said.clear()
+    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("goal", "x"), ("started",), ("fed", "position"), ("position", 2)]
+    assert stage.fails == []
+
+
+def test_an_actuator_that_is_fed_again_in_time_does_not_rest() -> None:
+    stage, tracker = driving()
+    tracker.bus.close()
+    stage.let_pass(TOLERATES / 2)
+    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.let_pass(10 * TOLERATES)
+    assert stage.recorder.said == [("unfed", "position"), ("fed", "position"), ("position", 2)]
+
+
+def test_its_timers_rest_too_and_are_not_doubled_when_it_starts_again() -> None:
+    stage, tracker = driving()
+    component = stage.component
+    assert isinstance(component, Driving)
+    tracker.bus.close()
+    stage.let_pass(2 * TOLERATES)
+    component.ticks = 0
+    stage.let_pass(1.0)
+    assert component.ticks == 0
+    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.let_pass(1.05)
+    assert component.ticks == 10
+
+
+def test_a_component_that_feeds_others_is_told_that_it_is_blind_and_acts_on() -> None:
+    stage = Stage(Driving())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    stage.let_pass(0.1)
+    tracker.bus.close()
+    stage.let_pass(100)
+    assert stage.recorder.said == [("started",), ("unfed", "position")]
+
+
+def test_an_actuator_that_cannot_start_again_fails() -> None:
+    stage, tracker = driving()
+    tracker.bus.close()
+    stage.let_pass(2 * TOLERATES)
+    stage.recorder.refusal = Refused("the battery is empty")
+    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.let_pass(0.1)
+    assert [(fail.component, fail.cause, fail.detail) for fail in stage.fails] == [
+        (DRIVE, Cause.FAIL, "the battery is empty")
+    ]
+    assert not stage.component.active
+
+
+def test_an_actuator_that_is_released_while_it_rests_stays_off() -> None:
+    stage, tracker = driving()
+    tracker.bus.close()
+    stage.let_pass(2 * TOLERATES)
+    stage.call(release(2))
+    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.let_pass(10)
+    assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
+
+
+def test_an_actuator_that_is_released_while_it_is_blind_is_stopped_once() -> None:
+    stage, tracker = driving()
+    tracker.bus.close()
+    stage.let_pass(TOLERATES / 2)
+    stage.call(release(2))
+    stage.let_pass(10)
+    assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
+
+
+def test_each_input_may_be_unfed_for_that_long_by_itself() -> None:
+    inputs = (Input("left", IRI("urn:s:Pose")), Input("right", IRI("urn:s:Pose")))
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, ports=Ports(inputs)))
+    wires = {"left": (Wire(TRACKER, "pose"),), "right": (Wire(IRI("urn:c:other"), "pose"),)}
+    left = stage.neighbour()
+    right = stage.network.node()
+    end_right = right.announce(KEYS.life(IRI("urn:c:other"), "1"))
+    stage.call(reserve())
+    stage.call(apply(1, US, wires))
+    stage.let_pass(0.1)
+    left.bus.close()
+    stage.let_pass(0.8 * TOLERATES)
+    end_right()
+    stage.let_pass(0.1)
+    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.let_pass(0.7 * TOLERATES)
+    assert ("stopped",) not in stage.recorder.said
+    stage.let_pass(0.3 * TOLERATES)
+    assert stage.recorder.said[-1] == ("stopped",)

@@ -1,0 +1,84 @@
+"""The thread on which the code of components runs: its order, and the watch over code that does not return."""
+
+from __future__ import annotations
+
+import threading
+
+from selfconf.sdk.code_thread import CodeThread
+
+
+def test_without_a_thread_of_its_own_everything_runs_at_once() -> None:
+    ran: list[str] = []
+    code = CodeThread(inline=True)
+    code.signal(lambda: ran.append("signal"))
+    code.call(lambda: ran.append("call"))
+    assert ran == ["signal", "call"]
+
+
+def test_calls_run_before_signals_and_each_in_their_order() -> None:
+    ran: list[str] = []
+    code = CodeThread(inline=False)
+    for number in range(2):
+        code.signal(lambda number=number: ran.append(f"signal {number}"))  # type: ignore[misc]  # a default binds it
+    for number in range(2):
+        code.call(lambda number=number: ran.append(f"call {number}"))  # type: ignore[misc]  # a default binds it
+    assert ran == []
+    code.poll()
+    assert ran == ["call 0", "call 1", "signal 0", "signal 1"]
+
+
+def test_a_call_that_comes_while_signals_run_is_next() -> None:
+    ran: list[str] = []
+    code = CodeThread(inline=False)
+    code.signal(lambda: (ran.append("first"), code.call(lambda: ran.append("call"))))
+    code.signal(lambda: ran.append("second"))
+    code.poll()
+    assert ran == ["first", "call", "second"]
+
+
+def test_it_waits_for_the_first_thing_to_do_and_may_be_woken() -> None:
+    code = CodeThread(inline=False)
+    ran, ended = threading.Event(), threading.Event()
+    thread = threading.Thread(target=code.run, args=(ended.is_set,))
+    thread.start()
+    code.signal(ran.set)
+    assert ran.wait(5.0)
+    ended.set()
+    code.wake_up()
+    thread.join(5.0)
+    assert not thread.is_alive()
+
+
+def test_code_that_has_not_returned_in_its_time_is_seen_by_another_thread_and_only_that() -> None:
+    code = CodeThread(inline=False)
+    begun, end = threading.Event(), threading.Event()
+
+    def hang() -> None:
+        begun.set()
+        end.wait(10.0)
+
+    assert code.overdue() is None
+    code.call(lambda: code.limited("me", "received", 0.0, hang))
+    thread = threading.Thread(target=code.poll)
+    thread.start()
+    assert begun.wait(5.0)
+    overdue = code.overdue()
+    assert overdue is not None
+    assert (overdue.owner, overdue.what, overdue.limit) == ("me", "received", 0.0)
+    assert code.overdue() is overdue
+    end.set()
+    thread.join(5.0)
+    assert code.overdue() is None
+
+
+def test_code_within_its_time_is_not_overdue_and_what_breaks_in_it_breaks_out() -> None:
+    code = CodeThread(inline=True)
+    seen: list[object] = []
+    code.limited("me", "started", 60.0, lambda: seen.append(code.overdue()))
+    assert seen == [None]
+    try:
+        code.limited("me", "started", 60.0, lambda: 1 / 0)
+    except ZeroDivisionError:
+        seen.append("broke")
+    assert seen == [None, "broke"]
+    assert code.running is None

@@ -1,0 +1,337 @@
+"""The code of a component on a thread of its own: what is not run any more, and what a stop ends at once."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+import time
+from typing import Any
+
+import pytest
+
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Replies, Urgency
+from selfconf.model.term import IRI, Literal
+from selfconf.protocol.activation import ActivationPhase
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import Apply, CallAnswer, Cause, Release, Reserve, Stamp, Verdict, Wire
+from selfconf.sdk import component_code
+from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.runtime import YIELDING, ComponentRuntime
+from selfconf.sdk.supervision import GRACE
+from tests.lab import Recorder
+from tests.sdk.living import PATIENCE, LivingStage, until
+from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, THEM, TRACKER, US, apply, follow, release, reserve
+
+
+class Split:
+    """A component in simulated time whose code runs when the test says so, as if it were busy until then."""
+
+    def __init__(self, component: Component) -> None:
+        self.network, self.code = Network(), CodeThread(inline=False)
+        self.caller = self.network.node()
+        self.leave = self.caller.announce(US)
+        self.caller.announce(THEM)
+        node = self.network.node()
+        self.runtime = ComponentRuntime(node, KEYS, CAP_PROFILE, component, "life-1", self.code)
+        self.answers: list[CallAnswer] = []
+
+    def let_pass(self, seconds: float = 0.1) -> None:
+        """Simulated time passes; the component's code does not run."""
+        self.network.run(lambda: False, seconds)
+
+    def call(self, message: Reserve | Apply | Release) -> None:
+        """Make a call; its answer may come later."""
+
+        def answered(replies: Replies) -> None:
+            self.answers += [decode(sample.payload, CallAnswer) for sample in replies.samples]
+
+        name = {Reserve: "reserve", Apply: "apply", Release: "release"}[type(message)]
+        self.caller.ask(KEYS.call(CAP, name), encode(message), 100.0, answered)
+        self.let_pass()
+
+    def run_code(self) -> None:
+        """The component's code has time."""
+        self.code.poll()
+        self.let_pass()
+        self.code.poll()
+        self.let_pass()
+
+    @property
+    def verdicts(self) -> list[Verdict]:
+        """The answers so far."""
+        return [answer.verdict for answer in self.answers]
+
+
+def test_a_call_is_answered_when_the_code_has_done_what_it_asks_for() -> None:
+    split = Split(recorder := Recorder())
+    split.call(apply(1, US, values={"goal": Literal("x")}))
+    assert (split.answers, recorder.said) == ([], [])
+    split.run_code()
+    assert recorder.said == [("goal", "x"), ("started",)]
+    assert split.verdicts == [Verdict.DONE]
+
+
+def test_a_component_that_is_released_before_its_code_has_begun_to_start_is_not_started() -> None:
+    split = Split(recorder := Recorder())
+    split.call(apply(1, US))
+    split.call(release(2, US))
+    split.run_code()
+    assert recorder.said == []
+    assert set(split.verdicts) == {Verdict.REFUSED, Verdict.DONE}
+
+
+def test_a_component_that_is_released_while_a_parameter_is_set_is_not_started() -> None:
+    class Interrupted(Recorder):
+        def parameter_set(self, name: str, value: Any) -> None:
+            super().parameter_set(name, value)
+            split.call(release(2, US))
+
+    split = Split(recorder := Interrupted())
+    split.call(apply(1, US, values={"goal": Literal("x")}))
+    split.run_code()
+    assert recorder.said == [("goal", "x")]
+    assert not split.runtime.active
+    assert set(split.verdicts) == {Verdict.REFUSED, Verdict.DONE}
+
+
+def test_a_component_that_is_released_while_it_starts_is_inactive_at_once_and_stopped_afterwards() -> None:
+    class Interrupted(Recorder):
+        def started(self) -> None:
+            super().started()
+            split.call(release(2, US))
+            self.said.append(("active", self.active))
+
+    split = Split(recorder := Interrupted())
+    split.call(apply(1, US))
+    split.run_code()
+    assert recorder.said == [("started",), ("active", False), ("stopped",)]
+    assert split.runtime.activation.phase is ActivationPhase.IDLE
+
+
+def test_a_release_is_answered_when_the_code_is_at_rest_and_calls_that_come_meanwhile_wait() -> None:
+    split = Split(recorder := Recorder())
+    split.call(apply(1, US))
+    split.run_code()
+    split.call(release(2, US))
+    assert not split.runtime.active
+    split.call(apply(3, THEM))
+    assert split.verdicts == [Verdict.DONE]
+    split.run_code()
+    assert split.verdicts == [Verdict.DONE] * 3
+    assert recorder.said == [("started",), ("stopped",), ("started",)]
+
+
+def test_an_apply_that_changes_a_parameter_while_the_code_starts_is_obeyed_after_the_start() -> None:
+    class Picky(Recorder):
+        def parameter_set(self, name: str, value: Any) -> None:
+            super().parameter_set(name, value)
+            if value == "wrong":
+                raise Refused("not there")
+
+    split = Split(recorder := Picky())
+    split.call(apply(1, US, values={"goal": Literal("x")}))
+    split.call(apply(2, US, values={"goal": Literal("wrong")}))
+    split.run_code()
+    assert recorder.said == [("goal", "x"), ("started",), ("goal", "wrong")]
+    assert [(answer.verdict, answer.detail) for answer in split.answers] == [
+        (Verdict.DONE, ""),
+        (Verdict.REFUSED, "not there"),
+    ]
+
+
+def test_signals_that_wait_are_not_delivered_after_a_stop() -> None:
+    split = Split(recorder := Recorder())
+    split.call(follow())
+    split.run_code()
+    publisher = split.caller.publisher(KEYS.output(TRACKER, "pose"), Urgency.SIGNAL)
+    publisher.put(b"1", encode(Stamp(TRACKER, "l", 1, 0.0)))
+    split.let_pass()
+    split.call(release(2, US))
+    split.run_code()
+    assert recorder.said == [("started",), ("stopped",)]
+
+
+def test_the_grace_period_ends_and_a_component_changes_hands_though_its_code_is_busy() -> None:
+    split = Split(Recorder())
+    split.call(apply(1, US))
+    split.run_code()
+    split.leave()
+    split.let_pass(GRACE + 0.1)
+    assert not split.runtime.active
+    assert split.runtime.activation.phase is ActivationPhase.IDLE
+
+
+def test_a_component_is_preempted_though_its_code_is_busy() -> None:
+    split = Split(Recorder())
+    split.call(apply(1, US))
+    split.run_code()
+    split.call(reserve(1, THEM, priority=1))
+    split.let_pass(YIELDING + 0.1)
+    assert not split.runtime.active
+    split.run_code()
+    split.call(reserve(1, THEM, priority=1))
+    assert split.verdicts == [Verdict.DONE, Verdict.BUSY, Verdict.DONE]
+
+
+def test_a_timer_that_is_late_is_run_once_and_not_made_up_for() -> None:
+    class Ticking(Recorder):
+        def started(self) -> None:
+            self.every(0.1, lambda: self.said.append(("tick",)))
+
+    split = Split(recorder := Ticking())
+    split.call(apply(1, US))
+    split.run_code()
+    recorder.said.clear()
+    split.let_pass(10.0)
+    split.code.poll()
+    assert recorder.said == [("tick",)]
+
+
+# In real time, with a real thread.
+
+
+class Hanging(Component):
+    """Hangs where it is told to, until the end of the test."""
+
+    component = "urn:c:lamp"
+
+    def __init__(self, stage: LivingStage, where: str) -> None:
+        self.stage, self.where, self.begun = stage, where, threading.Event()
+
+    def hang(self, where: str) -> None:
+        if where == self.where:
+            self.began = time.monotonic()
+            self.begun.set()
+            self.stage.release_code.wait(PATIENCE)
+
+    def started(self) -> None:
+        self.every(0.05, lambda: self.hang("every"))
+        self.hang("started")
+
+    def parameter_set(self, name: str, value: Any) -> None:
+        self.hang("parameter goal")
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.hang("received")
+
+
+LAMP = """:lamp a sc:Component, :Lamp ; sc:deadline [ sc:value 0.3 ; sc:unit unit:SEC ] ;
+    sc:hasInput [ sc:name "level" ; sc:signalType :Level ] ; sc:hasOutput [ sc:name "light" ; sc:signalType :Light ] ;
+    sc:hasParameter [ sc:name "goal" ; sc:parameterType :Goal ] ."""
+SOURCE = IRI("urn:c:source")
+
+
+def hanging(living: LivingStage, where: str) -> Hanging:
+    """A lamp that hangs as soon as it is activated, or gets a signal."""
+    lamp = living.component(living.advertised(Hanging, LAMP)(living, where))
+    inputs = {"level": (Wire(SOURCE, "level"),)}
+    living.apply("urn:c:lamp", inputs=inputs, values={"goal": Literal("x")})
+    if where == "received":
+        assert until(lambda: lamp.active)
+        source = living.caller.publisher(living.keys.output(SOURCE, "level"), Urgency.SIGNAL)
+        until(lambda: source.put(b"1", encode(Stamp(SOURCE, "l", 1, 0.0))) or lamp.begun.is_set())
+    assert lamp.begun.wait(PATIENCE)
+    return lamp
+
+
+@pytest.mark.parametrize("where", ["every", "received", "parameter goal"])
+def test_code_that_hangs_is_a_failure_within_half_a_second_of_its_deadline(living: LivingStage, where: str) -> None:
+    lamp = hanging(living, where)
+    assert until(lambda: living.fails)
+    moment, fail = living.fails[0]
+    assert (fail.component, fail.cause) == ("urn:c:lamp", Cause.HUNG)
+    assert fail.detail == f"`{where}` has not returned within 0.3 s"
+    assert 0.3 <= moment - lamp.began <= 0.8
+    assert not lamp.active
+    assert living.hangs == [f"urn:c:lamp: {fail.detail}"]
+    state = living.call("urn:c:lamp", "state")
+    assert until(lambda: state, 1.0)
+    assert not state[0].active
+
+
+def test_starting_may_take_longer_than_everything_else(living: LivingStage, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(component_code, "STARTING_DEADLINE", 0.7)
+    lamp = hanging(living, "started")
+    assert until(lambda: living.fails)
+    moment, fail = living.fails[0]
+    assert fail.detail == "`started` has not returned within 0.7 s"
+    assert 0.7 <= moment - lamp.began <= 1.2
+
+
+def test_a_release_turns_a_component_off_while_its_code_hangs_and_is_answered_when_that_has_returned(
+    living: LivingStage,
+) -> None:
+    lamp = hanging(living, "every")
+    assert lamp.active
+    answers = living.call("urn:c:lamp", "release", Release(2, living.supervisor, "task~1"))
+    assert until(lambda: not lamp.active, 1.0)
+    state = living.call("urn:c:lamp", "state")
+    assert until(lambda: state, 1.0)
+    assert (state[0].active, state[0].task) == (False, "")
+    assert answers == []
+    living.release_code.set()
+    assert until(lambda: answers)
+    assert answers[0].verdict is Verdict.DONE
+
+
+def test_a_component_whose_code_hangs_is_off_when_its_configurator_is_gone(living: LivingStage) -> None:
+    slow = LAMP.replace("0.3", "60")
+    lamp = living.component(living.advertised(Hanging, slow)(living, "every"))
+    answers = living.apply("urn:c:lamp")
+    assert lamp.begun.wait(PATIENCE)
+    assert until(lambda: answers)
+    living.leave()
+    began = time.monotonic()
+    assert until(lambda: not lamp.active, 5 * GRACE)
+    assert GRACE - 0.1 <= time.monotonic() - began <= GRACE + 0.5
+    assert living.fails == []
+
+
+def test_a_component_that_is_too_slow_for_its_signals_is_released_at_once_and_hears_the_newest(
+    living: LivingStage,
+) -> None:
+    class Slow(Component):
+        component = "urn:c:lamp"
+
+        def __init__(self) -> None:
+            self.heard: list[int] = []
+
+        def received(self, port: str, signal: Signal) -> None:
+            self.heard.append(signal.value)
+            pause.wait(0.05)
+
+    pause = threading.Event()
+    lamp = living.component(living.advertised(Slow, LAMP)())
+    answers = living.apply("urn:c:lamp", inputs={"level": (Wire(SOURCE, "level", 0.001),)})
+    assert until(lambda: answers)
+    source = living.caller.publisher(living.keys.output(SOURCE, "level"), Urgency.SIGNAL)
+    numbers = itertools.count(1)
+
+    def issue() -> bool:
+        for number in itertools.islice(numbers, 500):
+            source.put(b"%d" % number, encode(Stamp(SOURCE, "l", number, 0.0)))
+        return len(lamp.heard) > 3
+
+    assert until(issue)
+    assert lamp.heard[-1] - lamp.heard[0] > len(lamp.heard)
+    began = time.monotonic()
+    released = living.call("urn:c:lamp", "release", Release(2, living.supervisor, "task~1"))
+    assert until(lambda: released)
+    assert time.monotonic() - began < 0.5
+    heard = len(lamp.heard)
+    issue()
+    state = living.call("urn:c:lamp", "state")
+    assert until(lambda: state)
+    assert len(lamp.heard) == heard
+
+
+def test_fail_may_be_raised_from_any_thread(living: LivingStage) -> None:
+    lamp = living.component(living.advertised(Hanging, LAMP)(living, "nowhere"))
+    answers = living.apply("urn:c:lamp")
+    assert until(lambda: answers)
+    lamp.fail("told to")
+    assert not lamp.active
+    assert until(lambda: living.fails)
+    assert living.fails[0][1].detail == "told to"
