@@ -17,7 +17,7 @@ from selfconf.model.template import Role
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.rdf.eligibility import CompiledRole, Exclusion, exclusions
-from selfconf.render import Names
+from selfconf.render import Names, holder_text
 
 
 class RolePartition(Tabular):
@@ -66,7 +66,8 @@ class RolePartition(Tabular):
     def _cells(self) -> Iterator[list[str]]:
         names = self._inquiry.task.names
         for number, component in enumerate(self.eligible, 1):
-            yield [names(component), str(number), str(self.held.get(component, ""))]
+            held = self.held.get(component)
+            yield [names(component), str(number), "" if held is None else holder_text(held)]
         yield from ([names(one.component), "no", ", ".join(map(str, one.obstacles))] for one in self.excluded)
 
 

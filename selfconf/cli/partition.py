@@ -76,10 +76,12 @@ def _exported(inquiry: Inquiry, how: str) -> str:
 
 
 def _lines(one: RolePartition, names: Names) -> Iterator[str]:
+    from selfconf.render import holder_text
+
     yield f"{names(one.role.iri)}  {len(one.eligible) or 'nobody is'} eligible"
     for number, component in enumerate(one.eligible, 1):
         held = one.held.get(component)
-        yield f"  {number}. {names(component)}" + (f"  ({held})" if held is not None else "")
+        yield f"  {number}. {names(component)}" + (f"  ({holder_text(held)})" if held is not None else "")
     if one.excluded:
         yield "  kept out"
         yield from (f"    {names(e.component)}: {', '.join(map(str, e.obstacles))}" for e in one.excluded[:SHOWN])

@@ -108,7 +108,8 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
             continue
         pending.add((component, Call.APPLY))
         held[component] = replace(before, inputs=wires[component], values=values[component], active=True)
-        effects.append(ApplyTo(component, state.epoch, wires[component], values[component]))
+        gently = state.fallback is not None
+        effects.append(ApplyTo(component, state.epoch, wires[component], values[component], gently))
     return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
 
 

@@ -184,7 +184,8 @@ class Calls:
             return
         inputs = self._with_promises(effect.inputs)
         claim = self._claim(effect.component, effect.epoch)
-        self._call(effect.component, Call.APPLY, Apply(**claim, inputs=inputs, values=dict(effect.values)))
+        message = Apply(**claim, inputs=inputs, values=dict(effect.values), gently=effect.gently)
+        self._call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         known, before = self._connections.get(effect.component, (life, frozenset()))
         for c in sorted(connections - before if known == life else connections):

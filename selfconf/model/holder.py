@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 
@@ -25,5 +24,4 @@ class Holder:
         return self.task.partition("~")[0]
 
     def __str__(self) -> str:
-        since = time.strftime("%H:%M:%S", time.localtime(self.beginning))
-        return f"the task {self.name} (priority {self.priority}) holds it since {since}"
+        return f"the task {self.name} (priority {self.priority}) holds it"

@@ -242,6 +242,7 @@ _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "values"): _values for kind in (Reserve, Apply)},
     (Apply, "standby"): _inputs,
     (Reserve, "waits"): _truth,
+    (Apply, "gently"): _truth,
     (CallAnswer, "place"): _text,
     (CallAnswer, "verdict"): _verdict,
     (CallAnswer, "active"): _truth,

@@ -81,6 +81,8 @@ class Apply(Claim):
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     standby: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
+    gently: bool = False
+    """Whether an input is to follow the output before until the new one has issued a signal: make before break."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ from selfconf.render.text import (
     configuration_text,
     consequences_text,
     cost_text,
+    holder_text,
     refusal_text,
     undecided_text,
 )
@@ -40,6 +41,7 @@ __all__ = [
     "count",
     "diagram",
     "holder_body",
+    "holder_text",
     "html_sections",
     "html_table",
     "html_text",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
+from selfconf.model.holder import Holder
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Reason, Refusal, Undecided
@@ -87,7 +89,7 @@ def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
         lines += [_placed(f"  {_near_miss(miss, name)}", miss) for miss in refusal.near_misses[:most]]
         if len(refusal.near_misses) > most:
             lines.append(f"  and {len(refusal.near_misses) - most} more")
-    lines += [f"held by another task: {name(component)}: {holder}" for component, holder in refusal.held]
+    lines += [f"held by another task: {name(component)}: {holder_text(holder)}" for component, holder in refusal.held]
     if refusal.repairs or refusal.hint:
         lines.append("what would mend it")
         lines += [_placed(f"  {repair}", repair) for repair in refusal.repairs]
@@ -95,6 +97,11 @@ def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
         lines.append(f"  {refusal.hint}")
     lines += [f"the site {site} lives and did not answer in full" for site in refusal.missing_sites]
     return "\n".join(lines)
+
+
+def holder_text(holder: Holder) -> str:
+    """Who holds a component, and since when."""
+    return f"{holder} since {time.strftime('%H:%M:%S', time.localtime(holder.beginning))}"
 
 
 def _placed(sentence: str, fact: Reason | Relaxation | NearMiss) -> str:

@@ -7,14 +7,17 @@ a call of a configurator nor the end of its life waits for that code, and so tha
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from pathlib import Path
 from typing import TypeVar
 
-from selfconf import files
+from selfconf import files, library
 from selfconf.bus.port import Bus, Replies
 from selfconf.errors import AuthorError, NetworkError, PeerError, ProgrammerError
 from selfconf.model.profile import Profile
+from selfconf.model.signal_fields import SignalFields
+from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer
@@ -54,13 +57,12 @@ class Host:
         Raises AuthorError for an advertisement that cannot be read, and NetworkError if the component lives already.
         """
         profile = profile_of(type(component))
+        fields = signal_fields_of(type(component), profile)
         self._check_alone(profile)
 
         def join(done: Callable[[ComponentRuntime], None]) -> None:
             done(
-                ComponentRuntime(
-                    self.bus, self.keys, profile, component, life, self.code, superseded=self._be_superseded
-                )
+                ComponentRuntime(self.bus, self.keys, profile, component, life, self.code, self._be_superseded, fields)
             )
 
         self.runtimes.append(self._on_bus_thread(join))
@@ -160,6 +162,16 @@ class Host:
             if runtime.code is overdue.owner:
                 runtime.hung(overdue.what, overdue.limit)
                 self._hung(f"{runtime.profile.component}: `{overdue.what}` has not returned within {overdue.limit:g} s")
+
+
+def signal_fields_of(kind: type[Component], profile: Profile) -> Mapping[IRI, SignalFields]:
+    """The fields of the signals that a component emits, as its advertisement and the ontologies of selfconf say."""
+    return _signal_fields(kind.advertisement_path(), frozenset(port.signal for port in profile.outputs))
+
+
+@cache
+def _signal_fields(path: Path, signals: frozenset[IRI]) -> Mapping[IRI, SignalFields]:
+    return files.signal_fields([path, *library.ontologies()], signals) if signals else {}
 
 
 def profile_of(kind: type[Component]) -> Profile:

@@ -46,6 +46,10 @@ JUST_COME = 0.5
 """Seconds for which the newest signal of an output that stood by counts when the output becomes an input's own."""
 EVENTS = 1000
 """How many signals of an output that promises no rate wait at most, unless the input says otherwise."""
+HANDOVER = 2.0
+"""Seconds for which an input follows an output that is to be let go of, while the new one issues nothing."""
+HANDOVER_CHECK = 0.01
+"""How often, in seconds, it is looked whether the new one has."""
 LAST_SIGNAL = 1.0
 """Seconds that an output may take to say its last signal; a later one comes by itself."""
 
@@ -69,6 +73,12 @@ class Inputs:
         self._bus, self._keys, self._code, self._events = bus, keys, code, events
         self._depths = {port.name: port.depth for port in profile.inputs}
         self._subscriptions: dict[tuple[str, Wire], InputSubscription] = {}
+        self._wanted: frozenset[tuple[str, Wire]] = frozenset()
+        self._spare: frozenset[tuple[str, Wire]] = frozenset()
+        """Which outputs each input is to follow, and which stand by."""
+        self._handing_over: set[str] = set()
+        """The inputs that follow what they followed before as well, until the new output has issued a signal."""
+        self._handed_over_by = 0.0
         self.dropped = 0
         """How many signals were dropped because the component's code was too slow, of subscriptions that have ended."""
 
@@ -86,14 +96,37 @@ class Inputs:
                 self._subscriptions[port, wire] = self._subscription(port, wire)
         fresh = {port for port, wires in message.inputs.items() if before.get(port) and not before[port] & {*wires}}
         waiting = {port for port in fresh if not any(self._subscriptions[port, w].heard for w in message.inputs[port])}
-        for port in sorted(waiting):
+        self._handing_over = waiting if message.gently else set()
+        self._handed_over_by = self._bus.now() + HANDOVER
+        for port in sorted(waiting - self._handing_over):
             self._events.unfed(port)
+        self._wanted, self._spare = frozenset(wanted), frozenset(spare)
+        for key in wanted:
+            self._subscriptions[key].unmute()
+        self._let_go()
+
+    def when_settled(self, action: Callable[[], None]) -> None:
+        """Do something once no input follows an output any more that it is to let go of."""
+        if not self._handing_over:
+            action()
+            return
+        late = self._bus.now() > self._handed_over_by
+        for port in sorted(self._handing_over):
+            fed = any(s.issued for key, s in self._subscriptions.items() if key[0] == port and key in self._wanted)
+            if fed or late:
+                self._handing_over.discard(port)
+            if late and not fed:
+                self._events.unfed(port)
+        self._let_go()
+        self._bus.later(HANDOVER_CHECK if self._handing_over else 0.0, lambda: self.when_settled(action))
+
+    def _let_go(self) -> None:
+        """End or mute what no input is to follow any more; an input that is handed over goes on following it."""
         for key, subscription in list(self._subscriptions.items()):
-            if key in wanted:
-                subscription.unmute()
+            if key in self._wanted or (key[0] in self._handing_over and not subscription.muted):
                 continue
             subscription.mute()
-            if key not in spare:
+            if key not in self._spare:
                 del self._subscriptions[key]
                 self._bus.wake_up(subscription.end)
                 self.dropped += subscription.dropped
@@ -104,6 +137,7 @@ class Inputs:
             subscription.end()
             self.dropped += subscription.dropped
         self._subscriptions.clear()
+        self._handing_over = set()
 
     @property
     def followed(self) -> set[tuple[str, Wire]]:
@@ -162,6 +196,11 @@ class InputSubscription:
         self._deadline: Undo | None = None
         self._declared = [bus.subscribe(keys.output(wire.component, wire.output), self._received, direct=True)]
         bus.later(SIGNALS_FIRST, self._watch)
+
+    @property
+    def issued(self) -> bool:
+        """Whether the output has issued a signal since it is listened to."""
+        return self._heard_at >= 0.0
 
     @property
     def heard(self) -> bool:

@@ -10,12 +10,14 @@ from __future__ import annotations
 import itertools
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Profile
+from selfconf.model.signal_fields import SignalFields
+from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Stamp
@@ -33,9 +35,22 @@ to the call and the watch for the supervisor's life may come later; sent at once
 class Outputs:
     """The outputs of one component in one life."""
 
-    def __init__(self, bus: Bus, keys: Keys, profile: Profile, life: str, active: Callable[[], bool]) -> None:
-        """`active` says whether the component is active: what it emits otherwise is dropped."""
-        self._profile, self._life, self._active = profile, life, active
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        profile: Profile,
+        life: str,
+        active: Callable[[], bool],
+        fields: Mapping[IRI, SignalFields],
+        malformed: Callable[[str], None],
+    ) -> None:
+        """`active` says whether the component is active: what it emits otherwise is dropped.
+
+        `fields` are those of the kinds of signals; `malformed` hears what is wrong with a signal that is not issued.
+        """
+        self._profile, self._life, self._active, self._malformed = profile, life, active, malformed
+        self._fields = {port.name: fields[port.signal] for port in profile.outputs if port.signal in fields}
         self._sequence = itertools.count(1)
         self._last: dict[str, tuple[bytes, bytes]] = {}
         """The last signal of each output in the present activation, with its attachment."""
@@ -49,11 +64,19 @@ class Outputs:
         self._served: Undo = bus.serve(keys.outputs(profile.component), self._answer) if self._names else lambda: None
 
     def emit(self, port: str, value: Any, moment: float | None) -> None:
-        """Issue a signal; may be called from any thread. Raises ProgrammerError for what cannot be issued."""
+        """Issue a signal; may be called from any thread. Raises ProgrammerError for what JSON cannot say.
+
+        A signal that is not of the kind that the output promises is not issued.
+        """
         output = self._publishers.get(port)
         if output is None:
             raise ProgrammerError(f"{self._profile.component.short} advertises no output {port!r}")
         if not self._active():
+            return
+        fields = self._fields.get(port)
+        problem = None if fields is None else fields.problem(value)
+        if problem is not None:
+            self._malformed(f"what it emits on {port!r} {problem}")
             return
         stamp = encode(
             Stamp(self._profile.component, self._life, next(self._sequence), time.time() if moment is None else moment)

@@ -13,15 +13,17 @@ import logging
 import os
 import secrets
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
 from selfconf.bus.port import Bus, Request, Undo, Urgency
 from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
+from selfconf.model.signal_fields import SignalFields
+from selfconf.model.term import IRI
 from selfconf.protocol import activation as table
-from selfconf.protocol.activation import Activation, ActivationStep
+from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of, life_of, owner_of, task_name
 from selfconf.protocol.messages import (
@@ -75,8 +77,12 @@ class ComponentRuntime:
         life: str = "",
         code_thread: CodeThread | None = None,
         superseded: Callable[[str], None] = lambda reason: None,
+        fields: Mapping[IRI, SignalFields] | None = None,
     ) -> None:
-        """`superseded` is called when another process is the same component, and this one has to go."""
+        """`superseded` is called when another process is the same component, and this one has to go.
+
+        `fields` are those of the kinds of signals that the component emits, as far as they are known.
+        """
         self.bus, self.keys, self.profile, self.component = bus, keys, profile, component
         self.life = life or secrets.token_hex(4)
         """Which incarnation of the component this is."""
@@ -94,7 +100,9 @@ class ComponentRuntime:
         self._after_stop: list[Callable[[], None]] = []
         """What waits for the code to be at rest."""
         component._runtime = self
-        self.outputs = Outputs(bus, keys, profile, self.life, lambda: self.active)
+        self.outputs = Outputs(
+            bus, keys, profile, self.life, lambda: self.active, fields or {}, partial(self.fail, cause=Cause.MALFORMED)
+        )
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
         self.inputs = Inputs(bus, keys, thread, profile, heard)
         self.supervision = Supervision(bus, self._orphaned)
@@ -259,7 +267,10 @@ class ComponentRuntime:
             reply(self._verdict(Verdict.REFUSED, message.task, trouble))
 
         def answer(trouble: str | None) -> None:
-            self.bus.later(SIGNALS_FIRST, partial(started, trouble))
+            def settled() -> None:
+                self.bus.later(SIGNALS_FIRST, partial(started, trouble))
+
+            self.inputs.when_settled(settled)
 
         def change(trouble: str | None) -> None:
             if trouble is None and self.activation.hold(message.task) is not None:
