@@ -18,6 +18,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import End, Page, Wake
+from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import ntriples
 from selfconf.site.processes import ComponentProcesses, Started, cannot_start, started_once
 from selfconf.site.shelf import Shelf
@@ -26,6 +27,8 @@ log = logging.getLogger(__name__)
 
 FILE_CHECK = 1.0
 """How often, in seconds, the files are looked at for changes."""
+FILE_CHECK_SHARE = 0.02
+"""Which part of the time may be spent on that: where there are very many files, they are looked at less often."""
 
 
 class _ServedAdvertisement(NamedTuple):
@@ -36,6 +39,7 @@ class _ServedAdvertisement(NamedTuple):
     component: IRI
     source: str
     startable: bool
+    advertisement: Advertisement
 
 
 class Site:
@@ -58,6 +62,7 @@ class Site:
         self.processes = ComponentProcesses(bus, self.keys, environment, log_path)
         self._revision = 1
         shelf.refresh()
+        self._served: list[_ServedAdvertisement] = []
         self._served = self._read_shelf()
         self._notify = bus.publisher(self.keys.changed(name), Urgency.EVENT)
         bus.serve(self.keys.advertisements(name), self._answer)
@@ -81,27 +86,34 @@ class Site:
         self.processes.start(advertisement.profile, [self.shelf.advertisements[one].profile for one in sharing])
 
     def _read_shelf(self) -> list[_ServedAdvertisement]:
-        """What is replied, made once for all questions."""
+        """What is replied, made once for all questions and, where an advertisement has stayed, not even again."""
         self._sharing: dict[Started, list[IRI]] = {}
         for component, advertisement in self.shelf.advertisements.items():
             started = started_once(advertisement.profile)
             if started is not None:
                 self._sharing.setdefault(started, []).append(component)
+        before = {id(one.advertisement): one for one in self._served}
         return [
-            _ServedAdvertisement(
-                self.keys.advertisement(self.name, component),
-                ntriples(advertisement.triples),
-                component,
-                str(advertisement.profile.place or ""),
-                advertisement.profile.command is not None,
-            )
+            before.get(id(advertisement)) or self._made_ready(component, advertisement)
             for component, advertisement in sorted(self.shelf.advertisements.items())
         ]
 
+    def _made_ready(self, component: IRI, advertisement: Advertisement) -> _ServedAdvertisement:
+        return _ServedAdvertisement(
+            self.keys.advertisement(self.name, component),
+            ntriples(advertisement.triples),
+            component,
+            str(advertisement.profile.place or ""),
+            advertisement.profile.command is not None,
+            advertisement,
+        )
+
     def _look(self) -> None:
         """Look at the files, now and from time to time, and tell the ecology if the advertisements have changed."""
-        self.bus.later(FILE_CHECK, self._look)
-        if self.shelf.refresh():
+        began = self.bus.now()
+        changed = self.shelf.refresh()
+        self.bus.later(max(FILE_CHECK, (self.bus.now() - began) / FILE_CHECK_SHARE), self._look)
+        if changed:
             self._revision += 1
             self._served = self._read_shelf()
             self._notify.put(encode(Page(0, len(self._served), self._revision)))

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import os
+import timeit
 from pathlib import Path
 
+import pytest
+
+from selfconf import files
 from selfconf.api.reading import read
 from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement, MalformedAdvertisement, SegmentCache
 from selfconf.site import Shelf
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
 
@@ -122,3 +127,29 @@ def test_an_empty_folder_that_is_called_like_a_file_is_no_trouble(tmp_path: Path
     shelf = Shelf([tmp_path], complaints.append)
     shelf.refresh()
     assert shelf.advertisements == {}
+
+
+def test_only_what_has_changed_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shelf = Shelf([write_advertisements(tmp_path)], print)
+    shelf.refresh()
+    before = dict(shelf.advertisements)
+    read: list[Path] = []
+    door = files.advertisements
+
+    def noted(path: Path, segments: SegmentCache) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
+        read.append(path)
+        return door(path, segments)
+
+    monkeypatch.setattr(files, "advertisements", noted)
+    touch(tmp_path / "drive.ttl", PREFIXES + ADVERTISEMENTS["drive"].replace("Astrid", "Pippi"))
+    assert shelf.refresh()
+    assert read == [tmp_path / "drive.ttl"]
+    assert {c for c in before if shelf.advertisements[c] is not before[c]} == {iri("astrid-drive")}
+
+
+def test_to_look_at_many_files_costs_little(tmp_path: Path) -> None:
+    for number in range(1000):
+        (tmp_path / f"c{number}.ttl").write_text("")
+    shelf = Shelf([tmp_path], print)
+    first = timeit.timeit(shelf.refresh, number=1)
+    assert min(timeit.repeat(shelf.refresh, number=1, repeat=5)) < first / 4
