@@ -248,6 +248,8 @@ class ComponentProgram:
                 self._launch()
             except PeerError as error:
                 self._note(str(error))
+                self._limit.crashed(self._bus.now())
+                self._start_again()
 
     def _restarts(self) -> int:
         """How often a minute it is started again: as often as the most demanding of its components says."""

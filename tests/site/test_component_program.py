@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -271,3 +272,19 @@ def test_a_terminal_reaches_the_site_alone(network: Network, tmp_path: Path, sit
     assert os.getsid(process) == os.getpgid(process) == process
     made.close()
     assert not alive(process)
+
+
+def test_a_command_that_does_not_start_any_more_is_tried_again(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    program_file, hidden = tmp_path / "program", tmp_path / "hidden"
+    program_file.write_text(f"#!{sys.executable}\n{NUMBERED}\nimport signal\nsignal.pause()\n")
+    program_file.chmod(0o700)
+    made = site(str(program_file))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    program_file.rename(hidden)
+    os.kill(runs(tmp_path)[0], signal.SIGKILL)
+    assert live(network, lambda: "does not start" in (tmp_path / "home.log").read_text())
+    hidden.rename(program_file)
+    assert live(network, lambda: len(runs(tmp_path)) == 2)
