@@ -34,11 +34,12 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     parser = argparse.ArgumentParser(description=(kinds[0].__doc__ or "a component").splitlines()[0])
     add_connection_arguments(parser)
     given, _ = parser.parse_known_args(arguments)
+    life = os.environ.pop(rendezvous.LIFE_VARIABLE, "")  # it is this process's own: what it starts shall not have it
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
         host = open_host(given.ecology, given.connect)
         for kind in kinds:
-            host.add(kind())
+            host.add(kind(), life)
         run_until_ended(host)
     except SelfconfError as error:
         print(error, file=sys.stderr)

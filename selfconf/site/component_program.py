@@ -73,6 +73,7 @@ class ComponentProgram:
         self._life = ""
         self.group: ProcessGroup | None = None
         """The process, while there is anything left of it."""
+        self._closed = False
         self._ending_since: float | None = None
         self._again = False
         """Whether it is to be started again once it is gone."""
@@ -123,10 +124,8 @@ class ComponentProgram:
         return life == self._life or (watch is not None and watch.is_life(life))
 
     def close(self) -> None:
-        """Watch and start nothing any more; the process is ended by whoever closes."""
-        self._undo_check()
-        self._undo_pause()
-        self._unwatch()
+        """Start nothing any more; the process is ended by whoever closes. May be called from any thread."""
+        self._closed = True
 
     def _launch(self) -> None:
         """Start the process. Raises PeerError."""
@@ -144,6 +143,8 @@ class ComponentProgram:
         try:
             words = shlex.split(self.command) or [""]
             self.group = ProcessGroup(words, self._folder, environment)
+            if self._closed:  # after the group is known: either it is ended here, or by whoever closes
+                self.group.kill()
         except OSError as error:
             raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
         except ValueError as error:
@@ -176,7 +177,7 @@ class ComponentProgram:
 
     def _check(self) -> None:
         """See how it is with the process."""
-        if self.group is None:
+        if self.group is None or self._closed:
             return
         if self._ending_since is not None:
             self._check_ending(self.group, self._ending_since)
@@ -189,15 +190,15 @@ class ComponentProgram:
         if trouble is None:
             self._check_in(PROCESS_CHECK)
         else:
-            self._end_for(trouble)
+            self._end_for(*trouble)
 
-    def _trouble(self, group: ProcessGroup) -> str | None:
-        """Why the process has to be ended, in words: a component of it hangs, or none of them lives."""
+    def _trouble(self, group: ProcessGroup) -> tuple[Cause, str] | None:
+        """Why the process has to be ended, also in words: a component of it hangs, or none of them lives."""
         living = [watch for watch in self._watches.values() if watch.alive]
         if living:
-            return next((found for watch in living if (found := watch.hanging())), None)
-        frozen = group.frozen()
-        return next((found for watch in self._watches.values() if (found := watch.lifeless(frozen))), None)
+            return next(((Cause.HUNG, found) for watch in living if (found := watch.hanging())), None)
+        frozen, watches = group.frozen(), self._watches.values()
+        return next(((Cause.CRASH, found) for watch in watches if (found := watch.lifeless(frozen))), None)
 
     def _check_ending(self, group: ProcessGroup, since: float) -> None:
         waited = self._bus.now() - since
@@ -230,10 +231,10 @@ class ComponentProgram:
         self.end(lambda: None, again)  # what it has started may still run
         self._check()
 
-    def _end_for(self, trouble: str) -> None:
+    def _end_for(self, cause: Cause, trouble: str) -> None:
         """End a process that cannot say itself that something is wrong with it."""
         self._limit.crashed(self._bus.now())
-        self._report(Cause.CRASH, f"its process {trouble}; its site ends it{self._outlook()}")
+        self._report(cause, f"its process {trouble}; its site ends it{self._outlook()}")
         self.end(lambda: None, again=True)
 
     def _start_again(self) -> None:
@@ -243,7 +244,7 @@ class ComponentProgram:
             self._undo_pause = self._bus.later(pause, self._launch_again)
 
     def _launch_again(self) -> None:
-        if self.group is None:
+        if self.group is None and not self._closed:
             try:
                 self._launch()
             except PeerError as error:

@@ -38,6 +38,7 @@ class ComponentProcesses:
         self._bus, self._keys, self._environment, self._log_path = bus, keys, environment, log_path
         self._programs: dict[Started, ComponentProgram] = {}
         self._printed: PrintedLines | None = None
+        self._closed = False
         self.by_component: dict[IRI, ComponentProgram] = {}
         """The program that each component was started by last."""
 
@@ -56,6 +57,8 @@ class ComponentProcesses:
             folder, command = started
             program = ComponentProgram(self._bus, self._keys, command, folder, self._environment, self._printing)
             self._programs[started] = program
+            if self._closed:  # after it is known: either it is closed here, or by `close`
+                program.close()
         program.start(profile, sharing)
         for one in (*sharing, profile):
             self.by_component[one.component] = program
@@ -74,9 +77,13 @@ class ComponentProcesses:
         program.end(ended)
 
     def close(self) -> None:
-        """End every process: those that still run after `ENDING` seconds, all in all, are killed."""
+        """End every process: those that still run after `ENDING` seconds, all in all, are killed.
+
+        Unlike everything else here it may be called from any thread: the bus may have one of its own.
+        """
+        self._closed = True
         groups = []
-        for program in self._programs.values():
+        for program in list(self._programs.values()):
             program.close()
             if program.group is not None:
                 program.group.terminate()

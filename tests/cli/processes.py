@@ -132,7 +132,8 @@ class Program:
 
     def children(self) -> list[int]:
         """The numbers of the processes that it has started."""
-        return [int(number) for number in Path(f"/proc/{self.number}/task/{self.number}/children").read_text().split()]
+        threads = Path(f"/proc/{self.number}/task").glob("*/children")
+        return [int(number) for thread in threads for number in thread.read_text().split()]
 
     def hang_up(self) -> None:
         """Read no more from its stdout."""
