@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
 from selfconf.configurator.effects import ApplyTo, AwaitRelease, Decline, QueueFor, ReleaseFrom, ReserveOf, WakeUp
-from selfconf.configurator.events import Answered, Call, Event, Failed, WaitedLong
+from selfconf.configurator.events import Answered, Call, Event, WaitedLong
 from selfconf.configurator.order import parameter_values, wiring
-from selfconf.configurator.state import Phase, State
+from selfconf.configurator.state import State
 from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.run_request import EventListener, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
@@ -40,7 +39,6 @@ from selfconf.protocol.keys import owner_of
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
-    Cause,
     End,
     Release,
     Reserve,
@@ -64,10 +62,6 @@ WAKING = 15.0
 """Seconds that a component that a site starts may take to live."""
 ASK_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
-AUDIT = 1.0
-"""Seconds between two looks at what runs: a component may have forgotten for whom it acts."""
-AUDITED = 20
-"""How many components are looked at in one of them; they take turns."""
 
 
 class _ClaimFields(TypedDict):
@@ -102,7 +96,6 @@ class Calls:
         """The life of each component that has obeyed a call of this task, and not yet a release."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
-        self._audited = 0
 
     # Waking and reserving.
 
@@ -125,6 +118,12 @@ class Calls:
         if waiting is not None:
             waiting[1]()
             self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
+
+    def abandon(self, component: IRI) -> None:
+        """A component was lost: it is not waited for any more if it was started for this task."""
+        waiting = self._waking.pop(component, None)
+        if waiting is not None:
+            waiting[1]()
 
     def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
         """Have the site start the process; that is done when the component lives."""
@@ -246,25 +245,6 @@ class Calls:
                 seen(answer)
 
         self.bus.ask(self.keys.call(component, "state"), encode(StateOf(self.identity.task)), CALL, answered)
-
-    def audit(self) -> None:
-        """Ask some of the components that run, in turns, whether they act for this task; again and again."""
-        self.bus.later(AUDIT, self.audit)
-        held = [c for c, one in self._state().held.items() if one.confirmed]
-        if self._state().phase is not Phase.RUNNING or not held:
-            return
-        for number in range(self._audited, self._audited + min(AUDITED, len(held))):
-            component = held[number % len(held)]
-            self.look(component, partial(self._audit, component, self._state().epoch), 1)
-        self._audited = (self._audited + AUDITED) % len(held)
-
-    def _audit(self, component: IRI, epoch: int, answer: CallAnswer | None) -> None:
-        state = self._state()
-        held = state.held.get(component)
-        if answer is None or held is None or state.phase is not Phase.RUNNING or state.epoch != epoch:
-            return
-        if answer.life == held.life and (answer.task != self.identity.task or not answer.active):
-            self._step(Failed(component, answer.life, Cause.FAIL, "it does not act for this task any more"))
 
     # One call.
 

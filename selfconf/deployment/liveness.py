@@ -12,7 +12,7 @@ from functools import partial
 
 from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
-from selfconf.configurator.state import State
+from selfconf.configurator.state import Phase, State
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView
@@ -27,6 +27,10 @@ CUT_OFF = 0.25
 """Seconds between two looks of a configurator that is cut off whether it still is."""
 ASK_AGAIN = 5.0
 """Seconds after which a site that lives, but has not answered in full, is taken for news, and so is asked again."""
+AUDIT = 1.0
+"""Seconds between two looks at what runs: a component may have let go of its task, or have failed, unnoticed."""
+AUDITED = 20
+"""How many components are looked at in one of them; they take turns."""
 SETTLING = 1.0
 """Seconds that other nodes may take to be connected again after this one.
 
@@ -54,6 +58,7 @@ class Liveness:
         """The lives of the roll-call that the watch has not shown yet, with the component's chunk."""
         self._link, self._cut_off = self.bus.link, False
         self._ask_again: Undo = lambda: None
+        self._audited = 0
 
     def discovered(self, discovery: Discovery) -> None:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
@@ -119,6 +124,34 @@ class Liveness:
         self._calls.forget_connections()
         self._report(EcologyReachable())
         self._step(Reconnected())
+
+    def audit(self) -> None:
+        """Ask some of the components that run, in turns, whether they act for this task; again and again."""
+        self.bus.later(AUDIT, self.audit)
+        held = [component for component, one in self._state().held.items() if one.confirmed]
+        if not self._runs_undisturbed(self._state().epoch) or not held:
+            return
+        for number in range(self._audited, self._audited + min(AUDITED, len(held))):
+            component = held[number % len(held)]
+            self._calls.look(component, partial(self._audit, component, self._state().epoch), 1)
+        self._audited = (self._audited + AUDITED) % len(held)
+
+    def _audit(self, component: IRI, epoch: int, answer: CallAnswer | None) -> None:
+        """Judge a component that should act: one that has failed is lost, one that has let go is applied to anew."""
+        held = self._state().held.get(component)
+        if answer is None or held is None or answer.life != held.life or not self._runs_undisturbed(epoch):
+            return
+        if answer.task != self._calls.identity.task:
+            self._calls.forget_connections()
+            self._step(Reconnected())
+        elif not answer.active:
+            self._step(Failed(component, answer.life, Cause.FAIL, "it does not act any more"))
+
+    def _runs_undisturbed(self, epoch: int) -> bool:
+        """Whether the configuration of an epoch runs, and this node is not, and was not just now, cut off."""
+        state = self._state()
+        connected = not self._cut_off and self.bus.link == self._link
+        return connected and state.phase is Phase.RUNNING and state.epoch == epoch
 
     def _end_unseen(self) -> None:
         """A life that ended between the roll-call and the beginning of the watch was called, but never seen since."""

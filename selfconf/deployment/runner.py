@@ -140,13 +140,13 @@ class TaskRunner:
 
     def start(self) -> None:
         """Begin with act 1."""
-        self._calls.audit()
+        self._liveness.audit()
         self._pulse()
         self._step(Accepted(int(self.clock() * 1000)))
 
     def adopt(self, configuration: Configuration, epoch: int) -> None:
         """Go on with a task that runs, in that configuration since that epoch, and whose configurator is gone."""
-        self._calls.audit()
+        self._liveness.audit()
         self._pulse()
         self._step(Adopted(epoch, configuration))
 
@@ -273,6 +273,7 @@ class TaskRunner:
         """Record and report every component that the machine has just given up, whatever the cause."""
         for component, loss in self.state.lost.items():
             if known.get(component) is not loss:
+                self._calls.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self._report(ComponentLost(component, loss.cause.value, loss.detail))
 
@@ -405,6 +406,9 @@ class TaskRunner:
             return
         own = sample.key == self.keys.fail(fail.component)
         reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
+        held = self.state.held.get(fail.component)
+        if fail.cause is Cause.YIELD and (held is None or not held.reserved):
+            return  # that is for the tasks that hold it; this one may be the one that asks
         if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from selfconf.bus.port import Request, Urgency
+from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
 from selfconf.deployment.calls import CALL, STARTING, WAKING
 from selfconf.deployment.liveness import SETTLING
-from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Cause, Fail, Page
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Reserve, Verdict
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk.component import Refused
@@ -55,7 +55,7 @@ def test_a_component_that_dies_while_it_takes_long_to_start_is_replaced_at_once(
     busy_in_started(lab, "tracker", STARTING)
     agent = lab.agent()
     lab.let_pass(3 * CALL)
-    assert agent.state.phase is Phase.DEPLOYING
+    assert agent.state.phase is Phase.RESERVING
     lab.crash("tracker")
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, CALL)
     assert agent.state.lost[iri("person-tracker")].cause is Cause.CRASH
@@ -117,9 +117,102 @@ def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) 
     assert lab.active() == TASK | {"tracker"}
     assert lab.components["drive"].said == [("started",)]
     lab.let_pass(1.0)
-    declined = lab.acts("declined")
-    assert {account.detail for account in declined} == {f"the configurator {first.name} holds it"}
-    assert len(declined) == len({account.component for account in declined})
+    assert lab.acts("declined") == []  # it has asked the other configurators before
+    lost = {event.component: event.detail for event in lab.acts("lost")}
+    assert lost == dict.fromkeys([iri("thinking-cap"), iri("astrid-drive")], "the task navigate (priority 0) holds it")
+
+
+def test_a_component_that_another_task_takes_at_the_same_moment_is_declined_by_the_component_itself(lab: Lab) -> None:
+    first, second = lab.agent(), lab.agent()
+    assert lab.until(lambda: {first.state.phase, second.state.phase} == {Phase.RUNNING, Phase.REFUSED})
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["drive"].said == [("started",)]
+    winner = first if first.state.phase is Phase.RUNNING else second
+    holds = [hold for name in TASK for hold in lab.runtimes[name].activation.holds]
+    assert {hold.claim.task for hold in holds} == {winner.identity.task}
+
+
+def test_every_call_names_the_life_that_is_meant_so_that_no_other_life_obeys_it(lab: Lab) -> None:
+    """A process that is started while the call for the one before is on its way does not act for it."""
+    runtime = lab.runtimes["drive"]
+    held: list[Request] = []
+    runtime._served()
+    runtime.bus.serve(lab.keys.call(iri("astrid-drive")), held.append)
+    agent = lab.agent()
+    assert lab.until(lambda: bool(held))
+    lab.crash("drive")
+    drive = lab.component("drive")
+    message = decode(held[0].payload, Reserve)
+    assert message.life == runtime.life
+    replies: list[Replies] = []
+    lab.network.node().ask(lab.keys.call(iri("astrid-drive"), "reserve"), held[0].payload, 1.0, replies.append)
+    assert lab.until(lambda: bool(replies))
+    assert decode(replies[0].samples[0].payload, CallAnswer).verdict is Verdict.OTHER_LIFE
+    assert drive.said == []
+    assert agent.state.phase is not Phase.RUNNING
+
+
+def test_nothing_acts_before_everything_is_reserved(lab: Lab) -> None:
+    """The sonar array cannot be reserved: what comes before it is held, what comes after it is not, and nothing acts."""
+    runtime = lab.runtimes["sonar"]
+    runtime._served()
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.RESERVING)
+    lab.let_pass(1.0)
+    assert lab.active() == set()
+    reserved = {name for name in TASK | {"tracker"} if lab.runtimes[name].activation.holds}
+    assert reserved == {"drive", "tracker"}  # in the order of the IRIs: astrid-drive, person-tracker, sonar-array
+
+
+def test_components_start_after_those_that_feed_them_and_actuators_last_and_rest_the_other_way(lab: Lab) -> None:
+    order: list[tuple[str, str]] = []
+    for name in (*TASK, "tracker"):
+        recorder = lab.components[name]
+        recorder.started = lambda name=name: order.append(("on", name))  # type: ignore[method-assign,misc]  # it notes
+        recorder.stopped = lambda name=name: order.append(("off", name))  # type: ignore[method-assign,misc]  # the order
+    agent = lab.agent()
+    lab.running(agent)
+    on = [name for _, name in order]
+    assert (set(on[:3]), on[3:]) == ({"sonar", "encoder", "tracker"}, ["control", "drive"])
+    order.clear()
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    off = [name for _, name in order]
+    assert (off[:2], set(off[2:])) == (["drive", "control"], {"sonar", "encoder", "tracker"})
+
+
+def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK, "odometry")
+    for name in ADVERTISEMENTS:
+        lab.component(name)
+    node, tracker = lab.network.node(), iri("person-tracker")
+    page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
+    ended: list[End] = []
+
+    def advertise(request: Request) -> None:
+        payload = (PREFIXES + ADVERTISEMENTS["tracker"]).encode()
+        request.reply(lab.keys.advertisement("living-room", tracker), payload, page)
+        request.finish()
+
+    def end(request: Request) -> None:
+        ended.append(decode(request.payload, End))
+        lab.crash("tracker")
+        request.finish()
+
+    node.announce(lab.keys.site_life("living-room", "1"))
+    node.serve(lab.keys.advertisements("living-room"), advertise)
+    node.serve(lab.keys.end("living-room"), end)
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert "tracker" in lab.active()
+    runtime = lab.runtimes["tracker"]
+    runtime._served()
+    runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    assert ended[0] == End(tracker, runtime.life)
+    assert lab.until(lambda: lab.active() == set())
 
 
 def test_a_component_that_speaks_another_protocol_is_replaced(lab: Lab) -> None:

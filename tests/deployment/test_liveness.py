@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.state import Phase, Policy
-from selfconf.deployment.liveness import ASK_AGAIN, SETTLING
+from selfconf.deployment.liveness import ASK_AGAIN, AUDIT, SETTLING
 from selfconf.discovery import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
@@ -74,7 +74,7 @@ def test_a_component_that_is_restarted_while_it_acts_is_activated_and_set_anew(l
     lab.component("control")
     again = lab.agent()
     assert lab.running(again)
-    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)")]
+    assert lab.components["control"].said == [("goal", "(AT BEDROOM)"), ("started",)]
 
 
 def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_turned_themselves_off(lab: Lab) -> None:
@@ -82,7 +82,7 @@ def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_
     agent = lab.agent(policy=Policy.DISMANTLE)
     lab.running(agent)
     for name in TASK | {"tracker"}:
-        lab.runtimes[name]._orphaned()
+        lab.runtimes[name]._orphaned(agent.supervisor)
     epoch = agent.state.epoch
     lab.isolate(agent)
     lab.rejoin(agent)
@@ -90,7 +90,7 @@ def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_
     assert agent.state.phase is Phase.RUNNING
     assert agent.state.epoch > epoch
     assert lab.active() == TASK | {"tracker"}
-    assert lab.components["control"].said[-2:] == [("started",), ("goal", "(AT BEDROOM)")]
+    assert lab.components["control"].said[-2:] == [("goal", "(AT BEDROOM)"), ("started",)]
     assert not lab.acts("lost")
     assert len(lab.acts("connected")) == 1
 
@@ -98,15 +98,44 @@ def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_
 def test_a_configurator_that_was_suspended_yields_to_the_one_that_has_taken_over(lab: Lab) -> None:
     first = lab.agent()
     lab.running(first)
-    for name in TASK | {"tracker"}:
-        lab.runtimes[name]._orphaned()
-    second = lab.agent()
-    lab.running(second)
     lab.isolate(first)
+    lab.let_pass(GRACE + 0.1)
+    second = lab.agent()
+    lab.isolate(first)  # from the second one as well
+    assert lab.running(second)
     lab.rejoin(first)
     assert lab.until(lambda: first.state.phase is Phase.REFUSED)
     assert lab.active() == TASK | {"tracker"}
-    assert all(lab.runtimes[name].activation.supervisor == second.supervisor for name in TASK | {"tracker"})
+    assert {holder_of(lab, name) for name in TASK | {"tracker"}} == {second.supervisor}
+
+
+def holder_of(lab: Lab, name: str) -> str:
+    """The liveliness key of the configurator that holds a component."""
+    hold = lab.runtimes[name].activation.first
+    return "" if hold is None else hold.claim.supervisor
+
+
+def test_a_component_that_has_let_go_of_its_task_unnoticed_is_applied_to_anew(lab: Lab) -> None:
+    """It has seen the life of the configurator end, which goes on, and the configurator has seen nothing."""
+    agent = lab.agent()
+    lab.running(agent)
+    for name in ("tracker", "drive"):
+        lab.runtimes[name]._orphaned(agent.supervisor)
+        assert lab.active() == (TASK | {"tracker"}) - {name}
+        lab.let_pass(2 * AUDIT)
+        assert lab.active() == TASK | {"tracker"}
+    assert lab.acts("lost") == []
+    assert agent.state.phase is Phase.RUNNING
+
+
+def test_a_component_that_has_failed_unnoticed_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.runtimes["tracker"].code.end_acting()
+    lab.let_pass(2 * AUDIT)
+    assert lab.active() == TASK | {"odometry"}
+    (lost,) = lab.acts("lost")
+    assert (lost.component, lost.detail) == (iri("person-tracker"), "it does not act any more")
 
 
 def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_configuration(lab: Lab) -> None:

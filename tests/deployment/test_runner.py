@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,8 @@ import pytest
 from selfconf.bus.port import Replies, Urgency
 from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Phase, Policy
-from selfconf.deployment.runner import TRY_AGAIN
+from selfconf.deployment.liveness import AUDIT
+from selfconf.deployment.runner import LONGEST_PAUSE, TRY_AGAIN
 from selfconf.errors import TemplateError
 from selfconf.model.refusal import TooFewEligible
 from selfconf.protocol.codec import decode, encode
@@ -38,13 +40,13 @@ def test_the_task_is_configured_with_the_tracker_and_never_with_the_drive_of_pip
     )
 
 
-def test_signals_flow_along_the_connections_and_the_goal_is_set_last(lab: Lab) -> None:
+def test_signals_flow_along_the_connections_and_the_goal_is_set_first(lab: Lab) -> None:
     lab.running(lab.agent())
     lab.components["tracker"].emit("pose", {"x": 1})
     lab.components["odometry"].emit("pose", {"x": 9})
     lab.components["control"].emit("set.velocity", {"v": 0.3})
     lab.let_pass(0.1)
-    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)"), ("position", {"x": 1})]
+    assert lab.components["control"].said == [("goal", "(AT BEDROOM)"), ("started",), ("position", {"x": 1})]
     assert lab.components["drive"].said == [("started",), ("velocity", {"v": 0.3})]
 
 
@@ -68,7 +70,7 @@ def test_repair_neither_stops_nor_starts_nor_sets_anew_what_runs(lab: Lab) -> No
     lab.running(lab.agent())
     lab.components["tracker"].fail("lost")
     lab.let_pass(1.0)
-    assert lab.components["control"].said == [("started",), ("goal", "(AT BEDROOM)")]
+    assert lab.components["control"].said == [("goal", "(AT BEDROOM)"), ("started",)]
     for name in ("sonar", "encoder", "drive"):
         assert lab.components[name].said == [("started",)]
 
@@ -81,11 +83,11 @@ def test_dismantling_first_stops_all_components_as_the_paper_does(lab: Lab) -> N
     assert agent.state.phase is Phase.RUNNING
     assert lab.components["drive"].said == [("started",), ("stopped",), ("started",)]
     assert lab.components["control"].said == [
-        ("started",),
         ("goal", "(AT BEDROOM)"),
+        ("started",),
         ("stopped",),
-        ("started",),
         ("goal", "(AT BEDROOM)"),
+        ("started",),
     ]
 
 
@@ -220,12 +222,35 @@ def test_a_new_configurator_takes_over_at_once_from_one_that_died(lab: Lab) -> N
     assert lab.components["drive"].said == [("started",)]
 
 
-def test_two_tasks_share_the_ecology_as_long_as_they_need_different_components(lab: Lab) -> None:
+WATCH = PREFIXES + ":watch a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class rob:PositionSensor ."
+
+
+def test_two_tasks_share_a_component_that_takes_no_orders_and_it_acts_until_both_have_let_go(lab: Lab) -> None:
     first = lab.agent()
     lab.running(first)
-    template = PREFIXES + ":watch a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class rob:PositionSensor ."
-    second = lab.agent(template, bound=())
+    second = lab.agent(WATCH, bound=())
     assert lab.running(second)
+    assert lab.active() == TASK | {"tracker"}
+    first.stop()
+    lab.let_pass(1.0)
+    assert lab.active() == {"tracker"}
+    assert lab.components["tracker"].said == [("started",)]
+    second.stop()
+    lab.let_pass(1.0)
+    assert lab.active() == set()
+
+
+def test_two_tasks_use_different_components_where_one_cannot_be_shared(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("tracker", "odometry"):
+        alone = ADVERTISEMENTS[name].replace(" ;", " ; sc:shareable false ;", 1)
+        monkeypatch.setitem(ADVERTISEMENTS, name, alone)
+    lab = Lab(tmp_path)
+    lab.navigation()
+    first = lab.agent()
+    lab.running(first)
+    assert lab.running(lab.agent(WATCH, bound=()))
     assert lab.active() == TASK | {"tracker", "odometry"}
     first.stop()
     lab.let_pass(1.0)
@@ -279,12 +304,15 @@ def test_patience_goes_on_when_a_component_that_another_configurator_held_is_fre
     second = lab.agent(patient=True)
     lab.let_pass(3 * TRY_AGAIN)
     assert second.state.phase is Phase.REFUSED
-    (waiting,) = lab.acts("waiting")
-    assert set(waiting.lost.values()) == {f"refused, the configurator {first.name} holds it"}
+    assert {detail for waiting in lab.acts("waiting") for detail in waiting.lost.values()} == {
+        "refused, the task navigate (priority 0) holds it"
+    }
     first.stop()
     assert lab.running(second)
     assert lab.active() == TASK | {"tracker"}
-    assert lab.runtimes["drive"].activation.supervisor == second.supervisor
+    hold = lab.runtimes["drive"].activation.first
+    assert hold is not None
+    assert hold.claim.supervisor == second.supervisor
 
 
 def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
@@ -297,19 +325,85 @@ def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(
     assert lab.active() == TASK | {"tracker"}
 
 
-def test_patience_does_not_try_a_component_again_that_has_refused_for_itself(lab: Lab) -> None:
-    lab.components["drive"].refusal = Refused("the battery is empty")
+def test_patience_tries_every_lost_component_that_lives_again_at_intervals_that_double(lab: Lab) -> None:
+    drive = lab.components["drive"]
+    drive.refusal = Refused("the battery is empty")
+    tried: list[float] = []
+    started = drive.started
+
+    def note() -> None:
+        tried.append(lab.network.time)
+        started()
+
+    drive.started = note  # type: ignore[method-assign]  # it notes when
     agent = lab.agent(patient=True)
-    lab.let_pass(4 * TRY_AGAIN)
+    lab.let_pass(5 * LONGEST_PAUSE)
     assert agent.state.phase is Phase.REFUSED
-    assert lab.components["drive"].said.count(("started",)) == 1
+    pauses = [round(after - before) for before, after in itertools.pairwise(tried)]
+    doubling = [TRY_AGAIN * 2**number for number in range(4)]
+    assert pauses == [*doubling, *[LONGEST_PAUSE] * (len(pauses) - len(doubling))]
+    assert len(pauses) > len(doubling)
+    drive.refusal = None
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, LONGEST_PAUSE + 1.0)
+
+
+def test_the_pause_of_a_patient_task_is_short_again_after_it_has_run(lab: Lab) -> None:
+    agent = lab.agent(patient=True)
+    lab.running(agent)
+    for _ in range(2):
+        lab.crash("drive")
+        lab.let_pass(4 * TRY_AGAIN)
+        lab.component("drive")
+        assert lab.running(agent)
+    drive = lab.components["drive"]
+    drive.refusal = Refused("the battery is empty")
+    drive.fail("the battery is empty")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.REFUSED
+    drive.refusal = None
+    lab.let_pass(TRY_AGAIN + 1.0)
+    assert agent.state.phase is Phase.RUNNING
+
+
+def test_a_task_of_higher_priority_has_the_components_and_the_other_waits_and_goes_on_afterwards(lab: Lab) -> None:
+    low = lab.agent(patient=True)
+    lab.running(low)
+    high = lab.agent(priority=5)
+    assert lab.running(high)
+    assert lab.active() == TASK | {"tracker"}
+    assert low.state.phase is Phase.REFUSED
+    assert low.status().phase == "waiting"
+    high.stop()
+    assert lab.running(low)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
+    """It lives, but hears nothing of what it is asked."""
+    low = lab.agent()
+    lab.running(low)
+    low._watched.clear()
+    high = lab.agent(priority=5)
+    assert lab.until(lambda: high.state.phase is Phase.RUNNING, 20.0)
+    for name in ("control", "drive"):
+        assert [hold.claim.task for hold in lab.runtimes[name].activation.holds] == [high.identity.task]
+    assert lab.until(lambda: low.state.phase is Phase.REFUSED, 2 * AUDIT)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_its_status_names_the_task_its_priority_and_since_when(lab: Lab) -> None:
+    lab.let_pass(5.0)
+    agent = lab.agent(priority=3)
+    status = agent.status()
+    assert (status.task, status.priority, status.beginning) == (f"navigate~{agent.name}", 3, lab.network.time)
 
 
 def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
-    lab.running(lab.agent())
+    agent = lab.agent()
+    lab.running(agent)
     replies: list[Replies] = []
     them = lab.keys.configurator_life("them", "1")
-    payload = encode(Release(1 << 60, them))
+    payload = encode(Release(1 << 60, them, agent.identity.task))
     lab.network.node().ask(lab.keys.call(iri("astrid-drive"), "release"), payload, 1.0, replies.append)
     assert lab.until(lambda: bool(replies))
     assert decode(replies[0].samples[0].payload, CallAnswer).verdict is Verdict.BUSY

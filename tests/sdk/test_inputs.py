@@ -19,7 +19,7 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.inputs import BEGINNING, EVENTS, JUST_COME, PATIENCE, InputEvents, Inputs
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.lab import Recorder
-from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER_PROFILE, TRACKER, US, Stage, apply, follow, release
+from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, TRACKER_PROFILE, US, Stage, apply, follow, release
 
 
 def test_rewiring_an_input_neither_stops_nor_starts_the_component() -> None:

@@ -21,7 +21,22 @@ from selfconf.sdk.component import Component, Refused, Signal
 from selfconf.sdk.runtime import OFFER, YIELDING, ComponentRuntime
 from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
-from tests.sdk.stage import CAP, CAP_PROFILE, DRIVE_PROFILE, KEYS, TASKS, THEM, TRACKER, US, XSD, Stage, apply, follow, release, reserve
+from tests.sdk.stage import (
+    CAP,
+    CAP_PROFILE,
+    DRIVE_PROFILE,
+    KEYS,
+    TASKS,
+    THEM,
+    TRACKER,
+    US,
+    XSD,
+    Stage,
+    apply,
+    follow,
+    release,
+    reserve,
+)
 
 
 def test_a_component_is_idle_until_it_is_activated() -> None:
@@ -355,7 +370,10 @@ def test_closing_an_idle_component_does_not_stop_it() -> None:
 # Which life is meant, and who else is the component.
 
 
-@pytest.mark.parametrize("message", [apply(1, US, life="life-0"), reserve(1, US, life="life-0"), release(1, US, life="life-0")])
+OTHER_LIFE: list[Apply | Reserve | Release] = [make(1, US, life="life-0") for make in (apply, reserve, release)]
+
+
+@pytest.mark.parametrize("message", OTHER_LIFE)
 def test_a_call_that_means_another_life_changes_nothing(message: Apply | Reserve | Release) -> None:
     stage = Stage()
     stage.call(apply(1, US, life="life-1"))
@@ -368,9 +386,7 @@ def test_a_call_that_means_another_life_changes_nothing(message: Apply | Reserve
 def test_of_two_processes_that_begin_to_be_one_component_the_smaller_life_stays() -> None:
     stage = Stage()
     reasons: list[str] = []
-    larger = ComponentRuntime(
-        stage.network.node(), KEYS, CAP_PROFILE, Recorder(), "life-2", superseded=reasons.append
-    )
+    larger = ComponentRuntime(stage.network.node(), KEYS, CAP_PROFILE, Recorder(), "life-2", superseded=reasons.append)
     stage.let_pass(0.1)
     assert reasons == [f"{CAP} is alive already, in the life life-1; this process leaves"]
     called: list[tuple[str, ...]] = []
@@ -400,7 +416,11 @@ def test_a_component_that_is_superseded_is_at_rest_before_its_process_leaves() -
     recorder = Recorder()
     node = stage.network.node()
     stage.network.cut(node, stage.network.nodes[2])
-    larger = ComponentRuntime(node, KEYS, CAP_PROFILE, recorder, "life-2", superseded=lambda _: seen.append(recorder.said))
+
+    def superseded(_: str) -> None:
+        seen.append(recorder.said)
+
+    larger = ComponentRuntime(node, KEYS, CAP_PROFILE, recorder, "life-2", superseded=superseded)
     replies: list[Replies] = []
     stage.caller.ask(KEYS.call(CAP, "apply"), encode(apply(1, US, life="life-2")), 1.0, replies.append)
     stage.let_pass(0.1)

@@ -1,0 +1,23 @@
+"""Which task a configurator runs, as others see it."""
+
+from __future__ import annotations
+
+from selfconf.deployment.identity import TaskIdentity
+from selfconf.protocol.keys import task_identity
+from tests.lab import Lab
+
+
+def test_the_name_of_a_task_is_the_part_that_its_user_knows() -> None:
+    assert TaskIdentity(task_identity("navigate", "c1"), 3, 12.0).name == "navigate"
+
+
+def test_two_tasks_of_one_template_have_one_name_and_different_identities(lab: Lab) -> None:
+    first, second = lab.agent().identity, lab.agent().identity
+    assert first.name == second.name == "navigate"
+    assert first.task != second.task
+
+
+def test_a_task_begins_when_its_configurator_does(lab: Lab) -> None:
+    lab.let_pass(7.0)
+    agent = lab.agent(priority=2)
+    assert (agent.identity.priority, agent.identity.beginning) == (2, lab.network.time)
