@@ -510,7 +510,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SC-L06", "A namespace is written exactly as it is declared.",
         "With http for https, or / for #, all its terms are other terms, and the file says nothing to anybody. "
-        "An error for sc: and sh:, a warning for others.",
+        "An error for sh: and for what begins with https://w3id.org/selfconf, a warning for others.",
         "@prefix old: <http://w3id.org/selfconf#> .\n:tuner a old:Component, rob:Tuner .",
         f"{_TUNER} .",
         severity=Severity.WARNING,
@@ -596,6 +596,13 @@ CODES: tuple[Code, ...] = (
         f'{_BOUND}:sink sh:sparql [ sh:select """SELECT $this WHERE {{\n'
         '    FILTER NOT EXISTS { $this ?property <https://example.org/home#room> } }""" ] .',
         _BOUND.rstrip(),
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L17", "A port belongs to a component.",
+        "A port that nothing has is one that was meant to be a component's, and is left out of its advertisement.",
+        f'{_TUNER} .\n_:sound sc:name "sound" ; sc:signalType rob:Audio .',
+        f'{_TUNER} ; sc:hasOutput _:sound .\n_:sound sc:name "sound" ; sc:signalType rob:Audio .',
         severity=Severity.WARNING,
     ),
 )  # fmt: skip

@@ -8,6 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import Enum
 
+LONGEST_SOURCE = 240
+"""Characters of a line that are shown: a file on one line may have a million problems, all of them on that line."""
+BEFORE = 80
+"""How many of them stand before the place."""
+LONGEST_SAID = 1_000
+"""Characters of a message or hint, which may quote what an author wrote."""
 UNREADABLE = frozenset(("SC-S01", "SC-S02", "SC-S03", "SC-S05"))
 """The codes of files that cannot be read: no Turtle, not UTF-8, not there, too deep."""
 
@@ -36,7 +42,9 @@ class Diagnostic:
     shape: str | None = None
     """The IRI of the SHACL shape that is violated, if it was one."""
     source: str = field(default="", compare=False)
-    """The text of the line, to be shown under the message."""
+    """The text of the line around the place, to be shown under the message."""
+    source_column: int = field(default=1, compare=False)
+    """The column at which that text begins; in a long line there is more before it, and after it."""
 
     @property
     def order(self) -> tuple[str, int, int, str, str]:
@@ -70,6 +78,18 @@ class Report:
     def conforms(self) -> bool:
         """Whether no file has an error."""
         return not self.errors
+
+
+def excerpt(text: str, begin: int, end: int, column: int) -> tuple[str, int]:
+    """Of the line between two offsets of a text what is shown for a column, and the column at which that begins."""
+    start = begin if end - begin <= LONGEST_SOURCE else begin + max(0, column - 1 - BEFORE)
+    return text[start : min(end, start + LONGEST_SOURCE)].rstrip("\r\n"), start - begin + 1
+
+
+def shortened(words: str) -> str:
+    """A message with its middle left out, where it is too long to be read."""
+    half = LONGEST_SAID // 2
+    return words if len(words) <= LONGEST_SAID else f"{words[:half]} ... {words[-half:]}"
 
 
 def report(files: Iterable[str], diagnostics: Iterable[Diagnostic]) -> Report:

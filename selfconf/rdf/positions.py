@@ -36,7 +36,7 @@ _DOTTED_PREFIX = re.compile(r"\.[\w.\-\u00B7\u0300-\u036F\u203F\u2040]*[\w\-\u00
 """The rest of a prefixed name whose prefix begins like a keyword, up to the colon: of `a.b:c`, `.b:`."""
 _LONE_RETURN = re.compile(r"\r(?!\n)")
 _TOKEN = re.compile(
-    r"""<[^>\n]*>|(?:"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*')(?:@[\w-]+|\^\^(?:<[^>]*>|[^\s;,.\])]+))?"""
+    r"""<[^>\n]*>|(?:"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*')(?:@[\w-]+|\^\^(?:<[^>]*>|[^\s;,.\])]+))?"""
     r"""|[^\s"'<>\[\](){};,]*[^\s"'<>\[\](){};,.]"""
 )
 
@@ -84,14 +84,15 @@ class Positions:
         line = bisect_right(self._lines, offset)
         return TextPosition(line, offset - self._lines[line - 1] + 1)
 
-    def line(self, number: int) -> str:
-        """The text of a line without its end."""
+    def bounds(self, number: int) -> tuple[int, int]:
+        """The offsets at which a line begins, and the next one does."""
         end = self._lines[number] if number < len(self._lines) else len(self.text)
-        return self.text[self._lines[number - 1] : end].rstrip("\r\n")
+        return self._lines[number - 1], end
 
     def width(self, place: TextPosition) -> int:
         """How many characters the token at a place takes, at least one: as much as there is to underline."""
-        match = _TOKEN.match(self.line(place.line), place.column - 1)
+        begin, end = self.bounds(place.line)
+        match = _TOKEN.match(self.text, begin + place.column - 1, end)
         return match.end() - match.start() if match else 1
 
     def of_subject(self, triple: RdflibTriple) -> TextPosition | None:

@@ -65,8 +65,9 @@ def _underlined(found: Diagnostic) -> str:
     if not found.source.strip():
         return ""
     number = f"{found.line:>5}"
-    before = "".join("\t" if character == "\t" else " " for character in found.source[: found.column - 1])
-    mark = "^" * max(1, min(found.width, len(found.source) - found.column + 1))
+    column = found.column - found.source_column + 1
+    before = "".join("\t" if character == "\t" else " " for character in found.source[: column - 1])
+    mark = "^" * max(1, min(found.width, len(found.source) - column + 1))
     below = f"{' ' * len(number)} | {before}{_COLOURS[found.severity]}{mark}{_PLAIN}"
     return f"{number} | {_visible(found.source)}\n{below}\n"
 

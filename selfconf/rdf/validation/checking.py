@@ -13,7 +13,7 @@ from __future__ import annotations
 import hashlib
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from selfconf.errors import TurtleError
@@ -22,6 +22,8 @@ from selfconf.rdf import turtle
 from selfconf.rdf.validation.prefilter import Prefiltered, prefilter
 from selfconf.rdf.validation.syntax import hint, telling
 from selfconf.rdf.validation.term_index import TermIndex, index_of
+from selfconf.rdf.validation.text_places import TextPlaces
+from selfconf.rdf.validation.undeclared_signals import undeclared_signals
 
 _NOTHING = "There is no component, template, task, configuration or ontology in this file: nothing to validate."
 MOST_STATEMENTS = 250_000
@@ -41,11 +43,6 @@ class SourceText:
     def text(self) -> str:
         """The text without a byte order mark; raises UnicodeDecodeError if it is not UTF-8."""
         return self.octets.removeprefix(_BYTE_ORDER_MARK).decode("utf-8")
-
-    def line(self, number: int) -> str:
-        """One line of the text, as far as it is UTF-8."""
-        lines = self.octets.removeprefix(_BYTE_ORDER_MARK).decode("utf-8", "replace").split("\n")
-        return lines[number - 1].rstrip("\r") if number <= len(lines) else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +108,7 @@ def validate_texts(
     checked = [one for one, size in zip(uncleared, sizes, strict=True) if size <= MOST_STATEMENTS]
     for problems in each(FileChecker(tuple(shapes), index), checked):
         diagnostics += problems
+    diagnostics += undeclared_signals(((source.name, source.octets) for source in files), seen, index)
     diagnostics += _irrelevant(seen, {found.file for found in diagnostics})
     return report((source.name for source in files), diagnostics)
 
@@ -146,7 +144,7 @@ def _loaded(source: SourceText) -> Prefiltered:
         raise TurtleError(fault.message, file=source.name, line=fault.line, column=fault.column)
     octets = source.octets.removeprefix(_BYTE_ORDER_MARK)
     found = prefilter(octets, source.base, turtle.format_of(source.name, octets).parser)
-    if found.problems:
+    if found.problems or found.too_large:
         turtle.read_ontology(octets, source.name, source.base)  # which raises, and words it
     return found
 
@@ -173,7 +171,7 @@ def _read(source: SourceText) -> tuple[list[Diagnostic], Prefiltered | None]:
 def _too_large(source: SourceText, size: int) -> Diagnostic:
     message = f"With {size:,} statements this file is too large to be checked in full."
     advice = f"Split it into files of at most {MOST_STATEMENTS:,} statements."
-    return Diagnostic(source.name, 1, 1, "SC-S05", message, hint=advice, source=source.line(1))
+    return TextPlaces(source.name, source.octets).on(1, 1, "SC-S05", message, advice)
 
 
 def _encoding(source: SourceText) -> Iterator[Diagnostic]:
@@ -181,16 +179,15 @@ def _encoding(source: SourceText) -> Iterator[Diagnostic]:
         source.octets.decode("utf-8")
     except UnicodeDecodeError as error:
         before = source.octets[: error.start].decode("utf-8").removeprefix("\ufeff")
-        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
         octet = source.octets[error.start]
         message = f"This is not UTF-8: the byte 0x{octet:02X} cannot stand here."
         advice = "Save the file in the encoding UTF-8."
-        yield Diagnostic(source.name, line, column, "SC-S02", message, hint=advice, source=source.line(line))
+        yield TextPlaces(source.name, source.octets).at(len(before), "SC-S02", message, advice)
         return
     before, nul, _ = source.octets.decode("utf-8").removeprefix("\ufeff").partition("\0")
     if nul:
-        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-        yield Diagnostic(source.name, line, column, "SC-S01", "This is not Turtle: it holds a NUL, as binary files do.")
+        message = "This is not Turtle: it holds a NUL, as binary files do."
+        yield replace(TextPlaces(source.name, source.octets).at(len(before), "SC-S01", message), source="")
 
 
 def _syntax(source: SourceText, screened: Prefiltered) -> Iterator[Diagnostic]:
@@ -198,17 +195,14 @@ def _syntax(source: SourceText, screened: Prefiltered) -> Iterator[Diagnostic]:
     if other is not None:
         message = f"This is {other.name}, and what is validated is Turtle."
         advice = f"Convert it: {turtle.conversion(source.name, other)}"
-        yield Diagnostic(source.name, 1, 1, "SC-S01", message, hint=advice, source=source.line(1))
+        yield TextPlaces(source.name, source.octets).on(1, 1, "SC-S01", message, advice)
         return
+    if not screened.problems and not screened.too_large:
+        return
+    text = TextPlaces(source.name, source.octets)
     for problem in telling(screened.problems):
         message = f"This is not Turtle: {problem.message.rstrip('.')}."
-        yield Diagnostic(
-            source.name,
-            problem.line,
-            problem.column,
-            "SC-S01",
-            message,
-            width=problem.width,
-            hint=hint(problem.message),
-            source=source.line(problem.line),
-        )
+        yield text.on(problem.line, problem.column, "SC-S01", message, hint(problem.message), problem.width)
+    if screened.too_large:
+        message = "A string or an IRI here has over 16 MiB, which is more than can be read."
+        yield text.at(text.largest_token(), "SC-S05", message)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.model.codes import BY_CODE
-from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.model.diagnostic import Diagnostic, Severity, excerpt, shortened
 from selfconf.rdf.positions import Positions
 
 
@@ -23,10 +23,10 @@ def at(
         place.line,
         place.column,
         code,
-        message,
+        shortened(message),
         severity or BY_CODE[code].severity,
         positions.width(place),
-        hint,
+        hint and shortened(hint),
         shape,
-        positions.line(place.line),
+        *excerpt(positions.text, *positions.bounds(place.line), place.column),
     )

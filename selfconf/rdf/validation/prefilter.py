@@ -26,6 +26,10 @@ _SUBJECTS = tuple(COMPONENT.walk())
 _RATE = COMPONENT[SC.hasOutput].into[SC.rate]
 _OWN = COMPONENT.predicates - {TYPE}
 """What only a component has."""
+_TYPED = frozenset((SC.signalType, SC.parameterType))
+"""What a port or an operational parameter has."""
+_LINKS = (SC.hasInput, SC.hasOutput, SC.hasParameter)
+"""How a component has them."""
 _FIELDS = frozenset((ROB.field, ROB.fieldName, ROB.datatype, ROB.repeated, ROB.optional))
 """What is said of kinds of signals and their fields."""
 _PART_TERMS = frozenset().union(*(subject.predicates for subject in _SUBJECTS)) - COMPONENT.predicates
@@ -70,6 +74,8 @@ class Prefiltered:
     """What the prefilter tells about a file."""
 
     problems: list[SyntaxProblem] = field(default_factory=list)
+    too_large: bool = False
+    """Whether the file has a token that is larger than Oxigraph's buffer, so that it cannot be read."""
     clear: bool = True
     """Whether every shape is certain to hold."""
     size: int = 0
@@ -106,6 +112,7 @@ def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.
         found.clear
         and all(_harmless(properties) and advertisements.rated(properties) for properties in statements.values())
         and all(advertisements.clear(component) for component in found.components)
+        and _owned(statements)
     )
     return found
 
@@ -134,6 +141,9 @@ def _read(octets: bytes, base: str | None, syntax: ox.RdfFormat, found: Prefilte
         except SyntaxError as error:
             found.clear = False
             found.problems.append(_problem(error))
+        except MemoryError:
+            found.clear, found.too_large = False, True
+            break
     return statements
 
 
@@ -214,6 +224,16 @@ def _harmless_type(kind: str) -> bool:
     if kind in SC:
         return kind == SC.Component or kind in _PARTS
     return not (kind in SH or kind in OWL or kind in RDFS or kind in RDF)
+
+
+def _owned(statements: Statements) -> bool:
+    """Whether something has each port and each operational parameter."""
+    parts = {node for node, properties in statements.items() if not _TYPED.isdisjoint(properties)}
+    for properties in statements.values():
+        for predicate in _LINKS:
+            if predicate in properties:
+                parts.difference_update(properties[predicate])
+    return not parts
 
 
 @dataclass(frozen=True, slots=True)

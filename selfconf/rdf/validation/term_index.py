@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import chain
 
 from selfconf.rdf.validation.prefilter import Prefiltered
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, XSD
@@ -22,6 +23,8 @@ _USUAL = frozenset(
 )
 STANDARD = tuple(namespace.base for namespace in (RDF, RDFS, OWL, XSD, SH))
 """Namespaces whose words are fixed by W3C recommendations."""
+OWN = SC.base.rstrip("#")
+"""What all namespaces begin with that come with selfconf, and that no one else declares."""
 
 
 def namespace(iri: str) -> str:
@@ -34,6 +37,15 @@ def skeleton(iri: str) -> str:
     return iri.partition("://")[2].rstrip("#/").removeprefix("www.").lower()
 
 
+def one_slip_apart(one: str, other: str) -> bool:
+    """Whether one text becomes another by inserting, deleting or replacing one character, or swapping neighbours."""
+    if one == other or abs(len(one) - len(other)) > 1:
+        return one == other
+    start = next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
+    a, b = one[start:], other[start:]
+    return a[1:] == b[1:] or a[1:] == b or a == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])
+
+
 @dataclass
 class TermIndex:
     """The terms that are known in one run."""
@@ -44,6 +56,7 @@ class TermIndex:
     above: set[tuple[str, str]] = field(default_factory=set)
     """What the files say of the hierarchy of classes: a class, and one right above it."""
     _strange: dict[str, bool] = field(default_factory=dict)
+    _confused: dict[str, str | None] = field(default_factory=dict)
 
     def learn(self, seen: Prefiltered) -> None:
         """Take up what a file declares; of one that declares classes or properties, everything that it speaks of.
@@ -57,6 +70,7 @@ class TermIndex:
             self.terms |= seen.terms | seen.subjects
             self.covered |= {namespace(term) for term in seen.terms} - {""}  # as of urn:x
         self._strange.clear()
+        self._confused.clear()
 
     def strange(self, iri: str) -> bool:
         """Whether an IRI lies in a covered or standard namespace, but is not known there at first sight."""
@@ -72,6 +86,10 @@ class TermIndex:
         """Whether a signal type is one that no loaded ontology speaks of."""
         return signal not in self.terms
 
+    def foreign(self, signal: str) -> bool:
+        """Whether a signal type lies in a namespace of which nothing is known, and which is not easily confused."""
+        return self.undeclared(signal) and not self.strange(signal) and self.confused(namespace(signal)) is None
+
     def serves(self, offered: str, wanted: str) -> bool:
         """Whether a class is another or lies below it, by what the loaded ontologies say."""
         found, waiting = {offered}, [offered]
@@ -83,21 +101,29 @@ class TermIndex:
         return wanted in found
 
     def confused(self, iri: str) -> str | None:
-        """The known namespace that this one is easily confused with, if it is another."""
+        """The known namespace that this one is easily confused with, if it is another.
+
+        Of the standard ones and of those that come with selfconf also one that is written with a slip.
+        """
         if iri in self.covered or iri in STANDARD:
             return None
-        key = skeleton(iri)
-        return next((known for known in (*sorted(self.covered), *STANDARD) if skeleton(known) == key), None)
+        if iri not in self._confused:
+            key = skeleton(iri)
+            known = (*sorted(self.covered), *STANDARD)
+            same = (one for one in known if skeleton(one) == key)
+            slips = (one for one in known if one.startswith(OWN) or one in STANDARD)
+            self._confused[iri] = next(chain(same, (one for one in slips if one_slip_apart(skeleton(one), key))), None)
+        return self._confused[iri]
 
     def clear(self, seen: Prefiltered) -> bool:
         """Whether nothing in a file needs a second look."""
         prefixes = [prefix for prefix, _ in seen.prefixes]
         return not (
             any(self.strange(iri) for iri in seen.used)
-            or any(self.undeclared(signal) for signal in seen.signals)
             or not self.object_properties.isdisjoint(seen.literal_of)
             or len(prefixes) != len(set(prefixes))
             or any(self.confused(iri) for _, iri in seen.prefixes)
+            or any(self.confused(home) for home in set(map(namespace, seen.used)))
             or any(component.startswith("file:") for component in seen.components)
         )
 

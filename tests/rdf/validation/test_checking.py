@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
@@ -12,6 +13,7 @@ from selfconf import library
 from selfconf.errors import TurtleError
 from selfconf.model.codes import CODES, PREAMBLE, Code
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
+from selfconf.rdf.validation import checking
 from selfconf.rdf.validation.checking import SourceText, validate_texts
 from tests.bad_files import BAD, checked, promised
 
@@ -220,3 +222,32 @@ def test_a_chain_of_two_thousand_roles_conforms() -> None:
     roles = "".join(f"{one} a sc:Role ; sh:class rob:Tuner .\n" for one in names)
     text = f"{PREAMBLE}:t a sc:Template ; sc:roles ( {' '.join(names)} ) .\n{chain}{roles}"
     assert not validate_texts([SourceText("t.ttl", text.encode())], SHAPES, ONTOLOGIES).diagnostics
+
+
+def test_a_foreign_vocabulary_is_told_once_in_a_run_and_costs_no_check(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checking, "MOST_STATEMENTS", 1)  # no file is checked in full
+    ports = " , ".join(f'[ sc:name "{n}" ; sc:signalType <urn:my#T{n % 3}> ]' for n in range(30))
+    files = [f":a{n} a sc:Component, rob:Tuner ; sc:hasOutput {ports} ." for n in range(3)]
+    (problem,) = check(*files).diagnostics
+    assert (problem.file, problem.code, problem.column) == ("0.ttl", "SC-L03", files[0].index("<urn:my#T0>") + 1)
+    assert "<urn:my#>" in problem.message
+
+
+def test_a_literal_that_cannot_be_read_is_told_at_its_place_and_loses_no_other_file() -> None:
+    large = f':a a sc:Component, rob:Tuner ;\n rdfs:label "{"x" * (17 << 20)}" .'
+    problems = check(large, ":a a sc:Component .").diagnostics
+    assert [(found.file, found.code) for found in problems] == [("0.ttl", "SC-S05"), ("1.ttl", "SC-A03")]
+    assert problems[0].column == 13
+    assert len(problems[0].source) < 1_000
+
+
+def test_many_problems_on_one_long_line_take_little_memory() -> None:
+    text = " ".join(f":a{n} a sc:Component, rob:Tuneer ." for n in range(2_000))
+    tracemalloc.start()
+    try:
+        problems = check(text).diagnostics
+        kept, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert len(problems) == 2_000
+    assert kept < 10 << 20

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
 from selfconf.rdf.validation.prefilter import prefilter
-from selfconf.rdf.validation.term_index import TermIndex, index_of, namespace, skeleton
+from selfconf.rdf.validation.term_index import TermIndex, index_of, namespace, one_slip_apart, skeleton
+from selfconf.rdf.vocabulary import SC
 from tests.lab import PREFIXES
 
 HOME = "https://example.org/peis-home#"
@@ -28,3 +31,27 @@ def test_an_ontology_covers_the_namespaces_in_which_it_declares_something() -> N
 def test_a_namespace_that_is_nearly_a_known_one_is_told() -> None:
     assert TermIndex().confused("http://w3id.org/selfconf/") == "https://w3id.org/selfconf#"
     assert TermIndex().confused("https://w3id.org/selfconf#") is None
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "near"),
+    [
+        ("robotics", "robotic", True),
+        ("selfconf", "self-conf", True),
+        ("selfconf", "selfcomf", True),
+        ("selfconf", "slefconf", True),
+        ("selfconf", "selfconf", True),
+        ("selfconf", "selfcnfo", False),
+        ("shacl", "shex", False),
+        ("owl", "prov", False),
+    ],
+)
+def test_a_text_is_nearly_another_if_one_slip_is_between_them(one: str, other: str, near: bool) -> None:
+    assert one_slip_apart(one, other) == one_slip_apart(other, one) == near
+
+
+def test_a_namespace_of_others_is_confused_only_by_its_scheme_or_its_end() -> None:
+    index = TermIndex(covered={SC.base, "https://example.org/home#"})
+    assert index.confused("http://example.org/home/") == "https://example.org/home#"
+    assert index.confused("https://example.org/home2#") is None
+    assert index.confused("https://w3id.org/selfconv#") == SC.base

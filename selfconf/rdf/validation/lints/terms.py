@@ -31,7 +31,7 @@ from selfconf.rdf.validation.lints.templates import (
     unused_parameters,
 )
 from selfconf.rdf.validation.prefilter import TERM_POSITIONS
-from selfconf.rdf.validation.term_index import TermIndex, namespace
+from selfconf.rdf.validation.term_index import OWN, TermIndex, namespace
 
 _STANDARD: dict[str, type[DefinedNamespace]] = {str(words._NS): words for words in (RDF, RDFS, OWL, XSD, SH)}
 _SC, _SH = vocabulary.SC, vocabulary.SH
@@ -97,19 +97,6 @@ def _closest(word: str, known: list[str]) -> str | None:
     return alike[0] if alike else None
 
 
-def undeclared_signals(file: LintedFile) -> Iterator[Diagnostic]:
-    """Signal types in a namespace that no loaded ontology covers."""
-    for (_, predicate, value), offsets in file.positions.triples.items():
-        signal = str(value)
-        if str(predicate) != _SC.signalType or not isinstance(value, URIRef):
-            continue
-        nearly = file.index.confused(namespace(signal)) is not None  # which is said of its prefix already
-        if file.index.undeclared(signal) and _known(signal, file.index) and not nearly:
-            message = f"No loaded ontology declares the signal type {file.short(signal)}."
-            hint = "Give the ontology that declares it with --ontology FILE."
-            yield at(file.positions, offsets.object, "SC-L03", message, hint=hint)
-
-
 def repeated_components(file: LintedFile) -> Iterator[Diagnostic]:
     """Components that another file describes as well."""
     for component, other in file.elsewhere.items():
@@ -125,11 +112,37 @@ def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
         if first.setdefault(prefix, iri) != iri:
             message = f"The prefix {prefix}: has been bound to <{first[prefix]}> before, and is now <{iri}>."
             yield at(file.positions, offset, "SC-L05", message)
-        meant = file.index.confused(iri)
-        if meant is not None:
-            severity = Severity.ERROR if meant in (_SC.base, _SH.base) else Severity.WARNING
-            message = f"The namespace <{iri}> is not <{meant}>."
-            yield at(file.positions, offset, "SC-L06", message, severity, f"Did you mean <{meant}>?")
+        if (meant := file.index.confused(iri)) is not None:
+            yield _confused(file, iri, meant, offset)
+
+
+def undeclared_prefixes(file: LintedFile) -> Iterator[Diagnostic]:
+    """Namespaces that are nearly known ones and have no prefix: told where the first of their terms stands."""
+    told = {iri for _, iri, _ in file.positions.prefixes}
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        for term, offset in ((predicate, offsets.predicate), (value, offsets.object)):
+            if not isinstance(term, URIRef) or (term is value and str(predicate) not in TERM_POSITIONS):
+                continue
+            home = namespace(str(term))
+            meant = None if home in told else file.index.confused(home)
+            told.add(home)
+            if meant is not None:
+                yield _confused(file, home, meant, offset)
+
+
+def _confused(file: LintedFile, iri: str, meant: str, offset: int) -> Diagnostic:
+    severity = Severity.ERROR if meant.startswith(OWN) or meant == _SH.base else Severity.WARNING
+    message = f"The namespace <{iri}> is not <{meant}>."
+    return at(file.positions, offset, "SC-L06", message, severity, f"Did you mean <{meant}>?")
+
+
+def ownerless_ports(file: LintedFile) -> Iterator[Diagnostic]:
+    """Ports that no component has: with a signal type, and without anything that has them."""
+    for signal, link in ((_SC.signalType, "sc:hasInput or sc:hasOutput"), (_SC.parameterType, "sc:hasParameter")):
+        for node in sorted(set(file.graph.subjects(URIRef(signal))), key=file.offset):
+            if (None, None, node) not in file.graph:
+                message = "No component has this port." if signal == _SC.signalType else "Nothing has this parameter."
+                yield at(file.positions, file.offset(node), "SC-L17", message, hint=f"Say whose it is, by {link}.")
 
 
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
@@ -154,9 +167,10 @@ def local_components(file: LintedFile) -> Iterator[Diagnostic]:
 
 WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unknown_terms,
-    undeclared_signals,
     repeated_components,
     prefixes,
+    undeclared_prefixes,
+    ownerless_ports,
     literals_for_iris,
     local_components,
 )
