@@ -22,7 +22,7 @@ from selfconf.rdf.validation import CheckEach, FileChecker, UnclearedFile
 
 WORTH = 16
 """Full checks that take about as long as starting a process."""
-PROGRAMS = ("selfconf", "pyshacl", "rdflib", "pyoxigraph")
+PROGRAMS = ("pyshacl", "rdflib", "pyoxigraph")
 _checker: FileChecker | None = None
 
 
@@ -54,7 +54,7 @@ class Remembered:
         """`paths` are what is validated: each selection of files has a memory of its own."""
         absolute = "\n".join(str(Path(path).absolute()) for path in paths)
         self._file = folder / "validate" / f"{hashlib.blake2s(absolute.encode(), digest_size=8).hexdigest()}.json"
-        self._each, self._versions = each, {name: version(name) for name in PROGRAMS}
+        self._each, self._versions = each, {"selfconf": _own_version(), **{name: version(name) for name in PROGRAMS}}
 
     def __call__(self, checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
         """What is remembered, and then what is not."""
@@ -84,6 +84,15 @@ class Remembered:
             with tempfile.NamedTemporaryFile("w", dir=self._file.parent, delete=False, encoding="utf-8") as file:
                 json.dump({"versions": self._versions, "outcomes": entries}, file)
             Path(file.name).replace(self._file)
+
+
+def _own_version() -> str:
+    """The version of selfconf, and a digest of the code that judges, which changes in a checkout without a version."""
+    digest = hashlib.blake2s(digest_size=16)
+    for room in ("model", "rdf"):
+        for file in sorted((Path(__file__).parents[1] / room).rglob("*.py")):
+            digest.update(file.read_bytes())
+    return f"{version('selfconf')} {digest.hexdigest()}"
 
 
 def _diagnostic(entry: dict[str, Any]) -> Diagnostic:

@@ -460,7 +460,7 @@ CODES: tuple[Code, ...] = (
         "Matching follows rdfs:subClassOf, rdfs:subPropertyOf and the equivalences; a literal leads nowhere.",
         ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf "rob:Tuner" .',
         ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf rob:Tuner .',
-        ("SuperclassNode", "EquivalentClassNode", "SuperpropertyIri", "EquivalentPropertyIri"),
+        ("SuperclassNode", "EquivalentClassNode", "SuperpropertyNode", "EquivalentPropertyNode"),
     ),
     Code(
         "SC-O02", "A term of an ontology has a label.",

@@ -227,6 +227,18 @@ class NoCommonValue(_Predicate):
 
 
 @dataclass(frozen=True, slots=True)
+class ParameterForbids(_Predicate):
+    """What the component states would be the value of a free parameter, which may not have it."""
+
+    code: ClassVar[str] = "parameter-forbids"
+    parameter: IRI
+    values: frozenset[Term]
+
+    def __str__(self) -> str:
+        return f"wants {self.parameter.short} to be {in_words(self.values)}, which it may not be"
+
+
+@dataclass(frozen=True, slots=True)
 class NotJudged(_Predicate):
     """What the component says would take too long to judge, or cannot be judged at all; so it plays no role."""
 
@@ -246,6 +258,7 @@ Obstacle = (
     | Excluded
     | ShapeViolated
     | NoCommonValue
+    | ParameterForbids
     | NotJudged
 )
 

@@ -113,3 +113,11 @@ def test_a_memory_that_is_broken_or_of_other_versions_is_forgotten(content: str,
 def test_a_memory_that_cannot_be_written_is_done_without(files: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
     assert check([str(files)], each=Remembered(tmp_path / "file", [str(files)])) == check([str(files)])
+
+
+def test_a_memory_of_other_code_is_forgotten(files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before, after = Counting(), Counting()
+    check([str(files)], each=Remembered(tmp_path, [str(files)], before))
+    monkeypatch.setattr("selfconf.api.file_checks._own_version", lambda: "edited")
+    check([str(files)], each=Remembered(tmp_path, [str(files)], after))
+    assert sorted(before.names) == sorted(after.names) != []

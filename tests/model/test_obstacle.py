@@ -17,6 +17,7 @@ from selfconf.model.obstacle import (
     NotAmong,
     NotJudged,
     Obstacle,
+    ParameterForbids,
     ParameterUndeclared,
     PropertyUnmet,
     ShapeViolated,
@@ -80,6 +81,11 @@ WORDED: list[tuple[Obstacle, str, str]] = [
         "leaves no value for a free parameter that its statements agree on",
         "it leaves no value for a free parameter that its statements agree on",
     ),
+    (
+        ParameterForbids(IRI("urn:room"), frozenset((Literal("hall"),))),
+        'wants room to be "hall", which it may not be',
+        'it wants room to be "hall", which it may not be',
+    ),
     (NotJudged("too much"), "is not judged: too much", "it is not judged: too much"),
 ]
 
@@ -105,6 +111,7 @@ def test_codes_are_stable_and_different() -> None:
         "no-alternative",
         "no-common-value",
         "not-judged",
+        "parameter-forbids",
         "parameter-undeclared",
         "property-unmet",
         "shape-violated",

@@ -10,7 +10,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, ShapeViolated
+from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, ParameterForbids, ShapeViolated
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
@@ -44,7 +44,10 @@ def exclusions(
     ecology = AdvertisementIndex.of(advertisements)
     akin = set(partitioner.akin(role, ecology))
     outside = {
-        advertisement: (kind in akin, verdict.obstacles)
+        advertisement: (
+            kind in akin,
+            verdict.obstacles or tuple(_forbidden(partitioner, verdict.allows).values()),
+        )
         for kind, alike, verdict in partitioner.tested(role, ecology, ecology.type_sets)
         for advertisement in alike
         if advertisement.component not in inside
@@ -96,11 +99,13 @@ def nearly(
 
 
 def _by_tests(partitioner: Partitioner, role: CompiledRole, few: Iterable[Tested]) -> Iterator[NearMiss]:
-    near = [
-        (alike, obstacle, _let_in(partitioner, role, alike[0]))
-        for _, alike, verdict in few
-        for obstacle in verdict.obstacles
-    ]
+    near: list[tuple[Sequence[Advertisement], Obstacle, Mapping[IRI, frozenset[Term]]]] = []
+    for _, alike, verdict in few:
+        near += [(alike, obstacle, _let_in(partitioner, role, alike[0])) for obstacle in verdict.obstacles]
+        forbidden = _forbidden(partitioner, verdict.allows)
+        if not verdict.obstacles and len(forbidden) == 1:
+            rest = {parameter: values for parameter, values in verdict.allows.items() if parameter not in forbidden}
+            near += [(alike, obstacle, rest) for obstacle in forbidden.values()]
     suitable = {
         parameter: partitioner.suitable.of(parameter, frozenset().union(*(a.get(parameter, ()) for *_, a in near)))
         for parameter in partitioner.free
@@ -109,6 +114,15 @@ def _by_tests(partitioner: Partitioner, role: CompiledRole, few: Iterable[Tested
         allowed = {parameter: values & suitable[parameter] for parameter, values in allows.items()}
         if all(allowed.values()):
             yield from (NearMiss(role.iri, a.component, obstacle, allowed) for a in alike)
+
+
+def _forbidden(partitioner: Partitioner, allows: Mapping[IRI, frozenset[Term]]) -> dict[IRI, ParameterForbids]:
+    """The free parameters that may have none of the values that a component wants them to have."""
+    return {
+        parameter: ParameterForbids(parameter, values)
+        for parameter, values in allows.items()
+        if values and not partitioner.suitable.of(parameter, values)
+    }
 
 
 def _let_in(partitioner: Partitioner, role: CompiledRole, advertisement: Advertisement) -> dict[IRI, frozenset[Term]]:

@@ -9,7 +9,7 @@ from selfconf.composition.composer import Composer
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
 from selfconf.rdf.advertisements.advertisement import Advertisement
-from selfconf.rdf.eligibility.nearly_eligible import near_misses
+from selfconf.rdf.eligibility.nearly_eligible import exclusions, near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.role_tests import ClassTest
 from selfconf.rdf.tasks import bindings, templates
@@ -116,3 +116,17 @@ def test_a_component_that_leaves_no_value_for_a_parameter_is_kept_out_by_that_to
     text += " sh:property [ sh:path :power ; sh:in ( 5 ) ] ; sh:property [ sh:path :support ; sh:in ( :robot ) ] ."
     assert near(text, ":a a sc:Component, :A ; :power 3 ; :support :Pippi .") == []
     assert near(text, ":a a sc:Component, :A ; :power 3 ; :support :Astrid .") == [("a", "its power is 3, not 5")]
+
+
+def test_a_value_that_a_free_parameter_may_not_have_is_one_thing_that_keeps_out() -> None:
+    room = ':t a sc:Template ; sc:parameter :room . :room a sc:Parameter ; sc:name "room" ; sh:in ( :kitchen ) .'
+    text = f"{room} {ROLE} sh:class :A ; sh:property [ sh:path :place ; sh:in ( :room ) ] ."
+    ads = (":far a sc:Component, :A ; :place :hall .", ":other a sc:Component, :B ; :place :hall .")
+    assert near(text, *ads) == [("far", "it wants room to be hall, which it may not be")]
+    (first, *_) = exclusions(partitioner(text), partitioner(text).roles[0], (), read(ads))
+    assert [str(obstacle) for obstacle in first.obstacles] == ["wants room to be hall, which it may not be"]
+
+
+def test_what_cannot_be_judged_in_time_is_no_near_miss() -> None:
+    text = f'{ROLE} sh:class :A ; sh:property [ sh:path :model ; sh:pattern "^(?=(\\\\w+)+$)" ] .'
+    assert near(text, f':slow a sc:Component, :A ; :model "{"ab" * 40}!" .') == []

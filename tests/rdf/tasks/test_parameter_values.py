@@ -29,3 +29,12 @@ def test_what_is_not_compiled_is_judged_by_pyshacl() -> None:
 def test_a_parameter_that_asks_for_nothing_takes_anything() -> None:
     document = parse(PREFIXES + ":level a sc:Parameter ; sc:name 'level' .", "t.ttl")
     assert misfits(LEVEL, (IRI("urn:a"), Literal("a")), document) == {}
+
+
+def test_a_pattern_that_takes_too_long_is_said_of_the_value_and_not_of_a_shape_of_our_own() -> None:
+    document = parse(PREFIXES + ":level a sc:Parameter ; sc:name 'level' ; sh:pattern '^(?=(\\\\w+)+$)' .", "t.ttl")
+    value = Literal("ab" * 40 + "!")
+    (reason,) = misfits(LEVEL, (value,), document).values()
+    assert "takes too long" in reason
+    assert "urn:" not in reason
+    assert suitable(LEVEL, frozenset((value,)), document) == frozenset()

@@ -251,3 +251,14 @@ def test_many_problems_on_one_long_line_take_little_memory() -> None:
         tracemalloc.stop()
     assert len(problems) == 2_000
     assert kept < 10 << 20
+
+
+@pytest.mark.parametrize("link", ["rdfs:subPropertyOf", "owl:equivalentProperty"])
+def test_a_property_may_lie_below_the_inverse_of_another(link: str) -> None:
+    assert not check(f':in a owl:ObjectProperty ; rdfs:label "in" ; {link} [ owl:inverseOf rob:place ] .').diagnostics
+
+
+def test_a_word_of_a_vocabulary_of_others_is_not_taken_for_a_standard_one() -> None:
+    words = SourceText("spec.ttl", b"<urn:spec#kind> a <http://www.w3.org/2002/07/owl#DatatypeProperty> .")
+    (problem,) = check(":a a sc:Component, rob:Tuner ; <urn:spec#class> 1 .", ontologies=[words]).diagnostics
+    assert (problem.code, problem.hint) == ("SC-L02", None)

@@ -31,7 +31,7 @@ from selfconf.rdf.validation.lints.templates import (
     unused_parameters,
 )
 from selfconf.rdf.validation.prefilter import TERM_POSITIONS
-from selfconf.rdf.validation.term_index import OWN, TermIndex, namespace
+from selfconf.rdf.validation.term_index import OWN, STANDARD, TermIndex, namespace
 
 _STANDARD: dict[str, type[DefinedNamespace]] = {str(words._NS): words for words in (RDF, RDFS, OWL, XSD, SH)}
 _SC, _SH = vocabulary.SC, vocabulary.SH
@@ -79,9 +79,17 @@ def _unknown(file: LintedFile, iri: str, offset: int) -> Diagnostic:
 
 
 def _elsewhere(iri: str, file: LintedFile) -> str | None:
-    """The term with that very name in another known namespace, for which this one has the wrong prefix."""
-    name = iri[len(namespace(iri)) :]
-    fixed = [URIRef(base + name) for base, words in _STANDARD.items() if URIRef(base + name) in words]
+    """The term with that very name in another known namespace, for which this one has the wrong prefix.
+
+    Between vocabularies of others and the standard ones nobody confuses prefixes: `spec:class` is not `sh:class`.
+    """
+    home = namespace(iri)
+    name = iri[len(home) :]
+    fixed = (
+        []
+        if home not in STANDARD and not home.startswith(OWN)
+        else [URIRef(base + name) for base, words in _STANDARD.items() if URIRef(base + name) in words]
+    )
     declared = [term for term in file.index.terms if term[len(namespace(term)) :] == name]
     return min((*map(str, fixed), *declared), default=None)
 
