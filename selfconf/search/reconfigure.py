@@ -32,7 +32,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.search import explain
 from selfconf.search.budget import Budget
-from selfconf.search.engines import CandidateSearch, ClauseSolver, solver_available
+from selfconf.search.engines import CandidateSearch, ClauseSolver, least_of_clauses, solver_available
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, assigned, pruned, reduced
 from selfconf.search.strategies import solution
@@ -184,7 +184,7 @@ class _NearestSearch:
                 return None
             proved = self._maximised(clauses, plays, keeping, budget)
             # With a budget of its own: what was maximised is not thrown away for want of the steps to name the first.
-            chosen = clauses.least(Budget(max(LEAST_STEPS, budget.steps or 0)))
+            chosen = least_of_clauses(clauses, Budget(max(LEAST_STEPS, budget.steps or 0)))
             if isinstance(chosen, Undecided):
                 chosen, proved = clauses.chosen(), False
             if not proved:

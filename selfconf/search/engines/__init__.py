@@ -7,17 +7,14 @@
   no matching; a `MaintainedMatching` follows a depth-first search.
 * `exclusive_groups` are groups of options of which at most one can play, and what counting them proves.
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
-  `least_by_clauses` find any or the least solution by it, and `minimise` a solution of least weight.
+  `least_by_clauses` find any or the least solution by several of them, `least_of_clauses` the least one of what a
+  solver has been told, and `minimise` a solution of least weight.
 """
 
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
-from selfconf.search.engines.clause_learning import (
-    ClauseSolver,
-    any_by_clauses,
-    least_by_clauses,
-    solver_available,
-)
+from selfconf.search.engines.clause_learning import ClauseSolver, solver_available
 from selfconf.search.engines.exclusion import exclusive_groups
+from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses, least_of_clauses
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
 from selfconf.search.engines.reduced_search import ReducedSearch, first_solution
@@ -34,6 +31,7 @@ __all__ = [
     "first_solution",
     "hall_set",
     "least_by_clauses",
+    "least_of_clauses",
     "minimise",
     "solver_available",
     "unmatchable",

@@ -8,10 +8,6 @@ that a budget means the same on every machine; it imports in a fortieth of a sec
 millisecond, an instance being a list of clauses and not a program to ground; and its lexicographic minimisation is
 exact, where clingo's priorities saturate at 32,767 levels. Without it everything works, and hard instances end as
 `Undecided` sooner.
-
-*The least solution.* Slot by slot, candidate by candidate: given the choices so far and a model, ask for one in which
-an earlier option is in the slot, the first one first, until there is none. What is settled is added as a unit, so that
-everything learned stays true, and the solver goes from one question to the next with it.
 """
 
 from __future__ import annotations
@@ -28,6 +24,10 @@ from selfconf.search.reduction import Constraint, Option, ReducedProblem
 
 SOLVER = "Minicard"
 """The solver, by the name of its class in python-sat."""
+SECOND_SOLVER = "Cadical195"
+"""The solver that joins in, which gets cardinalities as clauses."""
+FEW = 6
+"""At most one of so many literals is written pair by pair, for a solver that cannot count."""
 CONFLICTS_PER_CALL = 5_000
 """Conflicts for one call of the solver, a fraction of a second."""
 
@@ -37,30 +37,31 @@ def solver_available() -> bool:
     return find_spec("pysat") is not None
 
 
-def any_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
-    """Return any solution, one option per slot; None if there is none; Undecided when the budget ends."""
-    with ClauseSolver(reduced) as clauses:
-        found = clauses.solve((), budget)
-        return clauses.chosen() if found is True else None if found is False else found
+def as_clauses(literals: Sequence[int], most: int, top: int) -> list[list[int]]:
+    """Return clauses by which at most a number of literals hold; new literals are numbered from `top` on."""
+    from pysat.card import CardEnc, EncType
 
-
-def least_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
-    """Return the least solution, one option per slot; None if there is none; Undecided when the budget ends."""
-    with ClauseSolver(reduced) as clauses:
-        found = clauses.solve((), budget)
-        return clauses.least(budget) if found is True else None if found is False else found
+    kind = EncType.totalizer if most > 1 else EncType.pairwise if len(literals) <= FEW else EncType.seqcounter
+    return list(CardEnc.atmost(list(literals), most, top_id=top, encoding=kind).clauses)
 
 
 class ClauseSolver:
     """A reduced problem as clauses in an incremental solver; use it in a `with` statement."""
 
-    def __init__(self, reduced: ReducedProblem, guarded: bool = False, distinct: bool = True) -> None:
+    def __init__(
+        self,
+        reduced: ReducedProblem,
+        guarded: bool = False,
+        distinct: bool = True,
+        encoding: Encoding | None = None,
+        solver: str | None = None,
+    ) -> None:
         from pysat import solvers
 
         self.reduced = reduced
-        self._solver = getattr(solvers, SOLVER)()
+        self._solver = getattr(solvers, solver or SOLVER)()
         self._model: list[int] = []
-        encoding = Encoding(reduced, guarded, distinct)
+        encoding = encoding or Encoding(reduced, guarded, distinct)
         self.guards: dict[Constraint, int] = encoding.guards
         self.plays: tuple[tuple[int, ...], ...] = encoding.plays
         """For each role, the literals of its options."""
@@ -98,30 +99,25 @@ class ClauseSolver:
         if not force and self._solver.supports_atmost():
             self._solver.add_atmost(list(literals), most)
             return
-        from pysat.card import CardEnc, EncType
-
-        encoded = CardEnc.atmost(list(literals), most, top_id=self._top, encoding=EncType.seqcounter)
-        self._top = max(self._top, encoded.nv)
-        for clause in encoded.clauses:
+        for clause in as_clauses(literals, most, self._top):
             self.add([*force, *clause])
+            self._top = max(self._top, *clause)
 
     def solve(self, assumed: Sequence[int], budget: Budget) -> bool | Undecided:
         """Return whether the clauses can hold under assumptions; each conflict is a step, and each call."""
-        if budget.steps == 0:
-            return Undecided(0)
-        before = self._conflicts()
         found: bool | None = None
         while found is None and budget.steps != 0:
-            # The solver handles no signal inside a call, so that calls have to end for a time limit to be kept. Were
-            # no interrupt expected, it would catch Ctrl-C itself, and raise an error of its own.
-            self._solver.conf_budget(
-                CONFLICTS_PER_CALL if budget.steps is None else min(CONFLICTS_PER_CALL, budget.steps)
-            )
-            found = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
-            budget.spend(1 + self._conflicts() - before)
-            before = self._conflicts()
-        if found is None:
-            return Undecided(self._conflicts())
+            found = self.ask(assumed, budget)
+        return Undecided(self.conflicts()) if found is None else found
+
+    def ask(self, assumed: Sequence[int], budget: Budget, most: int | None = None) -> bool | None:
+        """Return whether the clauses can hold under assumptions; None if that takes more conflicts than a call may."""
+        # The solver handles no signal inside a call, so that calls have to end for a time limit to be kept. Were no
+        # interrupt expected, it would catch Ctrl-C itself, and raise an error of its own.
+        before = self.conflicts()
+        self._solver.conf_budget(min(some for some in (CONFLICTS_PER_CALL, most, budget.steps) if some is not None))
+        found: bool | None = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
+        budget.spend(1 + self.conflicts() - before)
         if found:
             self._model = self._solver.get_model()
         return found
@@ -170,7 +166,8 @@ class ClauseSolver:
                 self.add(clause)
         return int(counter.rhs[number - 1])
 
-    def _conflicts(self) -> int:
+    def conflicts(self) -> int:
+        """Return how many conflicts the solver has met."""
         return int(self._solver.accum_stats()["conflicts"])
 
     def holds(self, literal: int) -> bool:
@@ -190,27 +187,3 @@ class ClauseSolver:
             for option, literal in zip(options, literals, strict=True)
             if self.holds(literal)
         ]
-
-    def least(self, budget: Budget) -> list[Option] | Undecided:
-        """Return the least solution, given that there is a model.
-
-        The model is never forgotten: when the budget ends, `chosen` still gives a solution.
-        """
-        chosen: list[Option] = []
-        start, previous = 0, -1
-        for role in self.reduced.slots:
-            if role != previous:
-                start, previous = 0, role
-            literals = self.plays[role]
-            current = start
-            while not self.holds(literals[current]):
-                found = self.solve((literals[current],), budget)
-                if isinstance(found, Undecided):
-                    return found
-                if not found:
-                    self.add([-literals[current]])
-                    current += 1
-            self.add([literals[current]])
-            chosen.append(self.reduced.options[role][current])
-            start = current + 1
-        return chosen

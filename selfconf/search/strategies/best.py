@@ -35,7 +35,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.search import explain
 from selfconf.search.budget import Budget
-from selfconf.search.engines import ClauseSolver, ReducedSearch, minimise, solver_available
+from selfconf.search.engines import ClauseSolver, ReducedSearch, least_of_clauses, minimise, solver_available
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, pruned, reduced
 from selfconf.search.strategies.first import solution
@@ -238,7 +238,7 @@ def _by_cores(part: ReducedProblem, costs: CostTable, budget: Budget) -> tuple[l
             for literal, amount in zip(clauses.plays[role], of_role, strict=True):
                 weights[literal] = amount - min(of_role)
         more, proved, lightest = minimise(clauses, weights, budget)
-        found = clauses.least(budget) if proved else None
+        found = least_of_clauses(clauses, budget) if proved else None
         if isinstance(found, list):
             return found, unavoidable + more, True
         return lightest, unavoidable + more, False

@@ -13,6 +13,7 @@ from hypothesis import given
 from benchmarks.search import families
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning
+from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.constraints import pruned
 from selfconf.search.reduction.dominance import reduced
@@ -36,8 +37,8 @@ INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(),
 def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
     pytest.importorskip("pysat")
     expected = least_numbers(problem)
-    assert numbers(clause_learning.least_by_clauses(pruned(reduced(problem)), Budget())) == expected
-    assert numbers(clause_learning.least_by_clauses(reduced(problem), Budget(10_000))) == expected
+    assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == expected
+    assert numbers(least_by_clauses(reduced(problem), Budget(10_000))) == expected
 
 
 @pytest.mark.usefixtures("interruptible")

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from benchmarks.search.further_families import colouring, latin, pigeonholes, queens, tour
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning
-from selfconf.search.engines.clause_learning import least_by_clauses
 from selfconf.search.engines.exclusion import exclusive_groups
+from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, pruned, reduced
 from selfconf.search.strategies import solution

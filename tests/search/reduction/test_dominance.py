@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning
+from selfconf.search.engines.least_solution import any_by_clauses
 from selfconf.search.engines.reduced_search import first_solution
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.dominance import reduced
@@ -65,4 +66,4 @@ def test_the_first_roles_are_asked_for_nothing_that_a_later_one_may_feed(problem
     if expected is None:
         assert least_numbers(problem) is None
     if clause_learning.solver_available():
-        assert (clause_learning.any_by_clauses(given_, Budget()) is None) == (expected is None)
+        assert (any_by_clauses(given_, Budget()) is None) == (expected is None)

@@ -8,7 +8,7 @@ from hypothesis import given
 from benchmarks.search import families, sparql
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines import clause_learning
+from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.dominance import LazyReduction, reduced
 from selfconf.search.strategies import first
@@ -48,7 +48,7 @@ def test_a_cause_near_the_beginning_is_found_there_and_the_answer_is_the_same(se
     problem = families.graph("graph", 150, 10 + seed, 3, seed)
     given_ = LazyReduction(problem)
     found = first.solution(given_, Budget())
-    expected = numbers(clause_learning.least_by_clauses(reduced(problem), Budget()))
+    expected = numbers(least_by_clauses(reduced(problem), Budget()))
     assert isinstance(found, list) == (expected is not None)
     if isinstance(found, list):
         assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == expected

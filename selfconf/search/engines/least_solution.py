@@ -1,0 +1,199 @@
+"""The least solution by clause learning, with engines that take turns, or work beside each other.
+
+*Least.* Slot by slot, option by option: given what is settled and a model, ask for one in which an earlier option is in
+the slot, the earliest first, until there is none. What is settled is added as a unit, so that everything learned stays
+true, and a solver goes from one question to the next with it.
+
+*Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
+CaDiCaL with the counting written as clauses, each by an order of magnitude. So MiniCard begins, and where it has met
+`ALONE` conflicts the other joins in: in a process of its own, where there is a processor for it (`rival`), else in
+turns, each twice as long as the last one of that solver. With a budget of steps it is always in turns, as a step has
+to mean the same on every machine. What one engine has settled the other takes over, since the least solution is unique:
+so the answer is the same whoever finds it, and the time is that of the better one at each question.
+"""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+
+from selfconf.model.refusal import Undecided
+from selfconf.search.budget import Budget
+from selfconf.search.engines.clause_learning import SECOND_SOLVER, ClauseSolver
+from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.rival import Rival
+from selfconf.search.reduction import Option, ReducedProblem
+
+ALONE = 3_000
+"""Conflicts of the first solver before another one joins in."""
+BESIDE = 1_000
+"""Conflicts for a call while another engine works beside."""
+
+
+def any_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
+    """Return any solution, one option per slot; None if there is none; Undecided when the budget ends."""
+    return _Descent(reduced, budget, least=False).run()
+
+
+def least_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
+    """Return the least solution, one option per slot; None if there is none; Undecided when the budget ends."""
+    return _Descent(reduced, budget).run()
+
+
+def least_of_clauses(clauses: ClauseSolver, budget: Budget) -> list[Option] | Undecided:
+    """Return the least solution of the clauses that a solver has, given that there is a model.
+
+    The model is never forgotten: when the budget ends, `chosen` still gives a solution.
+    """
+    descent = _Descent(clauses.reduced, budget, clauses.plays)
+    descent.possible = True
+    turn = _Turn(clauses, modelled=True)
+    while not descent.finished:
+        descent.advance(turn, None)
+        if budget.steps == 0 and not descent.finished:
+            return Undecided(0)
+    return descent.chosen()
+
+
+class _Turn:
+    """A solver, and how far it knows what is settled."""
+
+    def __init__(self, clauses: ClauseSolver, modelled: bool = False) -> None:
+        self.clauses, self.modelled = clauses, modelled
+        """`modelled`: whether the last model has all that is settled."""
+        self.fixed = 0
+        """How many slots are settled in its clauses."""
+        self.rejected = 0
+        """Up to which option of the next slot none is possible, by its clauses."""
+        self.conflicts = ALONE
+        """How long its next turn is."""
+
+
+class _Descent:
+    """What is known of the least solution: the options of the first slots, settled by one engine or another."""
+
+    def __init__(
+        self,
+        reduced: ReducedProblem,
+        budget: Budget,
+        plays: tuple[tuple[int, ...], ...] | None = None,
+        least: bool = True,
+    ) -> None:
+        self.reduced, self.budget, self.least = reduced, budget, least
+        self.slots = reduced.slots
+        self.plays: tuple[tuple[int, ...], ...] = plays or ()
+        self.settled: list[int] = []
+        """For each of the first slots the number of its option."""
+        self.least_left = 0
+        """Below which number no option of the next slot is possible."""
+        self.possible: bool | None = None
+        self.rival: Rival | None = None
+
+    @property
+    def finished(self) -> bool:
+        """Whether the answer is known."""
+        return self.possible is False or len(self.settled) == len(self.slots)
+
+    def run(self) -> list[Option] | Undecided | None:
+        """Return the solution, None if there is none, or Undecided when the budget ends."""
+        encoding = Encoding(self.reduced)
+        self.plays = encoding.plays
+        with ExitStack() as stack:
+            turns = [_Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))]
+            self.advance(turns[0], ALONE)
+            if not self.finished and self.budget.steps is None and Rival.available():
+                self.rival = stack.enter_context(Rival(encoding, self.slots, self.least))
+                while not self.finished:
+                    self.advance(turns[0], None)
+            elif not self.finished and self.budget.steps != 0:
+                second = ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER)
+                turns.insert(0, _Turn(stack.enter_context(second)))
+            while not self.finished and self.budget.steps != 0:
+                turns.append(turn := turns.pop(0))
+                self.advance(turn, turn.conflicts)
+                turn.conflicts *= 2
+        if self.possible is False:
+            return None
+        return self.chosen() if self.finished else Undecided(0)
+
+    def chosen(self) -> list[Option]:
+        """Return the options that are settled."""
+        return [self.reduced.options[role][number] for role, number in zip(self.slots, self.settled, strict=True)]
+
+    def advance(self, turn: _Turn, conflicts: int | None) -> None:
+        """Let a solver work for a number of conflicts, or to the end."""
+        left = conflicts
+        while not self.finished and (left is None or left > 0) and self.budget.steps != 0:
+            self._heard()
+            self._inform(turn)
+            if self.finished:
+                return
+            before = turn.clauses.conflicts()
+            self._ask(turn, left)
+            if left is not None:
+                left -= 1 + turn.clauses.conflicts() - before
+
+    def _heard(self) -> None:
+        """Take over what the engine beside has found."""
+        if self.rival is None:
+            return
+        self.possible = self.rival.possible if self.possible is None else self.possible
+        for number in self.rival.settled()[len(self.settled) :]:
+            self._settle(number)
+
+    def _inform(self, turn: _Turn) -> None:
+        """Add what is settled to the clauses of a solver."""
+        clauses = turn.clauses
+        for slot in range(turn.fixed, len(self.settled)):
+            literals = self.plays[self.slots[slot]]
+            for number in range(self._start(slot), self.settled[slot]):
+                clauses.add([-literals[number]])
+            clauses.add([literals[self.settled[slot]]])
+            turn.modelled = turn.modelled and clauses.holds(literals[self.settled[slot]])
+        if turn.fixed < len(self.settled):
+            turn.fixed, turn.rejected = len(self.settled), 0
+        if not self.finished:
+            literals = self.plays[self.slots[turn.fixed]]
+            turn.rejected = max(turn.rejected, self._start(turn.fixed))
+            for number in range(turn.rejected, self.least_left):
+                clauses.add([-literals[number]])
+                turn.modelled = turn.modelled and not clauses.holds(literals[number])
+            turn.rejected = max(turn.rejected, self.least_left)
+
+    def _start(self, slot: int) -> int:
+        """Return the first option that a slot may have: slots of one role take options in ascending order."""
+        return self.settled[slot - 1] + 1 if slot and self.slots[slot] == self.slots[slot - 1] else 0
+
+    def _ask(self, turn: _Turn, conflicts: int | None) -> None:
+        """Ask a solver the next question, and draw the consequences."""
+        clauses = turn.clauses
+        most = BESIDE if self.rival is not None else conflicts
+        if not turn.modelled:
+            found = clauses.ask((), self.budget, most)
+            if found is not None:
+                self.possible = turn.modelled = found
+                if found and not self.least:
+                    self._settle_all(clauses)
+            return
+        literals = self.plays[self.slots[turn.fixed]]
+        if clauses.holds(literals[turn.rejected]):
+            self._settle(turn.rejected)
+            return
+        found = clauses.ask((literals[turn.rejected],), self.budget, most)
+        if found is True:
+            self._settle(turn.rejected)
+        elif found is False:
+            self.least_left = turn.rejected + 1
+
+    def _settle(self, number: int) -> None:
+        self.settled.append(number)
+        self.least_left = 0
+        if len(self.settled) < len(self.slots):
+            self.least_left = self._start(len(self.settled))
+
+    def _settle_all(self, clauses: ClauseSolver) -> None:
+        """Take a model as it is."""
+        place: dict[int, list[int]] = {}
+        for role, literals in enumerate(self.plays):
+            place[role] = [number for number, literal in enumerate(literals) if clauses.holds(literal)]
+        for role in self.slots:
+            self._settle(place[role].pop(0))

@@ -1,0 +1,84 @@
+"""An engine in a process of its own: CaDiCaL, which looks for the same least solution beside the search.
+
+The process gets the clauses through a socket and answers with the options of the least solution, slot after slot, as
+it settles them; what is settled here is not told there. It is ended with the search, however that ends; if this process
+is killed, the other one finds the socket closed after its next few conflicts, and ends.
+"""
+
+from __future__ import annotations
+
+import marshal
+import os
+import socket
+import subprocess
+import sys
+from array import array
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+from selfconf.search.engines.clause_learning import SECOND_SOLVER
+from selfconf.search.engines.encoding import Encoding
+
+PROGRAM = Path(__file__).with_name("rival_process.py")
+
+
+class Rival:
+    """The process, and what it has found so far; use it in a `with` statement."""
+
+    def __init__(self, encoding: Encoding, slots: Sequence[int], least: bool) -> None:
+        question = (
+            SECOND_SOLVER,
+            encoding.top,
+            encoding.clauses,
+            [(list(literals), most, list(force)) for literals, most, force in encoding.bounds],
+            [encoding.plays[role] for role in slots],
+            [place > 0 and slots[place] == slots[place - 1] for place in range(len(slots))],
+            least,
+        )
+        data = marshal.dumps(question)
+        self._unsent = memoryview(len(data).to_bytes(8, "big") + data)
+        self._found = b""
+        self.possible: bool | None = None
+        """Whether there is a solution, once that is known."""
+        self._socket, other = socket.socketpair()
+        self._socket.setblocking(False)
+        place = Path(find_spec("pysat").origin).parents[1]  # type: ignore[union-attr, arg-type] # `available` found it
+        command = [sys.executable, "-I", str(PROGRAM), str(place)]
+        # A session of its own: Ctrl-C at a terminal is for the search, which then ends this process.
+        self._process = subprocess.Popen(
+            command, stdin=other.fileno(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+        other.close()
+
+    @staticmethod
+    def available() -> bool:
+        """Return whether a process can be started, and there is a processor for it."""
+        processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        return processors > 1 and bool(sys.executable) and PROGRAM.is_file()
+
+    def __enter__(self) -> Rival:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._socket.close()
+        self._process.kill()
+        self._process.wait()
+
+    def settled(self) -> Sequence[int]:
+        """Return the options of the first slots that are settled by now, without waiting."""
+        try:
+            while self._unsent:
+                self._unsent = self._unsent[self._socket.send(self._unsent) :]
+            while part := self._socket.recv(1 << 16):
+                self._found += part
+        except BlockingIOError:
+            pass
+        except OSError:
+            # The process has ended: what it has found stays true, and the search goes on alone.
+            self._unsent = memoryview(b"")
+        numbers = array("i")
+        numbers.frombytes(self._found[: len(self._found) // numbers.itemsize * numbers.itemsize])
+        if numbers:
+            self.possible = bool(numbers[0])
+        return numbers[1:]
