@@ -222,6 +222,13 @@ class Refusal:
     """The components without which there is no configuration, and which other tasks hold."""
     irreducible: bool = True
     """Whether each reason was proved to need all of its requirements; not when the steps for that were used up."""
+    smallest: bool = True
+    """Whether each reason was proved to have the fewest requirements that cannot hold together."""
+
+    @property
+    def minimality(self) -> str:
+        """What is proved of the reasons: they are `smallest`, at least `irreducible`, or `unproved`."""
+        return "smallest" if self.smallest else "irreducible" if self.irreducible else "unproved"
 
     def __bool__(self) -> bool:
         return False

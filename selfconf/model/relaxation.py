@@ -8,9 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from selfconf.model.obstacle import in_words
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.profile import Output, Place
-from selfconf.model.term import IRI
+from selfconf.model.term import IRI, Term
 from selfconf.model.wording import listed
 
 
@@ -21,12 +22,19 @@ class Addition:
     role: IRI
     count: int
     outputs: tuple[Output, ...] = ()
+    named: frozenset[str] = frozenset()
+    """The names of outputs that an interaction asks for; the others may be called anything."""
+    values: tuple[tuple[str, Term], ...] = ()
+    """Of free parameters, by name, the value that each component must admit."""
 
     def __str__(self) -> str:
         number = "one more component" if self.count == 1 else f"{self.count} more components"
-        signals = listed(dict.fromkeys(output.signal.short for output in self.outputs))
-        issuing = f" that issue{'s' if self.count == 1 else ''} {signals}" if signals else ""
-        return f"{number} for the role {self.role.short}{issuing}"
+        signals = listed(dict.fromkeys(output.signal.short for output in self.outputs if output.name not in self.named))
+        by_name = [f"{o.signal.short} by the output {o.name!r}" for o in self.outputs if o.name in self.named]
+        issued = listed([*([signals] if signals else []), *by_name])
+        issuing = f" that issue{'s' if self.count == 1 else ''} {issued}" if issued else ""
+        values = "".join(f", with {name} {in_words((value,))}" for name, value in self.values)
+        return f"{number} for the role {self.role.short}{issuing}{values}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from selfconf.model.number import plain_number
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Reason, Refusal, Undecided
-from selfconf.model.relaxation import Relaxation
+from selfconf.model.relaxation import AddComponents, Relaxation
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal, Term
 
 _BOOLEAN = XSD_NAMESPACE + "boolean"
@@ -74,7 +74,7 @@ def undecided_body(undecided: Undecided) -> dict[str, Any]:
 def refusal_body(refusal: Refusal) -> dict[str, Any]:
     """A refusal; each fact has its `place` where that is known."""
     repairs: list[dict[str, Any]] = [
-        {"code": repair.code, "role": repair.role, "message": str(repair), **_place(repair)}
+        {"code": repair.code, "role": repair.role, "message": str(repair), **_additions(repair), **_place(repair)}
         for repair in refusal.repairs
     ]
     if refusal.hint:
@@ -85,6 +85,7 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
             {"code": reason.code, "role": reason.role, "message": str(reason), **_place(reason)}
             for reason in refusal.reasons
         ],
+        **({} if refusal.smallest else {"minimality": refusal.minimality}),
         "near_misses": [
             {"role": miss.role, "component": miss.component, "obstacle": str(miss.obstacle), **_place(miss)}
             for miss in refusal.near_misses
@@ -102,6 +103,22 @@ def holder_body(holder: Holder) -> dict[str, Any]:
         "priority": holder.priority,
         "since": holder.beginning,
         "configurator": holder.configurator,
+def _additions(repair: Relaxation) -> dict[str, Any]:
+    """The components to be added, if it is that: an output has a name where an interaction asks for one."""
+    if not isinstance(repair, AddComponents):
+        return {}
+    return {
+        "additions": [
+            {
+                "role": one.role,
+                "count": one.count,
+                "outputs": [
+                    {**({"name": o.name} if o.name in one.named else {}), "signal": o.signal} for o in one.outputs
+                ],
+                "values": {name: value_body(value) for name, value in one.values},
+            }
+            for one in repair.additions
+        ]
     }
 
 

@@ -76,6 +76,13 @@ def undecided_text(undecided: Undecided, template: IRI, name: Name) -> str:
     return f"{name(template)} is {undecided}"
 
 
+NOT_PROVED = {
+    "irreducible": "irreducible: all of that is needed, but another reason might be shorter",
+    "unproved": "explaining stopped there: not all of that may be needed",
+}
+"""What is said of a reason that is not proved to be a smallest one."""
+
+
 def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
     """A refusal on one screen, the most likely cause first, each line with the place that it speaks of."""
     lines = [f"no configuration for {name(refusal.template)}"]
@@ -84,6 +91,8 @@ def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
     lines += [_placed(f"  because {reason}", reason) for reason in refusal.reasons[:most]]
     if len(refusal.reasons) > most:
         lines.append(f"  and {len(refusal.reasons) - most} more reasons")
+    if refusal.reasons and refusal.minimality in NOT_PROVED:
+        lines.append(f"  {NOT_PROVED[refusal.minimality]}")
     if refusal.near_misses:
         lines.append("near misses")
         lines += [_placed(f"  {_near_miss(miss, name)}", miss) for miss in refusal.near_misses[:most]]

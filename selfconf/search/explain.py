@@ -4,19 +4,23 @@
 2. Arc consistency leaves a role without candidates (a domain wipe-out). The constraints that its derivation used, from
    that role back to the needs that nothing supports, cannot hold together.
 3. Matching fails: Hall's set of roles.
-4. Otherwise the clause-learning engine names assumptions that cannot hold together (an unsatisfiable core), again and
+4. Groups of options that exclude each other are fewer than the slots that draw on them: these roles, and the needs from
+   which the groups follow.
+5. Otherwise the clause-learning engine names assumptions that cannot hold together (an unsatisfiable core), again and
    again with one of them left out, until each is needed.
 
-What 2 and 3 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component only:
+What 2 to 4 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component only:
 then the rest is possible without any one of its roles. So is the set of all constraints where there is no such engine:
 a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains of n. Each is
 decided on a subproblem with only these constraints in force, which is small when they are few.
-Irreducible (a minimal unsatisfiable subset) does not mean smallest.
+Irreducible (a minimal unsatisfiable subset) does not mean smallest. The smallest is looked for afterwards, with a
+budget of its own (`smallest_core`); a refusal says which of both its reason is proved to be. Where the budget for
+making it irreducible ends, the reason is the smallest set that was met until then.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from selfconf.model import requirement as model
 from selfconf.model.refusal import (
@@ -32,7 +36,15 @@ from selfconf.model.refusal import (
     ValueUnknown,
 )
 from selfconf.search.budget import Budget
-from selfconf.search.engines import ClauseSolver, HallSet, first_solution, hall_set, solver_available
+from selfconf.search.engines import (
+    ClauseSolver,
+    HallSet,
+    exclusive_groups,
+    first_solution,
+    hall_set,
+    smallest_core,
+    solver_available,
+)
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import (
     Constraint,
@@ -50,8 +62,12 @@ from selfconf.search.reduction import (
     subproblem,
 )
 
-EXPLANATION_STEPS = 1_000_000
-"""Steps spent at most on making reasons irreducible."""
+EXPLANATION_STEPS = 50_000
+"""Steps spent at most on making reasons irreducible, a second or two; a question costs one for each option at least."""
+SMALLEST_STEPS = 20_000
+"""Steps spent at most on looking for a smaller reason."""
+SMALLEST_OPTIONS = 5_000
+"""In how many options at most a smaller reason is looked for."""
 QUESTION_STEPS = 1000
 """Steps of depth-first search for one question before clauses are written."""
 
@@ -64,8 +80,11 @@ def refusal(given: LazyReduction, steps: int = EXPLANATION_STEPS) -> Refusal:
     if unary:
         return Refusal(template, unary)
     oracle = FeasibilityOracle(given.reduced, Budget(steps))
-    found = core(oracle)
-    return Refusal(template, (_Wording(problem, given.reduced, found).reason(),), irreducible=oracle.complete)
+    found, smallest = core(oracle), False
+    if oracle.complete:
+        found, smallest = smallest_of(oracle, found)
+    reason = _Wording(problem, given.reduced, found).reason()
+    return Refusal(template, (reason,), irreducible=oracle.complete, smallest=smallest)
 
 
 def _reasons_of_single_roles(problem: Problem) -> Iterator[Reason]:
@@ -95,6 +114,9 @@ class FeasibilityOracle:
         if part.wiped_out() is not None or (distinct and self._hall_set(part, wanted)):
             return False
         aided = solver_available()
+        self.budget.spend(len(wanted) + sum(map(len, part.options)))
+        if self.budget.steps == 0:
+            return Undecided(0)
         found = first_solution(part, self.budget.part(QUESTION_STEPS) if aided else self.budget, distinct)
         if isinstance(found, Undecided) and aided:
             with ClauseSolver(part, distinct=distinct) as clauses:
@@ -150,9 +172,63 @@ def core(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
     if lack is not None:
         together: tuple[Constraint, ...] = (*map(Played, lack.roles), Distinct())
         return together if lack.wanted == lack.found + 1 else oracle.irreducible(together)
+    crowded = exclusive_groups(pruned(given)).crowded
+    if crowded:
+        return oracle.irreducible(_among(given, crowded))
     if not solver_available():
         return oracle.irreducible(all_of(given))
     return _core_by_deletion(oracle)
+
+
+def _among(given: ReducedProblem, roles: Collection[int]) -> tuple[Constraint, ...]:
+    """Return the constraints that are about some roles alone."""
+    return tuple(
+        one
+        for one in all_of(given)
+        if isinstance(one, Distinct)
+        or (isinstance(one, Played) and one.role in roles)
+        or (isinstance(one, Fed) and {given.needs[one.need].role, *_sources(given, one.need)} <= set(roles))
+    )
+
+
+def _sources(given: ReducedProblem, need: int) -> set[int]:
+    return {source for source, _ in given.needs[need].sources}
+
+
+def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tuple[tuple[Constraint, ...], bool]:
+    """Return a smallest set of constraints that cannot hold together, given an irreducible one, and whether it is one.
+
+    Of a set of two neither is enough: every role has as many candidates as it asks for, and where none has to be played
+    nothing fails.
+    """
+    given = oracle.given
+    if len(known) <= 2:
+        return known, True
+    if not solver_available() or sum(map(len, given.options)) > SMALLEST_OPTIONS:
+        return known, False
+    budget = oracle.budget.part(SMALLEST_STEPS)
+    with ClauseSolver(given, guarded=True) as clauses:
+        universe = [one for one in all_of(given) if one in clauses.guards]
+        clauses.prefer(clauses.guards.values())
+
+        def held(wanted: Collection[Constraint]) -> Collection[Constraint] | Undecided | None:
+            """Return a maximal set of constraints that hold together with those that are wanted."""
+            together = set(wanted)
+            for one in (None, *universe):
+                if one in together:
+                    continue
+                asked = together if one is None else {*together, one}
+                answer = clauses.solve([clauses.guards[other] for other in universe if other in asked], budget)
+                if isinstance(answer, Undecided):
+                    return answer
+                if answer:
+                    together = {other for other in universe if clauses.holds(clauses.guards[other])}
+                elif one is None:
+                    return None
+            return together
+
+        found, proved = smallest_core(known, universe, held, budget)
+    return tuple(found), proved
 
 
 def _core_by_deletion(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:

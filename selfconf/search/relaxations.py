@@ -1,7 +1,8 @@
 """Relaxations: changes that make a refused task possible, each of which was tried and found to work.
 
 *Components to add.* A component without inputs that issues every signal that the roles fed by its own could need is the
-most helpful that could be added for a role. Wherever there is no solution, an irreducible set of constraints cannot
+most helpful that could be added for a role; an output that an interaction names has one signal, so that there may be a
+choice of these. Wherever there is no solution, an irreducible set of constraints cannot
 hold; only a component for one of its roles, or for a role that may feed one of its inputs, changes that. So
 breadth-first search over sets of such additions, each extended by these roles alone, finds the fewest; then outputs are
 taken away again one by one, as long as there is a solution without them.
@@ -48,8 +49,13 @@ TRIALS = 24
 """How many changed problems are tried for each sort of relaxation."""
 TRIAL_STEPS = 100_000
 """Steps for each trial."""
-RELAXATION_STEPS = 1_000_000
-"""Steps for all trials together."""
+RELAXATION_STEPS = 200_000
+"""Steps for all trials together; each costs one for every four ports at least."""
+HELPFUL_STEPS = 10_000
+"""Steps to find out whose help a conflict needs."""
+PORTS_PER_TRIAL_STEP = 4
+CHOICES = 8
+"""How many choices of outputs are tried for a role, where interactions name outputs."""
 NEAR = 8
 """How many near misses are tried: no more than there is room for on a screen."""
 MOST_ROLES = 8
@@ -111,11 +117,18 @@ def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
 
 
 def _solution(problem: Problem, budget: Budget) -> list[list[Candidate]] | Undecided | None:
+    budget.spend(_ports(problem) // PORTS_PER_TRIAL_STEP)
     with budget.portion(TRIAL_STEPS + sum(map(len, problem.candidates))) as part:
         return solution(LazyReduction(problem), part)
 
 
+def _ports(problem: Problem) -> int:
+    """Return how many ports there are, which is what preparing a trial costs."""
+    return sum(len(c.profile.inputs) + len(c.profile.outputs) for some in problem.candidates for c in some)
+
+
 def _possible(problem: Problem, budget: Budget) -> bool:
+    budget.spend(_ports(problem) // PORTS_PER_TRIAL_STEP)
     with budget.portion(TRIAL_STEPS + sum(map(len, problem.candidates))) as part:
         return possible(problem, part)
 
@@ -142,30 +155,41 @@ def _newcomer(problem: Problem, role: IRI, number: int, outputs: tuple[Output, .
     return Candidate(Profile(name, ports=Ports(outputs=outputs)), tuple(ANY_VALUE for _ in problem.variables))
 
 
+Added = Counter[tuple[int, tuple[Output, ...]]]
+"""How many components are added for each role and choice of outputs."""
+
+
 def _additions(problem: Problem, budget: Budget) -> AddComponents | None:
     """Return the fewest components to add, if a few are enough: breadth-first search over sets of additions."""
-    start = _lacking(problem)
-    if start is None:
+    lacking = _lacking(problem)
+    if lacking is None:
         return None
-    outputs = [wanted_of(problem, role) for role in range(len(problem.roles))]
-    waiting, seen = [start], {frozenset(start.items())}
+    choices = [wanted_of(problem, role) for role in range(len(problem.roles))]
+    waiting = _lacked(lacking, choices)
+    seen = {frozenset(added.items()) for added in waiting}
     for trial in range(TRIALS):
         if trial >= len(waiting):
             return None
-        counts = waiting[trial]
-        changed = relaxed_by(problem, _added(problem, counts, outputs))
-        playing = _solution(changed, budget) if counts else None
+        added = waiting[trial]
+        changed = relaxed_by(problem, _asked(problem, added))
+        playing = _solution(changed, budget) if added else None
         if isinstance(playing, list):
-            return _trimmed(problem, counts, outputs, playing, budget)
+            return _trimmed(problem, added, playing, budget)
         if playing is not None:
             # Undecided: what comes later in the queue may be possible, and would not be known to be the fewest.
             return None
-        for role in _helpful(changed, budget):
-            further = counts + Counter({role: 1})
+        for one in [(role, outputs) for role in _helpful(changed, budget) for outputs in choices[role]]:
+            further = added + Counter({one: 1})
             if frozenset(further.items()) not in seen:
                 seen.add(frozenset(further.items()))
                 waiting.append(further)
     return None
+
+
+def _lacked(lacking: Counter[int], choices: Sequence[Sequence[tuple[Output, ...]]]) -> list[Added]:
+    """Return additions for what each role lacks by itself; all that are for one role issue the same."""
+    ways = itertools.product(*([(role, outputs) for outputs in choices[role]] for role in lacking))
+    return [Counter({one: lacking[one[0]] for one in chosen}) for chosen in itertools.islice(ways, TRIALS)]
 
 
 def _lacking(problem: Problem) -> Counter[int] | None:
@@ -177,17 +201,34 @@ def _lacking(problem: Problem) -> Counter[int] | None:
     return +lacking if sum(lacking.values()) <= MOST_ADDED else None
 
 
-def wanted_of(problem: Problem, role: int) -> tuple[Output, ...]:
-    """Return one output for each signal that the roles fed by a role could need of it."""
-    wanted: dict[Output, None] = {}
+def wanted_of(problem: Problem, role: int) -> list[tuple[Output, ...]]:
+    """Return the choices of outputs for a component that could feed all that a role may have to feed.
+
+    It issues each signal that the roles fed by it could need; but where an interaction names the output, that output
+    has one signal only, so that there is a choice for each.
+    """
+    plain: dict[IRI, None] = {}
+    by_name: dict[str, dict[IRI, None]] = {}
     for sink in problem.sinks[role]:
         for link in problem.links[sink]:
             if link.source == role:
+                signals = plain if link.output is None else by_name.setdefault(link.output, {})
                 for candidate in problem.candidates[sink]:
-                    for port in candidate.profile.inputs:
-                        if link.input in (None, port.name):
-                            wanted[Output(link.output or port.signal.short, port.signal)] = None
-    return tuple(wanted)
+                    signals.update(
+                        (port.signal, None) for port in candidate.profile.inputs if link.input in (None, port.name)
+                    )
+    names = set(by_name)
+    others = []
+    for signal in plain:
+        name, number = signal.short, 2
+        while name in names:
+            name, number = f"{signal.short}{number}", number + 1
+        names.add(name)
+        others.append(Output(name, signal))
+    ways = itertools.product(
+        *([Output(name, signal) for signal in signals] for name, signals in by_name.items() if signals)
+    )
+    return [(*others, *chosen) for chosen in itertools.islice(ways, CHOICES)]
 
 
 def _helpful(problem: Problem, budget: Budget) -> list[int]:
@@ -195,7 +236,7 @@ def _helpful(problem: Problem, budget: Budget) -> list[int]:
     given = reduced(problem)
     if given.wiped_out() is not None:
         return []
-    with budget.portion(TRIAL_STEPS) as part:
+    with budget.portion(HELPFUL_STEPS) as part:
         together = core(FeasibilityOracle(given, part))
     sources = [s for r in together if isinstance(r, Fed) for s, _ in given.needs[r.need].sources]
     played = set(given.slots)
@@ -204,42 +245,69 @@ def _helpful(problem: Problem, budget: Budget) -> list[int]:
     return [role for role in found if role in played]
 
 
-def _added(problem: Problem, counts: Counter[int], outputs: Sequence[tuple[Output, ...]]) -> AddComponents:
+def _asked(problem: Problem, added: Added) -> AddComponents:
+    """Return additions as a relaxation, those of a role and of equal outputs as one."""
     return AddComponents(
-        tuple(Addition(problem.roles[role].iri, counts[role], outputs[role]) for role in sorted(counts))
+        tuple(
+            Addition(problem.roles[role].iri, count, outputs, _named(problem, role) & {o.name for o in outputs})
+            for (role, outputs), count in sorted(added.items(), key=lambda one: one[0])
+        )
     )
 
 
-def _trimmed(
-    problem: Problem,
-    counts: Counter[int],
-    outputs: Sequence[tuple[Output, ...]],
-    playing: list[list[Candidate]],
-    budget: Budget,
-) -> AddComponents:
+def _named(problem: Problem, role: int) -> frozenset[str]:
+    """Return the names by which interactions ask for outputs of a role."""
+    links = (link for sink in problem.sinks[role] for link in problem.links[sink])
+    return frozenset(link.output for link in links if link.source == role and link.output is not None)
+
+
+def _trimmed(problem: Problem, added: Added, playing: list[list[Candidate]], budget: Budget) -> AddComponents:
     """Return additions with only the outputs that are needed for a solution; `playing` is a solution with all."""
-    left = list(outputs)
-    for role in sorted(counts):
-        for output in outputs[role]:
-            fewer = tuple(one for one in left[role] if one != output)
-            # All that is added for the role changes alike, so that one addition can stand for them all.
-            changed = [*playing[:role], [_without(c, fewer) for c in playing[role]], *playing[role + 1 :]]
+    for one in sorted(added):
+        role, left = one
+        for output in one[1]:
+            fewer = tuple(other for other in left if other != output)
+            changed = [*playing[:role], [_without(c, left, fewer) for c in playing[role]], *playing[role + 1 :]]
+            trial: Added = Counter()
+            for (at, outputs), count in added.items():
+                trial[at, fewer if (at, outputs) == (role, left) else outputs] += count
             if not all(
                 problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]
             ):
-                asked = _added(problem, counts, [*left[:role], fewer, *left[role + 1 :]])
-                found = _solution(relaxed_by(problem, asked), budget)
+                found = _solution(relaxed_by(problem, _asked(problem, trial)), budget)
                 if not isinstance(found, list):
                     continue
                 changed = found
-            left[role], playing = fewer, changed
-    return _added(problem, counts, left)
+            left, playing, added = fewer, changed, trial
+    return _with_values(problem, _asked(problem, added), playing)
 
 
-def _without(candidate: Candidate, outputs: tuple[Output, ...]) -> Candidate:
-    if not candidate.profile.component.startswith(ADDITION):
+def _without(candidate: Candidate, known: tuple[Output, ...], outputs: tuple[Output, ...]) -> Candidate:
+    """Return a component that is added, and has the outputs that are known, with these instead; any other as it is."""
+    profile = candidate.profile
+    if not profile.component.startswith(ADDITION) or profile.outputs != known:
         return candidate
-    return replace(candidate, profile=replace(candidate.profile, ports=Ports(candidate.profile.inputs, outputs)))
+    return replace(candidate, profile=replace(profile, ports=Ports(profile.inputs, outputs)))
+
+
+def _with_values(problem: Problem, asked: AddComponents, playing: list[list[Candidate]]) -> AddComponents:
+    """Return additions with the values of free parameters that the others leave, where the role speaks of them."""
+    names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
+    left = list(problem.open_values)
+    for candidate in itertools.chain(*playing):
+        left = [value & allowed for value, allowed in zip(left, candidate.admits, strict=True)]
+    index = {role.iri: number for number, role in enumerate(problem.roles)}
+    found = []
+    for addition in asked.additions:
+        candidates = problem.candidates[index[addition.role]]
+        values = tuple(
+            (names[variable.parameter], value)
+            for number, variable in enumerate(problem.variables)
+            if left[number] > 0 and (value := variable.first(left[number])) is not None
+            if not candidates or any(c.admits[number] != ANY_VALUE for c in candidates)
+        )
+        found.append(replace(addition, values=values))
+    return AddComponents(tuple(found))
 
 
 def _unfed(refused: Refusal) -> list[InputFed]:

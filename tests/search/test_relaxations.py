@@ -52,10 +52,9 @@ def test_every_relaxation_works_and_adds_as_few_components_as_possible(problem: 
                 assert not _possible(relaxed_by(problem, AddComponents((*some[:place], less, *some[place + 1 :]))))
     fewest = sum(addition.count for addition in added[0].additions) if added else 3
     for size in range(1, min(fewest, 3)):
-        for roles in combinations_with_replacement(range(len(problem.roles)), size):
-            more = tuple(
-                Addition(problem.roles[r].iri, roles.count(r), wanted_of(problem, r)) for r in sorted(set(roles))
-            )
+        choices = [(role, outputs) for role in range(len(problem.roles)) for outputs in wanted_of(problem, role)]
+        for chosen in combinations_with_replacement(choices, size):
+            more = tuple(Addition(problem.roles[role].iri, 1, outputs) for role, outputs in chosen)
             assert not _possible(relaxed_by(problem, AddComponents(more)))
 
 
@@ -180,3 +179,52 @@ def test_a_role_that_asks_for_far_too_many_is_advised_to_ask_for_those_there_are
     assert isinstance(refused, Refusal)
     words = [str(one) for one in with_relaxations(given_, refused).repairs]
     assert words == ["let the role speaker ask for 2 (sc:minCount 2)"]
+
+
+def test_an_output_that_is_asked_for_by_name_has_one_signal() -> None:
+    given_ = problem(
+        {"a": [], "b": [component("b1", "x:X y:Y")]},
+        "a.out>b",
+    )
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    # One output cannot issue both, and a component has one of that name: no component for `a` alone will do.
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
+    assert words == ["add one more component for the role a and one more component for the role b"]
+
+
+def test_what_has_to_leave_by_an_output_says_so() -> None:
+    given_ = problem(
+        {"a": [], "b": [component("b1", "x:X y:Y")], "c": []},
+        "a.out>b c>b c>a",
+    )
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    added = next(one for one in with_relaxations(given_, refused).repairs if isinstance(one, AddComponents))
+    assert str(added) == (
+        "add one more component for the role a and one more component for the role c that issues X and Y"
+    )
+    given_ = problem({"a": [], "b": [component("b1", "x:X")]}, "a.out>b")
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    assert "add one more component for the role a that issues X by the output 'out'" in [
+        str(one) for one in with_relaxations(given_, refused).repairs
+    ]
+
+
+def test_signals_of_one_name_leave_by_outputs_of_different_names() -> None:
+    given_ = problem({"a": [], "b": [component("b1", "x:one/X y:two/X")]}, "a>b")
+    assert [[o.name for o in outputs] for outputs in wanted_of(given_, 0)] == [["X", "X2"]]
+
+
+def test_an_addition_names_the_value_that_the_others_leave() -> None:
+    sonar, drive = component("sonar"), component("drive")
+    given_ = problem(
+        {"sonar": [sonar], "drive": [drive]},
+        values={"sonar": {"sonar": 0b01}, "drive": {"drive": 0b10}},
+        domain=["astrid", "pippi"],
+    )
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
+    assert words[0] == "add one more component for the role sonar, with robot pippi"

@@ -9,6 +9,7 @@
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
   `least_by_clauses` find any or the least solution by several of them, `least_of_clauses` the least one of what a
   solver has been told, and `minimise` a solution of least weight.
+* `smallest_core` is a smallest set of constraints that cannot hold together, by hitting sets.
 """
 
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
@@ -18,6 +19,7 @@ from selfconf.search.engines.least_solution import any_by_clauses, least_by_clau
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
 from selfconf.search.engines.reduced_search import ReducedSearch, first_solution
+from selfconf.search.engines.smallest_core import smallest_core
 
 __all__ = [
     "SLOT_HEADROOM",
@@ -33,6 +35,7 @@ __all__ = [
     "least_by_clauses",
     "least_of_clauses",
     "minimise",
+    "smallest_core",
     "solver_available",
     "unmatchable",
 ]

@@ -26,7 +26,7 @@ SOLVER = "Minicard"
 """The solver, by the name of its class in python-sat."""
 SECOND_SOLVER = "Cadical195"
 """The solver that joins in, which gets cardinalities as clauses."""
-FEW = 6
+PAIRED = 6
 """At most one of so many literals is written pair by pair, for a solver that cannot count."""
 CONFLICTS_PER_CALL = 5_000
 """Conflicts for one call of the solver, a fraction of a second."""
@@ -41,7 +41,7 @@ def as_clauses(literals: Sequence[int], most: int, top: int) -> list[list[int]]:
     """Return clauses by which at most a number of literals hold; new literals are numbered from `top` on."""
     from pysat.card import CardEnc, EncType
 
-    kind = EncType.totalizer if most > 1 else EncType.pairwise if len(literals) <= FEW else EncType.seqcounter
+    kind = EncType.totalizer if most > 1 else EncType.pairwise if len(literals) <= PAIRED else EncType.seqcounter
     return list(CardEnc.atmost(list(literals), most, top_id=top, encoding=kind).clauses)
 
 

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 from selfconf.search.engines.matching import HallSet, unmatchable
 from selfconf.search.reduction import Option, ReducedProblem
 
-FEW = 2
+SHARE_UNFIT = 2
 """A need says little if at most one in this number of the options that could feed it do not."""
 CONFLICTS_PER_OPTION = 200
 """How many conflicts are looked at, for each option."""
@@ -48,8 +48,13 @@ class ExclusiveGroups:
     """Sets of options of which at least one plays in every solution."""
     excluded: frozenset[int] = frozenset()
     """Options that play in no solution."""
-    impossible: bool = False
-    """Whether some roles have fewer groups than slots: then there is no solution."""
+    crowded: frozenset[int] = frozenset()
+    """Roles that have fewer groups than slots, if there are any: then there is no solution."""
+
+    @property
+    def impossible(self) -> bool:
+        """Whether there is no solution, by counting."""
+        return bool(self.crowded)
 
 
 def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> ExclusiveGroups:
@@ -68,7 +73,7 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
         frozenset(graph.stated),
         [list(_bits(group)) for group in found.played],
         frozenset(_bits(found.excluded)),
-        found.impossible,
+        found.crowded,
     )
 
 
@@ -103,7 +108,7 @@ class _Conflicts:
         left = CONFLICTS_PER_OPTION * len(self.options)
         for source, needs in fed_by.items():
             lacking = self._lacking(source, needs)
-            few = max(1, len(self.reduced.options[source]) // FEW)
+            few = max(1, len(self.reduced.options[source]) // SHARE_UNFIT)
             for need in needs:
                 numbers = lacking.get(need, ())
                 left -= len(numbers)
@@ -181,7 +186,7 @@ class _Counting:
         """How many groups may still be put together."""
         self.played: list[int] = []
         self.excluded = 0
-        self.impossible = False
+        self.crowded: frozenset[int] = frozenset()
 
     def _roles(self, mask: int) -> Iterator[int]:
         return (self.graph.role[number] for number in _bits(mask))
@@ -191,7 +196,7 @@ class _Counting:
         order = sorted(range(len(self.groups)), key=lambda number: -len(self.roles[number]))
         known: set[int] = set()
         for start in order:
-            if self.impossible or self.left <= 0:
+            if self.crowded or self.left <= 0:
                 return
             if start not in known:
                 cover = self._cover(start)
@@ -241,7 +246,7 @@ class _Counting:
         slots = [role for role in roles for _ in range(graph.asked[role])]
         found = unmatchable(slots, [drawn.get(role, []) for role in range(len(graph.of_role))])
         if isinstance(found, HallSet):
-            self.impossible = True
+            self.crowded = frozenset(found.roles)
             return
         for role, name in found:
             self.excluded |= shares[name] & graph.of_role[role]

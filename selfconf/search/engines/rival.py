@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from selfconf.search.engines.clause_learning import SECOND_SOLVER
+from selfconf.search.engines.clause_learning import PAIRED, SECOND_SOLVER
 from selfconf.search.engines.encoding import Encoding
 
 PROGRAM = Path(__file__).with_name("rival_process.py")
@@ -29,6 +29,7 @@ class Rival:
     def __init__(self, encoding: Encoding, slots: Sequence[int], least: bool) -> None:
         question = (
             SECOND_SOLVER,
+            PAIRED,
             encoding.top,
             encoding.clauses,
             [(list(literals), most, list(force)) for literals, most, force in encoding.bounds],

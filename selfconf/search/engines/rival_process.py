@@ -12,10 +12,8 @@ import sys
 from array import array
 from typing import Any
 
-CONFLICTS_PER_CALL = 5_000
+CONFLICTS_PER_LOOK = 5_000
 """After so many it looks whether it is still wanted."""
-FEW = 6
-"""At most one of so many literals is written pair by pair."""
 
 
 def main() -> None:
@@ -23,8 +21,8 @@ def main() -> None:
     sys.path.append(sys.argv[1])
     wanted = socket.socket(fileno=0)
     size = int.from_bytes(_read(wanted, 8), "big")
-    name, top, clauses, bounds, slots, follows, least = marshal.loads(_read(wanted, size))
-    solver = _loaded(name, top, clauses, bounds)
+    name, few, top, clauses, bounds, slots, follows, least = marshal.loads(_read(wanted, size))
+    solver = _loaded(name, few, top, clauses, bounds)
     wanted.setblocking(False)
     possible = _solved(solver, [], wanted)
     wanted.sendall(array("i", [possible]).tobytes())
@@ -44,7 +42,9 @@ def _read(wanted: socket.socket, size: int) -> bytes:
     return bytes(data)
 
 
-def _loaded(name: str, top: int, clauses: list[list[int]], bounds: list[tuple[list[int], int, list[int]]]) -> Any:
+def _loaded(
+    name: str, few: int, top: int, clauses: list[list[int]], bounds: list[tuple[list[int], int, list[int]]]
+) -> Any:
     from pysat import solvers
     from pysat.card import CardEnc, EncType
 
@@ -52,7 +52,7 @@ def _loaded(name: str, top: int, clauses: list[list[int]], bounds: list[tuple[li
     for clause in clauses:
         solver.add_clause(clause)
     for literals, most, force in bounds:
-        kind = EncType.totalizer if most > 1 else EncType.pairwise if len(literals) <= FEW else EncType.seqcounter
+        kind = EncType.totalizer if most > 1 else EncType.pairwise if len(literals) <= few else EncType.seqcounter
         encoded = CardEnc.atmost(literals, most, top_id=top, encoding=kind)
         top = max(top, encoded.nv)
         for clause in encoded.clauses:
@@ -63,7 +63,7 @@ def _loaded(name: str, top: int, clauses: list[list[int]], bounds: list[tuple[li
 def _solved(solver: Any, assumed: list[int], wanted: socket.socket) -> bool:
     found = None
     while found is None:
-        solver.conf_budget(CONFLICTS_PER_CALL)
+        solver.conf_budget(CONFLICTS_PER_LOOK)
         found = solver.solve_limited(assumptions=assumed, expect_interrupt=True)
         try:
             if not wanted.recv(1):
