@@ -18,6 +18,10 @@ PREFIXES = """\
 @prefix sh: <http://www.w3.org/ns/shacl#> .
 @prefix : <urn:t:> .
 """
+ADDED = re.compile(
+    r"(one|\d+) more components? for the role (\w+)(?: that issues? (.*?))?(?:, with robot (\w+))?"
+    r"(?=$|(?:,| and) (?:one|\d+) more)"
+)
 ISSUED = re.compile(r"(\w+)(?: by the output '(\w+)')?")
 
 
@@ -30,9 +34,8 @@ def ecology(rng: random.Random) -> tuple[str, dict[str, str]]:
         count = rng.choice(["", "", "", " ; sc:minCount 2", " ; sc:minCount 0"])
         where = " ; sh:property [ sh:path :on ; sh:in ( :robot ) ]" if free and rng.random() < 0.7 else ""
         about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where} ."
-    lines = [
-        f":t a sc:Template ; sc:roles ( {' '.join(':' + role for role in roles)} ) {'; sc:parameter :robot' * free} ."
-    ]
+    listed = " ".join(f":{role}" for role in roles)
+    lines = [f":t a sc:Template ; sc:roles ( {listed} ) {'; sc:parameter :robot' * free} ."]
     lines += [':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .'] * free
     for _ in range(rng.randint(1, 2 * len(roles))):
         source, sink = rng.sample(roles, 2)
@@ -68,10 +71,7 @@ def followed(repair: Relaxation, template: str, about: dict[str, str]) -> tuple[
     said, about, new = str(repair), dict(about), []
     if isinstance(repair, AddComponents):
         parts = said.removeprefix("add ")
-        pattern = r"(one|\d+) more components? for the role (\w+)(?: that issues? (.*?))?(?:, with robot (\w+))?"
-        for number, role, issues, robot in re.findall(
-            pattern + r"(?=$| and one more|, one more|, \d+ more| and \d+ more)", parts
-        ):
+        for number, role, issues, robot in ADDED.findall(parts):
             outputs = {}
             for signal, name in ISSUED.findall(issues.replace(" and ", ", ")) if issues else ():
                 outputs[name or f"any{len(outputs)}"] = signal
