@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -80,11 +80,11 @@ def iri(name: str) -> IRI:
     return IRI("https://example.org/peis-home#" + name)
 
 
-def write_advertisements(folder: Path, *names: str) -> Path:
+def write_advertisements(folder: Path, *names: str, advertisements: Mapping[str, str] = ADVERTISEMENTS) -> Path:
     """The advertisements of those names (all of them by default), a file each."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name in names or ADVERTISEMENTS:
-        (folder / f"{name}.ttl").write_text(PREFIXES + ADVERTISEMENTS[name] + "\n")
+    for name in names or advertisements:
+        (folder / f"{name}.ttl").write_text(PREFIXES + advertisements[name] + "\n")
     return folder
 
 
@@ -119,8 +119,15 @@ class Recorder(Component):
 class Lab:
     """Two hosts and a configurator in simulated time; every component is a node of its own."""
 
-    def __init__(self, folder: Path, seed: int = 0, faults: Faults | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        seed: int = 0,
+        faults: Faults | None = None,
+        advertised: Mapping[str, str] = ADVERTISEMENTS,
+    ) -> None:
         self.network = Network(seed, faults)
+        self.advertised = advertised
         self.folder = folder
         self.keys = Keys("lab")
         self.components: dict[str, Recorder] = {}
@@ -131,12 +138,13 @@ class Lab:
 
     def site(self, name: str, *names: str) -> Site:
         """A site with those advertisements, and with whatever else lies in its folder already."""
-        shelf = Shelf([write_advertisements(self.folder / name, *names)], self.complaints.append)
+        files = write_advertisements(self.folder / name, *names, advertisements=self.advertised)
+        shelf = Shelf([files], self.complaints.append)
         return Site(self.network.node(), "lab", name, shelf)
 
     def profile(self, name: str) -> Profile:
         """The profile in one of the advertisements."""
-        (advertisement,), _ = advertisements.read_document(turtle.parse(PREFIXES + ADVERTISEMENTS[name], name))
+        (advertisement,), _ = advertisements.read_document(turtle.parse(PREFIXES + self.advertised[name], name))
         return advertisement.profile
 
     def component(self, name: str, recorder: Recorder | None = None) -> Recorder:

@@ -1,0 +1,102 @@
+"""Tasks that want the same components at once: nobody blocks, somebody wins, no actuator acts on a part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from statistics import median
+
+import pytest
+
+from selfconf.configurator.state import Phase
+from selfconf.model.configuration import Configuration
+from tests.effort import NIGHTLY, examples
+from tests.faults.contention import Contention, Settled
+
+SEEDS = 1_000 if NIGHTLY else examples(32)
+BATCH = 8
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One folder of advertisements for all contentions."""
+    return tmp_path_factory.mktemp("contentions")
+
+
+def begun(seed: int, folder: Path, patient: bool, priorities: bool) -> Contention:
+    """Two to eight tasks that begin at once."""
+    return Contention(seed, folder, 2 + seed % 7, patient, priorities)
+
+
+def deprived(contention: Contention) -> list[str]:
+    """The tasks that do not run, although they could without what tasks of the same or a higher priority hold."""
+    found = {a.profile.component: a for a in contention.shelf.advertisements.values()}
+    names = []
+    for agent in contention.agents:
+        if agent.state.phase is not Phase.RUNNING:
+            taken = {
+                runtime.profile.component
+                for runtime in contention.lab.runtimes.values()
+                for hold in runtime.activation.holds
+                if hold.claim.priority >= agent.identity.priority
+            }
+            if isinstance(agent.request.compose(found, frozenset(taken), None), Configuration):
+                names.append(agent.name)
+    return names
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("patient", [True, False], ids=["patient", "hasty"])
+@pytest.mark.parametrize("priorities", [False, True], ids=["equal", "ranked"])
+@pytest.mark.parametrize("batch", range(0, SEEDS, BATCH))
+def test_of_tasks_that_begin_at_once_some_run_and_none_acts_on_a_part(
+    batch: int, priorities: bool, patient: bool, folder: Path
+) -> None:
+    settled: list[Settled] = []
+    for seed in range(batch, batch + BATCH):
+        contention = begun(seed, folder, patient, priorities)
+        settled.append(contention.settle())
+        said = f"seed {seed}: {settled[-1]}"
+        assert settled[-1].running, said
+        assert not settled[-1].undecided, said
+        assert not contention.wrong, said + "\n" + "\n".join(contention.wrong[:5])
+        if patient:  # a hasty task that is refused does not come back when what it lacked is free again
+            assert not deprived(contention), said
+    assert median(one.seconds for one in settled) < 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("priorities", [False, True], ids=["equal", "ranked"])
+@pytest.mark.parametrize("seed", range(SEEDS // 8))
+def test_tasks_that_wait_run_one_after_the_other_as_others_end(seed: int, priorities: bool, folder: Path) -> None:
+    contention = begun(seed, folder, True, priorities)
+    ran: set[str] = set()
+    for _ in contention.agents:
+        running = contention.settle().running
+        ran.update(running)
+        for agent in contention.agents:
+            if agent.name in running:
+                agent.stop()
+    assert len(ran) == len(contention.agents)
+    assert not contention.wrong
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "wrong"),
+    [
+        ("selfconf.sdk.runtime.YIELDING", 0.0, "acts for"),
+        ("selfconf.protocol.activation._blocked", lambda *_: False, "acts for"),
+        ("selfconf.configurator.machine.resting_next", lambda wires, left: tuple(left), "acts for"),
+        ("selfconf.configurator.deploying._may_begin", lambda *_: True, "is started before"),
+    ],
+    ids=["taken without asking", "held by all", "all rest at once", "all start at once"],
+)
+def test_a_rule_that_is_broken_on_purpose_is_noticed(
+    name: str, value: object, wrong: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(name, value)
+    for seed in range(40):
+        contention = begun(seed, folder, True, True)
+        contention.settle(3.0)
+        if any(wrong in what for what in contention.wrong):
+            return
+    pytest.fail("nothing was noticed")
