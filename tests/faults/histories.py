@@ -31,6 +31,8 @@ from tests.lab import Lab, Recorder
 
 SETTLED = 60.0
 """Seconds after the last fault in which the ecology must come into order."""
+SPOKEN = 1.0
+"""Seconds in which everybody must have heard what was said last."""
 
 
 @dataclass(slots=True)
@@ -41,6 +43,7 @@ class Life:
     runtime: ComponentRuntime
     recorder: Recorder
     node: MemoryBus
+    thread: SimulatedCodeThread
 
     @property
     def awake(self) -> bool:
@@ -86,7 +89,15 @@ class History:
                 self.told.append(str(action))
         self._cease()
         self.lab.let_pass(SETTLED)
+        self._speak()
+        self.lab.let_pass(SPOKEN)
         self.watch.end()
+
+    def _speak(self) -> None:
+        """Let every source that acts say something."""
+        for life in self.lives:
+            for output in life.runtime.profile.outputs if life.awake and life.runtime.active else ():
+                life.recorder.emit(output.name, f"the last of {life.runtime.life}")
 
     def perform(self, action: Action) -> bool:
         """Do what an action says, if that is possible; whether it was."""
@@ -163,7 +174,7 @@ class History:
         )
         late: Any = ReportsLate(node, thread)
         runtime.code._bus = late
-        self.lives.append(Life(name, runtime, recorder, node))
+        self.lives.append(Life(name, runtime, recorder, node, thread))
         self._joined(name, node)
         return self.lives[-1]
 

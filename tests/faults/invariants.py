@@ -14,6 +14,7 @@ from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.messages import Cause
+from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.supervision import GRACE
 from tests.faults.histories import History, Life
 
@@ -162,6 +163,31 @@ def runs_with_anothers(history: History) -> Iterator[str]:
                 running[component] = agent.name
 
 
+def acts_blind(history: History) -> Iterator[str]:
+    """No actuator is on while nobody feeds it."""
+    for life in awake(history):
+        told = [said for said in life.recorder.said if said in (("started",), ("stopped",))]
+        if not life.runtime.profile.outputs and life.runtime.active and told[-1:] == [("started",)]:
+            sources = {wire.component for _, wire in life.runtime.inputs.followed}
+            if not any(feeds(history, source, life) for source in sources):
+                yield f"{life.name} {life.runtime.life} is on, and nobody feeds it"
+
+
+def feeds(history: History, source: str, life: Life) -> bool:
+    """Whether a component acts, and its signals get through."""
+    return any(
+        one.runtime.profile.component == source and one.runtime.active and history.network.reaches(one.node, life.node)
+        for one in awake(history)
+    )
+
+
+def hangs_unnoticed(history: History) -> Iterator[str]:
+    """A component whose code hangs does not count as active."""
+    for life in awake(history):
+        if life.thread.hangs and life.runtime.active:
+            yield f"{life.name} {life.runtime.life} hangs, and counts as active"
+
+
 def network_overflows(history: History) -> Iterator[str]:
     """What waits is bounded."""
     if len(history.network._events) > 20_000:
@@ -177,6 +203,8 @@ STEPS = (
     Invariant("held is known", held_for_nothing, lambda history: retries(history) + travel(history)),
     Invariant("nobody obeys two", obeys_two),
     Invariant("no actuator acts on part", acts_on_part, lambda history: GRACE + LEASE + travel(history)),
+    Invariant("no actuator acts blind", acts_blind, lambda h: TOLERATES + LEASE + GRACE + travel(h) + 1.0),
+    Invariant("who hangs has failed", hangs_unnoticed, lambda history: 0.5),
     Invariant("what waits is bounded", network_overflows),
 )
 """What must hold at every step."""
@@ -256,6 +284,29 @@ def lacks_a_value(history: History) -> Iterator[str]:
                             yield f"{life.name} was not told its {setting.name}"
 
 
+def started_without_values(history: History) -> Iterator[str]:
+    """A component has its parameters before it is started."""
+    for life in history.lives:
+        values = {parameter.name for parameter in life.runtime.profile.parameters}
+        known: set[object] = set()
+        for said in life.recorder.said if values else ():
+            if said == ("stopped",):
+                known.clear()
+            elif said == ("started",) and not values <= known:
+                yield f"{life.name} {life.runtime.life} was started without {sorted(values)}"
+            known.add(said[0])
+
+
+def unheard(history: History) -> Iterator[str]:
+    """Every input has heard what each output that it follows has issued last."""
+    acting = [life for life in awake(history) if life.runtime.active]
+    for life in acting:
+        for port, wire in life.runtime.inputs.followed:
+            for source in (one for one in acting if one.runtime.profile.component == wire.component):
+                if (port, f"the last of {source.runtime.life}") not in life.recorder.said:
+                    yield f"{life.name} has not heard the last of {source.name}"
+
+
 def since_rest(life: Life) -> list[tuple[object, ...]]:
     """What a component was told since it was stopped last before it was started last."""
     said = life.recorder.said
@@ -270,6 +321,8 @@ ENDS = (
     Invariant("what acts is wanted", acts_otherwise),
     Invariant("wired as composed", wired_otherwise),
     Invariant("parameters are set", lacks_a_value),
+    Invariant("parameters come first", started_without_values),
+    Invariant("the last signal is heard", unheard),
 )
 """What must hold in the end."""
 

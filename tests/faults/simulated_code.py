@@ -6,6 +6,7 @@ over that it spends. Code that spends more than its deadline is noticed as the h
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable
 from typing import Any
@@ -22,6 +23,13 @@ class SimulatedCodeThread(CodeThread):
         self._node, self._network, self._hung = node, node.network, hung
         self._due = False
         self.busy_until = 0.0
+        self.limit_until = math.inf
+        """When code that spends more than it may would have to have returned."""
+
+    @property
+    def hangs(self) -> bool:
+        """Whether code has not returned within its deadline."""
+        return self.limit_until < self._network.time < self.busy_until
 
     def spend(self, seconds: float) -> None:
         """Be busy for some time, from within the code."""
@@ -53,7 +61,8 @@ class SimulatedCodeThread(CodeThread):
         began = self._free()
         action()
         if self.busy_until - began > limit:
-            self._network.at(began + limit, self._node, lambda: self._hung(what, limit))
+            self.limit_until = began + limit
+            self._network.at(self.limit_until, self._node, lambda: self._hung(what, limit))
 
 
 class ReportsLate:
