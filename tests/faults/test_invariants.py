@@ -1,0 +1,144 @@
+"""Every invariant of the histories is broken on purpose, by a change of the code, and it is noticed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from selfconf.bus.memory import Faults
+from selfconf.configurator.effects import ReleaseFrom
+from selfconf.configurator.events import Answered, Call
+from selfconf.deployment.calls import Calls
+from selfconf.protocol.messages import Apply, Verdict
+from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.inputs import Inputs
+from tests.faults.histories import History
+from tests.faults.invariants import ENDS, STEPS
+from tests.faults.script import Action, Script, TaskPlan
+
+CLAIM, FOLLOW, SET, START = Calls._claim, Inputs.follow, ComponentCode._set, ComponentCode._start
+LATER = Action(20.0, "emit", "sonar")
+"""Until then the faults go on."""
+
+
+def nothing(*_: Any) -> None:
+    """Do nothing, whatever was to be done."""
+
+
+def claims_to_release(self: Calls, effect: ReleaseFrom) -> None:
+    """A configurator that counts a component as released without a call."""
+    self._step(Answered(effect.component, Call.RELEASE, effect.epoch, Verdict.DONE))
+
+
+def means_any_life(self: Calls, *arguments: Any) -> Any:
+    """A configurator whose calls name no life, as those of an older one."""
+    return {**CLAIM(self, *arguments), "life": ""}
+
+
+def follows_once(self: Inputs, message: Apply) -> None:
+    """A component that keeps its first connections."""
+    if not self.followed:
+        FOLLOW(self, message)
+
+
+def sets_late(self: ComponentCode, *arguments: Any) -> str | None:
+    """A component that is told its parameters after it was started."""
+    return START(self, *arguments) or SET(self, self._values)
+
+
+def breaks(*_: Any) -> None:
+    """A program with a mistake in it."""
+    raise RuntimeError("a mistake")
+
+
+class Mutation(NamedTuple):
+    """A change of the code, and what happens then."""
+
+    changes: dict[str, Any]
+    actions: tuple[Action, ...] = ()
+    faults: Faults = Faults()
+
+
+CALLS, RUNTIME = "selfconf.deployment.calls", "selfconf.sdk.runtime.ComponentRuntime"
+RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
+SHARES_ALL = {
+    "selfconf.protocol.activation._blocked": lambda *_: False,
+    "selfconf.deployment.runner.ask_holders": lambda bus, keys, name, answered: answered({}),
+}
+SECOND = Action(2.0, "begin", "task-2")
+MUTATIONS = {
+    "one life acts": Mutation(
+        {
+            f"{RUNTIME}._look_for_others": nothing,
+            f"{RUNTIME}._other_life": nothing,
+            f"{CALLS}.Calls._claim": means_any_life,
+        },
+        (Action(1.0, "crash", "drive"), Action(2.0, "twins", "drive")),
+    ),
+    "nobody acts for nobody": Mutation({"selfconf.sdk.supervision.GRACE": 1e9}, (Action(2.0, "crash_task", "task-1"),)),
+    "who acts is known": RELEASES_NOTHING,
+    "running means running": Mutation({f"{CALLS}.Calls.audit": nothing}, (LATER,), Faults(most_event_delay=3.0)),
+    "each runs with its own": Mutation(SHARES_ALL, (SECOND,)),
+    "held is known": RELEASES_NOTHING,
+    "nobody obeys two": Mutation(SHARES_ALL, (SECOND, Action(4.0, "fail", "tracker"))),
+    "no actuator acts on part": Mutation(
+        {f"{CALLS}.Calls.audit": nothing}, (SECOND, Action(4.0, "mute", "task-1", "control"), LATER)
+    ),
+    "no actuator acts blind": Mutation(
+        {"selfconf.sdk.component_code.TOLERATES": 1e9}, (Action(2.0, "mute", "control", "drive"), LATER)
+    ),
+    "who hangs has failed": Mutation({f"{RUNTIME}.hung": nothing}, (Action(0.0, "slow", "drive", "", 12.0),)),
+    "what waits is bounded": Mutation({f"{CALLS}.AUDIT": 0.05, f"{CALLS}.CALL": 100.0}),
+    "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
+    "nobody waits in vain": Mutation(
+        {
+            "selfconf.deployment.runner.TaskRunner._received_free": nothing,
+            "selfconf.deployment.runner.TaskRunner._forgive": nothing,
+        },
+        (SECOND, Action(4.0, "stop_task", "task-1")),
+    ),
+    "what acts is wanted": RELEASES_NOTHING,
+    "wired as composed": Mutation(
+        {"selfconf.sdk.inputs.Inputs.follow": follows_once}, (Action(2.0, "fail", "tracker"),)
+    ),
+    "parameters are set": Mutation({"selfconf.sdk.component_code.ComponentCode._set": nothing}),
+    "parameters come first": Mutation(
+        {
+            "selfconf.sdk.component_code.ComponentCode._set": nothing,
+            "selfconf.sdk.component_code.ComponentCode._start": sets_late,
+        }
+    ),
+    "the last signal is heard": Mutation({"selfconf.sdk.inputs.InputSubscription._read": nothing}),
+    "nothing breaks": Mutation(
+        {"selfconf.deployment.liveness.Liveness._ended": breaks}, (Action(2.0, "crash", "pippi"),)
+    ),
+}
+
+
+def played(mutation: Mutation, folder: Path) -> History:
+    """What becomes of two patient tasks."""
+    tasks = {"task-1": TaskPlan(), "task-2": TaskPlan()}
+    actions = tuple(sorted((Action(0.0, "begin", "task-1"), *mutation.actions), key=lambda action: action.time))
+    history = History(Script(1, mutation.faults, tasks=tasks, actions=actions), folder)
+    history.run()
+    return history
+
+
+@pytest.mark.parametrize("name", MUTATIONS)
+def test_an_invariant_that_is_broken_on_purpose_is_noticed(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for path, value in MUTATIONS[name].changes.items():
+        monkeypatch.setattr(path, value)
+    assert name in played(MUTATIONS[name], tmp_path).watch.names
+
+
+@pytest.mark.parametrize("name", MUTATIONS)
+def test_nothing_is_wrong_where_nothing_was_changed(name: str, tmp_path: Path) -> None:
+    assert played(MUTATIONS[name], tmp_path).broken == []
+
+
+def test_every_invariant_has_its_mutation() -> None:
+    assert set(MUTATIONS) == {invariant.name for invariant in (*STEPS, *ENDS)} | {"nothing breaks"}
