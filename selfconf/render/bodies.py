@@ -103,6 +103,9 @@ def holder_body(holder: Holder) -> dict[str, Any]:
         "priority": holder.priority,
         "since": holder.beginning,
         "configurator": holder.configurator,
+    }
+
+
 def _additions(repair: Relaxation) -> dict[str, Any]:
     """The components to be added, if it is that: an output has a name where an interaction asks for one."""
     if not isinstance(repair, AddComponents):

@@ -52,7 +52,7 @@ class Act(Component):
     def act(self):
         self.count += 1
         for output in self.outputs:
-            self.emit(output, {"count": self.count})
+            self.emit(output, {**SIGNALS[output], "count": self.count})
         order = HERE / f"{self.name}.fail"
         if order.exists():
             order.unlink()
@@ -64,6 +64,12 @@ class Act(Component):
 
 OUTPUTS = {"sonar": ["ranges"], "encoder": ["odometry"], "tracker": ["pose"], "odometry": ["pose"],
            "control": ["set.velocity"]}
+SIGNALS = {
+    "ranges": {"angles": [0.0], "ranges": [1.0], "max_range": 4.0},
+    "odometry": {"x": 0.0, "y": 0.0, "theta": 0.0, "linear": 0.0, "angular": 0.0},
+    "pose": {"x": 0.0, "y": 0.0, "theta": 0.0, "frame": "map"},
+    "set.velocity": {"linear": 0.0, "angular": 0.0},
+}
 kinds = [
     type(name, (Act,), {"advertisement": HERE / "ads" / f"{name}.ttl", "name": name, "outputs": OUTPUTS.get(name, [])})
     for name in sys.argv[1].split(",")
