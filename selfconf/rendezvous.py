@@ -2,6 +2,9 @@
 
 Across machines endpoints are given (`--connect`, or `SELFCONF_CONNECT`); on one machine none is needed, for each site
 writes a small file into the user's runtime folder. A file whose process is gone is passed over, and removed.
+
+One site of an ecology on a machine relays, on a port that follows from the ecology's name; all others are its clients
+(`selfconf.api.joining`). So whoever knows the name knows where to look for one that takes its place.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ import hashlib
 import json
 import os
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
@@ -29,6 +33,10 @@ LIFE_VARIABLE = "SELFCONF_LIFE"
 """The variable with the life that a site gives to the components of a program that it starts, so that it knows them."""
 ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
+PLACES = 4
+"""How many usual ports an ecology has: the first that is free is taken, by the one site that relays."""
+TURN = 5.0
+"""Seconds to wait for a turn: a site that was stopped in its own does not stop all others."""
 USUAL_PORTS = range(20000, 32768)
 """The ports of sites: below those that Linux takes for outgoing connections.
 
@@ -43,9 +51,12 @@ class LocalSite:
     ecology: str
     site: str
     endpoint: str
+    """Where it listens, or, if it does not relay, where a relay does by which it is reached."""
     process: int
     started: str = field(default="", compare=False)
     """When the process began: after a restart of the machine another one may have its number. Empty if not known."""
+    relays: bool = True
+    """Whether a relay of its own listens at the endpoint."""
 
 
 def runtime_folder() -> Path:
@@ -59,14 +70,15 @@ def runtime_folder() -> Path:
     return Path(tempfile.gettempdir()) / f"selfconf-{os.getuid()}"
 
 
-def usual_endpoint(ecology: str) -> str:
-    """Where a site of an ecology listens unless the port is taken.
+def usual_endpoints(ecology: str) -> list[str]:
+    """Where the site that relays for an ecology on this machine listens: on the first that is free.
 
-    It depends on the ecology and the runtime folder alone, so that a site that is started again is where the clients
-    of the one before look for it.
+    They depend on the ecology and the runtime folder alone, so that a site that takes the place of another is where
+    the clients of the one before look for it.
     """
     digest = hashlib.blake2s(f"{runtime_folder()} {ecology}".encode(), digest_size=8).digest()
-    return f"tcp/127.0.0.1:{USUAL_PORTS[int.from_bytes(digest, 'big') % len(USUAL_PORTS)]}"
+    first = int.from_bytes(digest, "big")
+    return [f"tcp/127.0.0.1:{USUAL_PORTS[(first + number) % len(USUAL_PORTS)]}" for number in range(PLACES)]
 
 
 @contextmanager
@@ -85,18 +97,30 @@ def _writing() -> Iterator[Path]:
 
 
 @contextmanager
-def turn() -> Iterator[None]:
-    """Hold a lock in which one site, and no other, looks for other sites, opens its router, and announces itself.
+def turn(seconds: float = TURN) -> Iterator[bool]:
+    """Hold a lock in which one site, and no other, looks for other sites, opens its relay, and announces itself.
 
-    Without it two sites that start at once would miss each other, and neither would connect to the other.
+    Without it two sites that start at once would miss each other, and neither would connect to the other. The value is
+    False if another site has held the lock for all that time.
     """
     with _writing() as root:
         descriptor = os.open(root, os.O_RDONLY)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
+        yield _locked(descriptor, time.monotonic() + seconds)
     finally:
         os.close(descriptor)
+
+
+def _locked(descriptor: int, deadline: float) -> bool:
+    while True:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() >= deadline:
+                return False
+            time.sleep(0.005)
+        else:
+            return True
 
 
 def announce(site: LocalSite) -> Path:
@@ -104,6 +128,23 @@ def announce(site: LocalSite) -> Path:
     site = replace(site, started=start_time(site.process))
     if any(other.site == site.site and other.process != os.getpid() for other in local_sites(site.ecology)):
         raise NetworkError(f"a site {site.site!r} of ecology {site.ecology!r} runs on this machine already")
+    return _write(site)
+
+
+def announce_for(other: LocalSite, relays: bool) -> None:
+    """Write into the file of another site, in a turn, whether it relays; it reads that when it goes on."""
+    _write(replace(other, relays=relays))
+
+
+def relays(path: Path) -> bool:
+    """Whether the file of a site says that it relays; True where it cannot be read."""
+    try:
+        return json.loads(path.read_text())["relays"] is not False
+    except (OSError, ValueError, KeyError, TypeError):
+        return True
+
+
+def _write(site: LocalSite) -> Path:
     with _writing() as root:
         path = root / f"{site.ecology}@{site.site}.json"
         temporary = path.with_suffix(f".{os.getpid()}")
@@ -172,7 +213,7 @@ def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
         )
     if len(names) > 1:
         raise NetworkError(f"several ecologies run on this machine; say which with --ecology: {', '.join(names)}")
-    return names[0], [site.endpoint for site in found]
+    return names[0], list(dict.fromkeys(site.endpoint for site in found))
 
 
 def _ecology_at(endpoints: list[str]) -> str:

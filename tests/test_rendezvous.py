@@ -59,11 +59,29 @@ def test_what_is_given_counts_before_what_the_environment_names(monkeypatch: pyt
     assert rendezvous.asked_for("home", ["tcp/127.0.0.1:3"]) == ("home", ["tcp/127.0.0.1:3"])
 
 
-def test_the_usual_endpoint_of_an_ecology_is_the_same_each_time_and_its_own() -> None:
-    assert rendezvous.usual_endpoint("home") == rendezvous.usual_endpoint("home")
-    assert rendezvous.usual_endpoint("home") != rendezvous.usual_endpoint("office")
+def test_the_usual_endpoints_of_an_ecology_are_the_same_each_time_and_its_own() -> None:
+    assert rendezvous.usual_endpoints("home") == rendezvous.usual_endpoints("home")
+    assert not set(rendezvous.usual_endpoints("home")) & set(rendezvous.usual_endpoints("office"))
     for name in ("home", "office", "lab"):
-        assert 1024 < int(rendezvous.usual_endpoint(name).rpartition(":")[2]) < 32768
+        assert len(set(rendezvous.usual_endpoints(name))) == rendezvous.PLACES
+        for endpoint in rendezvous.usual_endpoints(name):
+            assert 1024 < int(endpoint.rpartition(":")[2]) < 32768
+
+
+def test_a_turn_that_another_site_holds_is_waited_for_but_not_for_ever() -> None:
+    with rendezvous.turn() as mine:
+        assert mine
+        with rendezvous.turn(seconds=0.01) as theirs:
+            assert not theirs
+    with rendezvous.turn(seconds=0.0) as mine:
+        assert mine
+
+
+def test_an_endpoint_that_several_sites_share_is_found_once() -> None:
+    shared = meeting(site="a")
+    rendezvous.announce(shared)
+    rendezvous.announce(LocalSite("home", "b", shared.endpoint, os.getpid(), relays=False))
+    assert rendezvous.find("home", []) == ("home", [shared.endpoint])
 
 
 def test_a_site_whose_process_number_another_process_has_by_now_is_gone() -> None:
@@ -162,7 +180,7 @@ def test_a_folder_of_another_user_is_neither_written_nor_read(
 def test_the_file_is_plain_json(runtime_folder: Path) -> None:
     body = json.loads(rendezvous.announce(meeting()).read_text())
     process = {"process": os.getpid(), "started": start_time(os.getpid())}
-    assert body == {"ecology": "home", "site": "a", "endpoint": "tcp/127.0.0.1:7001", **process}
+    assert body == {"ecology": "home", "site": "a", "endpoint": "tcp/127.0.0.1:7001", "relays": True, **process}
 
 
 def test_the_name_of_a_living_site_is_taken() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import secrets
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -10,14 +9,13 @@ from pathlib import Path
 
 from selfconf import rendezvous
 from selfconf.api.detached import request_of
+from selfconf.api.joining import Joining
 from selfconf.api.reading import existing
 from selfconf.api.run import WorkQueue
-from selfconf.bus.zenoh_bus import ANYWHERE_ON_LOOPBACK, ZenohBus, router
 from selfconf.deployment import Keeper, TaskFolder
-from selfconf.errors import AuthorError, NetworkError
+from selfconf.errors import AuthorError
 from selfconf.protocol.keys import checked_name
 from selfconf.render import count
-from selfconf.rendezvous import LocalSite
 from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
 
@@ -52,24 +50,23 @@ def serve(
     shelf = Shelf(paths, complain)
     # One site at a time looks which others there are and announces itself, or two would miss each other.
     with rendezvous.turn():
-        others = [site.endpoint for site in rendezvous.local_sites(ecology)]
-        bus = _router(listen, ecology, list(dict.fromkeys([*connect, *others])))
+        joining = Joining(ecology, name, listen, connect)
+        bus = joining.bus
         ended = Termination(bus)
         work = WorkQueue()
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
-        site = Site(
-            bus, ecology, name, shelf, rendezvous.environment(ecology, bus.endpoint), _log_path(log, ecology, name)
-        )
+        environment = rendezvous.environment(ecology, " ".join(joining.endpoints))
+        site = Site(bus, ecology, name, shelf, environment, _log_path(log, ecology, name))
         keeper = Keeper(bus, ecology, name, records, partial(request_of, aside=work.work))
-        announced = rendezvous.announce(LocalSite(ecology, name, bus.endpoint, os.getpid()))
+        joining.announce()
     served = count(len(site.shelf.advertisements), "advertisement")
-    complain(f"site {name} of ecology {ecology} serves {served} on {bus.endpoint}")
+    complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}")
     bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
     try:
         while not ended():
             work.next(WORK_CHECK)
     finally:
-        rendezvous.leave(announced)
+        joining.leave()
         bus.wake_up(keeper.close)
         site.close()
 
@@ -81,11 +78,3 @@ def _log_path(folder: Path | None, ecology: str, name: str) -> Path:
         forget_oldest(folder, {f"{site.ecology}@{site.site}.log" for site in rendezvous.local_sites()})
     return folder / f"{ecology}@{name}.log"
 
-
-def _router(listen: str | None, ecology: str, connect: list[str]) -> ZenohBus:
-    if listen is not None:
-        return router(listen, connect)
-    try:
-        return router(rendezvous.usual_endpoint(ecology), connect)
-    except NetworkError:  # another program has that port
-        return router(ANYWHERE_ON_LOOPBACK, connect)

@@ -1,22 +1,19 @@
-"""The one file that speaks Zenoh.
+"""The bus over Zenoh.
 
-Each site opens a *router* session that listens on one endpoint; everything else on its host is a *client* of it;
-routers connect to each other. Multicast is off, endpoints are explicit, and nothing listens anywhere but on loopback
-unless an endpoint says so. The topology and the keys are in `docs/protocol.md`.
+A site opens a *relay* (`zenoh_relay`): a router that listens on one endpoint and is connected to others. Everything
+else on its host, the site's own bus included, is a *client* of a relay. How sessions are set up stands in
+`zenoh_session`, the topology and the keys in `docs/protocol.md`.
 
 * Callbacks of Zenoh only put into the loop's queues (`indirect=False`): work in one would hold up every other message,
   and by default each would have a thread. The callback of a direct subscription puts into a queue of its owner.
 * Questions go to all queryables and are not consolidated, for that keeps one reply per key and waits for the slowest.
   They end when every queryable has finished, not at the time-out.
 * All control calls of one component have the same priority and are express, or they would overtake each other.
-* A lease of one second: a component that is stopped or cut off counts as dead after about that time.
 """
 
 from __future__ import annotations
 
-import json
 import logging
-import socket
 import threading
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -26,15 +23,11 @@ from zenoh.handlers import Callback
 
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Replies, Sample, Urgency
+from selfconf.bus.zenoh_relay import Hub, Relay
+from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, open_session
 from selfconf.errors import NetworkError
 
 log = logging.getLogger(__name__)
-
-LEASE_MS = 1000
-"""After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
-ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
-
-zenoh.init_log_from_env_or("error")
 
 _QUALITY: dict[Urgency, dict[str, Any]] = {
     Urgency.SIGNAL: {
@@ -55,35 +48,20 @@ _QUALITY: dict[Urgency, dict[str, Any]] = {
 }
 
 
-def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = ()) -> ZenohBus:
-    """Open a site's session: it listens on `listen` and connects to the routers of other sites.
+def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = (), otherwise: Sequence[str] = ()) -> ZenohBus:
+    """Open a relay that listens on `listen` and connects to others, and a bus that is its client.
 
-    Port 0 means any free one; `endpoint` is the one that was taken. Raises NetworkError if the endpoint is taken.
+    Port 0 means any free one; `endpoint` is the one that was taken. The bus becomes a client of those that are named
+    `otherwise` if it relays no more. Raises NetworkError if the endpoint is taken.
     """
-    attempts = 5 if listen.endswith(":0") else 1
-    for attempt in range(1, attempts + 1):
-        endpoint = _with_port(listen)
-        try:
-            return ZenohBus(_config("router", listen=[endpoint], connect=connect), endpoint)
-        except NetworkError:
-            if attempt == attempts:
-                raise
-    raise AssertionError("unreachable")
-
-
-def _with_port(endpoint: str) -> str:
-    """The endpoint with a free port in place of port 0; Zenoh would not say which one it has taken."""
-    head, _, port = endpoint.rpartition(":")
-    if port != "0":
-        return endpoint
-    host = head.partition("/")[2].strip("[]")
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    with socket.socket(family, socket.SOCK_STREAM) as probe:
-        try:
-            probe.bind((host, 0))
-        except OSError as error:
-            raise NetworkError(f"cannot listen on {endpoint}: {error.strerror or error}") from None
-        return f"{head}:{probe.getsockname()[1]}"
+    hub = Hub(listen)
+    try:
+        bus = ZenohBus(open_session("client", connect=[hub.from_here, *otherwise], connect_seconds=5.0))
+        bus.relay(hub, connect)
+    except NetworkError:
+        hub.close()
+        raise
+    return bus
 
 
 def client(connect: Sequence[str], seconds: float = 5.0) -> ZenohBus:
@@ -92,35 +70,9 @@ def client(connect: Sequence[str], seconds: float = 5.0) -> ZenohBus:
     Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one.
     """
     try:
-        return ZenohBus(_config("client", connect=connect, connect_seconds=0.0))
+        return ZenohBus(open_session("client", connect=connect))
     except NetworkError:
-        return ZenohBus(_config("client", connect=connect, connect_seconds=seconds))
-
-
-def _config(
-    mode: str, listen: Sequence[str] = (), connect: Sequence[str] = (), connect_seconds: float = 5.0
-) -> zenoh.Config:
-    config = zenoh.Config()
-    settings: dict[str, Any] = {
-        "mode": mode,
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": mode == "router",
-        "listen/endpoints": list(listen),
-        "connect/endpoints": list(connect),
-        "connect/retry": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1.5},
-        "connect/exit_on_failure": mode == "client",
-        "connect/timeout_ms": int(connect_seconds * 1000) if mode == "client" else -1,
-        "transport/link/tx/lease": LEASE_MS,
-        "transport/link/tx/keep_alive": 4,
-        "transport/shared_memory/enabled": False,
-        "timestamping/enabled": {"router": True, "peer": True, "client": True},
-    }
-    for key, value in settings.items():
-        try:
-            config.insert_json5(key, json.dumps(value))
-        except zenoh.ZError:
-            raise NetworkError(f"{', '.join(value)} is no endpoint; write it like tcp/127.0.0.1:7447") from None
-    return config
+        return ZenohBus(open_session("client", connect=connect, connect_seconds=seconds))
 
 
 class _Publisher:
@@ -228,30 +180,37 @@ class _DirectReceiver:
 class ZenohBus(Loop):
     """A Zenoh session as a bus."""
 
-    def __init__(self, config: zenoh.Config, endpoint: str = "") -> None:
+    def __init__(self, session: Any) -> None:
         super().__init__()
-        self.endpoint = endpoint
-        """Where a router listens; empty for a client."""
-        self._client = json.loads(config.get_json("mode")) == "client"
-        endpoints = ", ".join(json.loads(config.get_json("connect/endpoints")) or [])
-        try:
-            self._session: Any = zenoh.open(config)
-        except zenoh.ZError as error:
-            where = endpoints if self._client else ", ".join(json.loads(config.get_json("listen/endpoints")))
-            what = "nobody answers at" if self._client else "cannot listen on"
-            if "Address already in use" in str(error):
-                raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
-            raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
+        self._session = session
+        self.endpoint = ""
+        """Where the relay of this bus listens; empty if it has none."""
+        self._relay: Relay | None = None
         self._declared: set[Any] = set()
         self._direct: set[_DirectReceiver] = set()
         self._open = True
 
+    def relay(self, hub: Hub, connect: Sequence[str]) -> None:
+        """Keep a hub, connected to others, until this bus is closed or relays no more."""
+        self._relay, self.endpoint = Relay(hub, self, connect), hub.endpoint
+
+    def relay_no_more(self) -> None:
+        """Close the hub, if there is one; this bus goes to another hub that it was told of."""
+        if self._relay is not None:
+            self._relay.close()
+        self._relay, self.endpoint = None, ""
+
+    def watch_link(self, changed: Callable[[], None]) -> Callable[[], None]:
+        """Call `changed` whenever this bus has gained or lost its hub, on the bus's thread."""
+        receiver = _Receiver(self, lambda _: changed())
+        return receiver.open(
+            self._session.info.declare_transport_events_listener(Callback(receiver.received, indirect=False))
+        )
+
     @property
     def link(self) -> str:
-        """The router that a client has; a router stands for itself."""
-        if not self._open:
-            return ""
-        return ",".join(sorted(map(str, self._session.info.routers_zid()))) if self._client else "itself"
+        """The hub that this bus is a client of."""
+        return ",".join(sorted(map(str, self._session.info.routers_zid()))) if self._open else ""
 
     def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
         """Declare a key to put on."""
@@ -363,6 +322,8 @@ class ZenohBus(Loop):
             self._direct.clear()
             self._declared.clear()
             self._session.close()
+            if self._relay is not None:
+                self._relay.close()
 
     def _keep(self, declared: Any) -> Callable[[], None]:
         """Hold on to something declared, which would be gone with its last reference; the result takes it back."""
@@ -379,7 +340,3 @@ class ZenohBus(Loop):
 def _sample(sample: zenoh.Sample) -> Sample:
     attachment = bytes(sample.attachment) if sample.attachment is not None else b""
     return Sample(str(sample.key_expr), bytes(sample.payload), attachment)
-
-
-def _first_sentence(error: Exception) -> str:
-    return str(error).split(" at ")[0][:120]

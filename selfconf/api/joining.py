@@ -1,0 +1,146 @@
+"""How a site joins its ecology: as the one that relays on its machine, or as a client of that one.
+
+The first site of an ecology on a machine relays, on a usual port; all others there are its clients. When it is gone, a
+site that has lost it takes its place, on the same port if that is free. So a machine is one router to the others,
+however many sites it has, and there is a router as long as there is a site. (Fifty routers that see each other come and
+go cost two processors and do not recover from a common stall; fifty clients of one cost a twentieth of a processor.)
+
+A site that is told where to listen, or to connect to another machine, relays beside the others.
+
+A relay that hangs cannot be told so. A site that has had no hub for `HUNG` seconds takes its place on another port and
+writes into its file that it relays no more; when it goes on it reads that, and closes its hub.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+from collections.abc import Sequence
+from pathlib import Path
+
+from selfconf import rendezvous
+from selfconf.bus.port import Undo
+from selfconf.bus.zenoh_bus import ZenohBus, client, router
+from selfconf.bus.zenoh_relay import Hub
+from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK
+from selfconf.errors import NetworkError
+from selfconf.rendezvous import LocalSite
+
+HASTE = 0.05
+"""Seconds within which, by chance, a site that has lost its hub looks whether there is a place to take."""
+LOOK_AGAIN = 0.2
+"""Seconds after which a site that still has no hub looks again."""
+STILL_MINE = 1.0
+"""How often, in seconds, a site that relays looks whether another has taken its place."""
+HUNG = 0.5
+"""Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
+
+
+class Joining:
+    """The bus of one site, and its part in relaying."""
+
+    def __init__(self, ecology: str, name: str, listen: str | None, connect: Sequence[str]) -> None:
+        """Opens the bus, in a turn (`rendezvous.turn`). Raises NetworkError."""
+        self._ecology, self._name = ecology, name
+        self._usual = rendezvous.usual_endpoints(ecology)
+        relays = self._relays()
+        self._elsewhere = [endpoint for endpoint in connect if endpoint not in (*relays, *self._usual)]
+        self.bus = self._opened(listen, relays)
+        self._reached_at = relays[0] if relays else ""
+        self._file: Path | None = None
+        self._lost_at: float | None = None
+        self._look_again: Undo = lambda: None
+        self.bus.watch_link(self._link_changed)
+        self.bus.later(STILL_MINE, self._look_from_time_to_time)
+
+    @property
+    def endpoint(self) -> str:
+        """Where the site is reached."""
+        return self.bus.endpoint or self._reached_at
+
+    @property
+    def endpoints(self) -> list[str]:
+        """Where a component of this site looks for a hub: where the site is reached first."""
+        return list(dict.fromkeys([self.endpoint, *self._usual]))
+
+    def announce(self) -> None:
+        """Write down for others on this machine where this site is reached. Raises NetworkError."""
+        relays = bool(self.bus.endpoint)
+        mine = LocalSite(self._ecology, self._name, self.endpoint, os.getpid(), relays=relays)
+        self._file = rendezvous.announce(mine)
+
+    def leave(self) -> None:
+        """Take back what was written down."""
+        if self._file is not None:
+            rendezvous.leave(self._file)
+            self._file = None
+
+    def _relays(self) -> list[str]:
+        """Where the other sites of this machine that relay are reached."""
+        others = rendezvous.local_sites(self._ecology)
+        return list(dict.fromkeys(other.endpoint for other in others if other.relays and other.site != self._name))
+
+    def _opened(self, listen: str | None, relays: list[str]) -> ZenohBus:
+        connect = [*relays, *self._elsewhere]
+        if listen is not None:
+            return router(listen, [*connect, *(self._usual if relays else ())])
+        if relays and not self._elsewhere:
+            try:
+                return client(list(dict.fromkeys([*relays, *self._usual])))
+            except NetworkError:  # those that relay hang
+                pass
+        for endpoint in self._usual:
+            try:
+                return router(endpoint, connect, otherwise=self._usual)
+            except NetworkError:  # the port is taken
+                continue
+        return router(ANYWHERE_ON_LOOPBACK, connect, otherwise=self._usual)
+
+    # The one that relays may be gone, or it was stopped and another has taken its place.
+
+    def _link_changed(self) -> None:
+        self._lost_at = None if self.bus.link else self.bus.now()
+        self._look_again()
+        self._look_again = self.bus.later(random.uniform(0.0, HASTE), self._look)
+
+    def _look_from_time_to_time(self) -> None:
+        self.bus.later(STILL_MINE, self._look_from_time_to_time)
+        if self._file is not None and self.bus.endpoint and not rendezvous.relays(self._file):
+            self._look()
+
+    def _look(self) -> None:
+        if self._file is None:
+            return
+        with rendezvous.turn(seconds=0.0) as mine:
+            if mine and self.bus.endpoint:
+                self._give_place()
+            elif mine and not self.bus.link:
+                self._take_place()
+        if not mine or not self.bus.link:
+            self._look_again = self.bus.later(LOOK_AGAIN, self._look)
+
+    def _give_place(self) -> None:
+        """Relay no more, if another site has taken the place meanwhile."""
+        mine = [site for site in rendezvous.local_sites(self._ecology) if site.site == self._name]
+        if mine and not mine[0].relays:
+            self.bus.relay_no_more()
+            self._reached_at = next(iter(self._relays()), mine[0].endpoint)
+            self.announce()
+
+    def _take_place(self) -> None:
+        """Relay, if nobody does, or if whoever does hangs."""
+        relays = self._relays()
+        hung = self._lost_at is not None and self.bus.now() - self._lost_at > HUNG
+        if relays and not hung:
+            return
+        for endpoint in self._usual:
+            try:
+                hub = Hub(endpoint)
+            except NetworkError:  # the port is taken, by one that hangs or by another program
+                continue
+            for other in rendezvous.local_sites(self._ecology):
+                if other.relays and other.endpoint in self._usual:
+                    rendezvous.announce_for(other, relays=False)
+            self.bus.relay(hub, [relay for relay in relays if relay not in self._usual])
+            self.announce()
+            return

@@ -1,0 +1,155 @@
+"""The router of a site, in two sessions: a *hub* that listens, and an *uplink* that connects the hub to other hubs.
+
+Nothing is declared on either; whatever a site has to say it says as a client of its own hub. So the uplink can be
+replaced by a new session at any time, and nobody hears of it.
+
+It has to be, for routers of Zenoh 1.10 do not survive being cut off for a moment. A router computes its trees 100 ms
+after a change, and then sends what is declared to the *new* children in each. A router whose link is lost, and
+made again within that time, was a child before and is one after: it is told nothing, while it has itself forgotten
+everything at the loss; and the side that connects does so again at once. A host that was stopped for longer than the
+lease was not seen again by some of the others, for good. So an uplink that has lost a hub and has it back is followed
+by a new one, which no router knows yet; the old one stays for a while, or the new one might be taken for it. Hubs do
+not connect to each other, so each tree consists of hubs and uplinks in turn: every edge has an end that is replaced.
+"""
+
+from __future__ import annotations
+
+import random
+import threading
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from selfconf.bus.loop import Loop
+from selfconf.bus.zenoh_session import open_session, with_port
+from selfconf.errors import NetworkError
+
+QUIET = 0.3
+"""Seconds without any change of its links after which an uplink is replaced: trees are computed in between."""
+SPREAD = 0.5
+"""By how many seconds at most a replacement is delayed, by chance: others may have lost their links with this one."""
+LINGER = 3.0
+"""Seconds for which an uplink that was replaced stays, up to twice that by chance."""
+MOST_LINGERING = 3
+"""How many replaced uplinks stay at most, however fast the links change."""
+
+
+class Hub:
+    """The session of a router that listens on an endpoint."""
+
+    def __init__(self, listen: str) -> None:
+        """Port 0 means any free one. Raises NetworkError if the endpoint is taken, or none."""
+        attempts = 5 if listen.endswith(":0") else 1
+        for attempt in range(1, attempts + 1):
+            self.endpoint = with_port(listen)
+            try:
+                self._session = open_session("router", listen=[self.endpoint])
+                return
+            except NetworkError:
+                if attempt == attempts:
+                    raise
+
+    @property
+    def from_here(self) -> str:
+        """The endpoint by which a hub that listens on all addresses is reached from its own host."""
+        return self.endpoint.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
+
+    def close(self) -> None:
+        """Leave the network."""
+        _close(self._session)
+
+
+class Relay:
+    """A hub that listens on an endpoint, and its uplink to other hubs; it lives on the thread of a loop."""
+
+    def __init__(self, hub: Hub, loop: Loop, connect: Sequence[str]) -> None:
+        self._loop, self._hub = loop, hub
+        self._others: list[str] = []
+        self._uplink: _Uplink | None = None
+        self._lingering: list[_Uplink] = []
+        self._undo_replacement: Callable[[], None] = lambda: None
+        self.connect(connect)
+
+    def connect(self, others: Sequence[str]) -> None:
+        """Be connected to these hubs and to those from before, by a new uplink."""
+        self._others = [e for e in dict.fromkeys([*self._others, *others]) if e != self._hub.endpoint]
+        if self._others:
+            self._replace()
+
+    def close(self) -> None:
+        """Leave the network."""
+        self._undo_replacement()
+        uplink, self._uplink = self._uplink, None
+        for one in (*self._lingering, uplink):
+            if one is not None:
+                one.close()
+        self._lingering.clear()
+        self._hub.close()
+
+    def link_changed(self, uplink: _Uplink, other: str, up: bool) -> None:
+        """An uplink has gained or lost a link; once there is quiet, replace what others may have lost sight of."""
+        if uplink is not self._uplink:
+            return
+        uplink.note(other, up)
+        self._undo_replacement()
+        if uplink.regained:
+            self._undo_replacement = self._loop.later(QUIET + random.uniform(0.0, SPREAD), self._replace)
+
+    def _replace(self) -> None:
+        self._undo_replacement()
+        old, self._uplink = self._uplink, _Uplink(self)
+        if old is not None:
+            self._lingering.append(old)
+            self._loop.later(LINGER * random.uniform(1.0, 2.0), partial(self._let_go, old))
+        if len(self._lingering) > MOST_LINGERING:
+            self._let_go(self._lingering[0])
+
+    def _let_go(self, uplink: _Uplink) -> None:
+        """Close an uplink that was replaced; elsewhere, as Zenoh may take its time."""
+        if uplink in self._lingering:
+            self._lingering.remove(uplink)
+            threading.Thread(target=uplink.close, daemon=True).start()
+
+    def open_uplink(self) -> Any:
+        """A session that connects the hub to the others."""
+        return open_session("router", connect=[self._hub.from_here, *self._others])
+
+    def tell(self, uplink: _Uplink, other: str, up: bool) -> None:
+        """Have the change of a link noted on the loop's thread."""
+        self._loop.wake_up(lambda: self.link_changed(uplink, other, up))
+
+
+class _Uplink:
+    """One session of a relay's uplink, and which links it has lost and regained."""
+
+    def __init__(self, relay: Relay) -> None:
+        self._relay, self._lost = relay, set[str]()
+        self.regained = False
+        """Whether it has lost a hub and has it again: what is declared does not get through to it any more."""
+        self._session = relay.open_uplink()
+        self._listener = self._session.info.declare_transport_events_listener(Callback(self._changed, indirect=False))
+
+    def _changed(self, event: zenoh.TransportEvent) -> None:
+        """Called by Zenoh, on a thread of its own."""
+        self._relay.tell(self, str(event.transport.zid), event.kind == zenoh.SampleKind.PUT)
+
+    def note(self, other: str, up: bool) -> None:
+        """Remember that a link was lost, or that one is back."""
+        if not up:
+            self._lost.add(other)
+        elif other in self._lost:
+            self.regained = True
+
+    def close(self) -> None:
+        """Leave the network."""
+        _close(self._session)
+
+
+def _close(session: Any) -> None:
+    try:
+        session.close()
+    except zenoh.ZError:  # it takes too long; the process, or the lease, will end it
+        return
