@@ -1,13 +1,15 @@
 """Which components and sites live, and when one of them is believed to be dead.
 
-To a configurator that is cut off from the network all lives seem to end at once, and it cannot tell that from a real
-end. So each life that has ended is looked at a second time; while there is no link, no end is believed; and once there
-is one again, the ecology is asked what has become of its components.
+To a configurator that is cut off from the network all lives seem to end at once. So when a life has ended, the network
+is asked which sites live, which takes one round trip: if it answers, and over the link from before, the end is real. If
+a site has ended at the same moment, it may be that everything behind its router has only lost the way, and is given
+`AWAY` seconds to come back. While there is no link, no end is believed; once there is one again, the ecology is asked
+what has become of its components.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from selfconf.bus.port import Undo
@@ -21,8 +23,12 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.protocol.messages import CallAnswer, Cause
 
+LOOK = 1.0
+"""Seconds that the network may take to say which sites live."""
 SECOND_LOOK = 0.03
-"""Seconds until the second look at a life that has ended: Zenoh reports lost lives before it reports a lost link."""
+"""Seconds until the second look at a life that has ended, where no site answers: a lost link may show later."""
+AWAY = 0.3
+"""Seconds that a component may take to find another router when its own is gone."""
 CUT_OFF = 0.25
 """Seconds between two looks of a configurator that is cut off whether it still is."""
 ASK_AGAIN = 5.0
@@ -56,12 +62,20 @@ class Liveness:
         """The liveliness keys of the sites that have answered: a site that was started again has another one."""
         self._unseen: set[tuple[str, str]] = set()
         """The lives of the roll-call that the watch has not shown yet, with the component's chunk."""
+        self._names: dict[str, IRI] = {}
+        """Every component that was ever advertised, by its chunk: an event costs one look-up, however many live."""
+        self._doubted: set[tuple[str, str]] = set()
+        """The lives that seem to have ended since the network was last asked, with the component's chunk."""
+        self._asking = False
+        self._site_ended = float("-inf")
+        """When the life of a site ended the last time."""
         self._link, self._cut_off = self.bus.link, False
         self._ask_again: Undo = lambda: None
         self._audited = 0
 
     def discovered(self, discovery: Discovery) -> None:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
+        self._names.update((component_chunk(component), component) for component in discovery.found)
         self._sites.update(key for key in discovery.site_tokens if owner_of(key) not in discovery.missing)
         if not self.ecology.followed:
             self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
@@ -73,36 +87,59 @@ class Liveness:
 
     def _life_changed(self, key: str, alive: bool) -> None:
         chunk, life = owner_of(key), life_of(key)
-        component = self._component(chunk)
-        known = life in self.ecology.lives.get(chunk, ())
         self._unseen.discard((chunk, life))
-        if alive and not known:
+        if not alive:
+            self._ended(chunk, life)
+        elif life not in self.ecology.lives.get(chunk, ()):
             self.ecology.began(chunk, life)
+            component = self._component(chunk)
             if component is not None:
                 self._calls.woken(component)
             self._step(Appeared({component: life} if component is not None else {}))
-        elif not alive:
-            self._ended(chunk, life)
 
     def _ended(self, chunk: str, life: str) -> None:
         """A life has ended, or only the way to it: a client that changes its router seems to end for a moment."""
         component = self._component(chunk)
         known = life in self.ecology.lives.get(chunk, ())
         self.ecology.ended(chunk, life)
+        if known or (component is not None and self._held_life(component) == life):
+            self._doubted.add((chunk, life))
+            if not self._asking:
+                self._ask_network()
 
-        def look_again() -> None:
-            now = self.ecology.lives.get(chunk, ())
+    def _ask_network(self) -> None:
+        """Ask which sites live, once for all lives that have ended before."""
+        self._asking = True
+        asked, self._doubted = sorted(self._doubted), set()
+        self.bus.roll_call(self.ecology.keys.any_site_life(), LOOK, partial(self._network_answered, asked))
+
+    def _network_answered(self, asked: Sequence[tuple[str, str]], sites: tuple[str, ...]) -> None:
+        self._asking = False
+        away = self._site_ended + AWAY - self.bus.now()
+        if not sites:
+            self.bus.later(SECOND_LOOK, partial(self._judge, asked))
+        elif away > 0:
+            self.bus.later(away, partial(self._judge, asked))
+        else:
+            self._judge(asked)
+        if self._doubted and not self._asking:
+            self._ask_network()
+
+    def _judge(self, asked: Sequence[tuple[str, str]]) -> None:
+        """Believe that lives have ended, unless they are back, or this node is or was cut off."""
+        for chunk, life in asked:
             if self.bus.link != self._link:
                 self._await_link()
-            elif component is not None and life not in now:
+                return
+            component, now = self._component(chunk), self.ecology.lives.get(chunk, ())
+            if component is None:
+                continue
+            if life not in now:
                 self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
                 if now:
                     self._step(Appeared({component: now[0]}))
-            elif component is not None and self._held_life(component) == life:
+            elif self._held_life(component) == life:
                 self._calls.look(component, partial(self._seen, component, life))
-
-        if known or (component is not None and self._held_life(component) == life):
-            self.bus.later(SECOND_LOOK, look_again)
 
     def _seen(self, component: IRI, life: str, answer: CallAnswer | None) -> None:
         """Judge a component whose life seemed to end and goes on, by the answer to a question for its state.
@@ -168,6 +205,7 @@ class Liveness:
             self._sites.add(key)
             self._step(Appeared({}))
         elif not alive:
+            self._site_ended = self.bus.now()
             self._sites.discard(key)
 
     def _await_link(self) -> None:
@@ -192,7 +230,4 @@ class Liveness:
             look()
 
     def _component(self, chunk: str) -> IRI | None:
-        for component in (*self._state().held, *self._state().owed, *self._state().lost, *self.ecology.discovery.found):
-            if component_chunk(component) == chunk:
-                return component
-        return None
+        return self._names.get(chunk)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.state import Phase, Policy
-from selfconf.deployment.liveness import ASK_AGAIN, AUDIT, SETTLING
+from selfconf.deployment import liveness
+from selfconf.deployment.liveness import ASK_AGAIN, AUDIT, AWAY, SETTLING
 from selfconf.discovery import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
@@ -167,15 +171,70 @@ def test_a_component_that_fails_while_it_is_cut_off_for_a_moment_is_replaced(lab
     assert lab.active() == TASK | {"odometry"}
 
 
-def test_a_component_that_is_cut_off_for_a_moment_and_goes_on_is_kept(lab: Lab) -> None:
+def test_a_component_that_loses_its_router_for_a_moment_together_with_its_site_is_kept(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
-    lab.isolate("tracker")
-    lab.let_pass(0.01)
-    lab.rejoin("tracker")
+    behind = [node for node in lab.network.nodes if node in (lab.network.nodes[0], lab.runtimes["tracker"].bus)]
+    others = [node for node in lab.network.nodes if node not in behind]
+    for node, other in itertools.product(behind, others):
+        lab.network.cut(node, other)
+    lab.let_pass(AWAY / 2)
+    for node, other in itertools.product(behind, others):
+        lab.network.reconnect(node, other)
     lab.let_pass(10.0)
     assert lab.active() == TASK | {"tracker"}
     assert lab.acts("lost") == []
+
+
+def test_a_component_that_crashes_is_lost_after_one_question_to_the_network(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.crash("tracker")
+    round_trip = 2 * lab.network.faults.most_delay
+    assert lab.until(lambda: bool(agent.state.lost), 4 * round_trip)
+
+
+def test_a_component_that_crashes_in_an_ecology_whose_sites_are_gone_is_lost_all_the_same(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    for site in lab.network.nodes[:2]:
+        site.close()
+    lab.let_pass(1.0)
+    lab.crash("tracker")
+    lab.let_pass(1.0)
+    assert iri("person-tracker") in agent.state.lost
+
+
+def test_many_that_end_at_once_are_asked_about_once(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    asked: list[str] = []
+    roll_call = MemoryBus.roll_call
+
+    def counted(bus: MemoryBus, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        asked.append(key)
+        roll_call(bus, key, seconds, done)
+
+    monkeypatch.setattr(MemoryBus, "roll_call", counted)
+    for name in ("tracker", "sonar", "pippi"):
+        lab.crash(name)
+    lab.let_pass(0.01)
+    assert set(agent.state.lost) >= {iri("person-tracker"), iri("sonar-array")}
+    assert asked[:2] == [lab.keys.any_site_life()] * len(asked[:2])
+    assert asked.count(lab.keys.any_site_life()) <= 2 + 1  # a discovery calls the sites as well
+
+
+def test_a_life_that_begins_or_ends_costs_one_look_up_however_many_components_there_are(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    hashed: list[str] = []
+    monkeypatch.setattr(liveness, "component_chunk", hashed.append)
+    for number in range(20):
+        lab.network.node().announce(f"selfconf/lab/c/00/stranger{number}/live/1")
+    lab.let_pass(1.0)
+    assert hashed == []
 
 
 @pytest.mark.parametrize("seconds", [0.3, GRACE + 0.5, 30.0])
