@@ -1,13 +1,15 @@
 """How long from FAIL to the first message over the new connection, beside a bare Zenoh round trip in the same run.
 
-    python -m benchmarks.failover [--trials 50] [--smoke]
+    python -m benchmarks.failover [--trials 50] [--kill] [--smoke]
 
 Nine processes on one machine: a site (the router), six components without physics, the configurator (`selfconf run`)
 and an echo, all real. A trial: after a pause the position sensor in use raises FAIL; the configurator hears it,
 searches, turns it off, activates the other one and connects it; the navigator hears its first pose. Between trials
 one put-to-callback round trip is measured over the same router, after the same pause: cold, as the trial is.
 
-    detect   FAIL raised -> heard by the configurator
+With `--kill` the process of the sensor in use is ended by kill -9 instead, and started again after the trial.
+
+    detect   FAIL raised, or the process killed -> the component is given up by the configurator
     decide   the search for the next configuration
     deploy   the rest, until the first message has arrived
 """
@@ -70,6 +72,12 @@ class Process:
         self._process.stdin.write("go\n")
         self._process.stdin.flush()
 
+    def kill(self) -> float:
+        """End it as a crash does, and return when."""
+        moment = time.time()
+        self._process.kill()
+        return moment
+
     def end(self) -> None:
         """End it and wait."""
         self._process.terminate()
@@ -131,7 +139,7 @@ class Echo:
         self._session.close()
 
 
-def measure(trials: int) -> dict[str, list[float]]:
+def measure(trials: int, kill: bool = False) -> dict[str, list[float]]:
     """Seconds by part: round trip, detect, decide, deploy, total without decide."""
     ecology = f"failover-{secrets.token_hex(3)}"
     lines = Lines()
@@ -162,13 +170,22 @@ def measure(trials: int) -> dict[str, list[float]]:
             threading.Event().wait(PAUSE)
             parts["round trip"].append(echo.measure())
             threading.Event().wait(PAUSE)
-            _trial(lines, actors[("position-a", "position-b")[trial % 2]], parts)
+            name = ("position-a", "position-b")[trial % 2]
+            _trial(lines, actors[name], parts, kill)
+            if kill:
+                actors[name].end()
+                actors[name] = start(name, "benchmarks.failover_actors", name, **where)
+                lines.until(_said(name, "event", "ready"))
+                threading.Event().wait(PAUSE)  # until it stands by
     return parts
 
 
-def _trial(lines: Lines, sensor: Process, parts: dict[str, list[float]]) -> None:
-    sensor.tell()
+def _trial(lines: Lines, sensor: Process, parts: dict[str, list[float]], kill: bool) -> None:
     facts: dict[str, dict[str, Any]] = {}
+    if kill:
+        facts["fail"] = {"real": sensor.kill()}
+    else:
+        sensor.tell()
 
     def over(name: str, fact: Any) -> bool:
         if isinstance(fact, dict):
@@ -188,10 +205,10 @@ def _said(process: str, key: str, value: str) -> Callable[[str, Any], bool]:
     return lambda name, fact: name == process and isinstance(fact, dict) and fact.get(key) == value
 
 
-def report(parts: dict[str, list[float]]) -> str:
+def report(parts: dict[str, list[float]], kill: bool = False) -> str:
     """The table, with each part as a ratio to the median round trip."""
     floor = quantile(parts["round trip"], 0.5)
-    names = {"undecided": "FAIL to first message, without the search"}
+    names = {"undecided": f"{'kill -9' if kill else 'FAIL'} to first message, without the search"}
     rows = []
     for name, values in parts.items():
         middle, high = quantile(values, 0.5), quantile(values, 0.95)
@@ -206,9 +223,10 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="FAIL to first message, beside a bare Zenoh round trip")
     parser.add_argument("--trials", type=int, default=50)
+    parser.add_argument("--kill", action="store_true", help="end the process of the sensor instead of raising FAIL")
     parser.add_argument("--smoke", action="store_true", help="four trials, to see that it works")
     given = parser.parse_args()
-    print(report(measure(4 if given.smoke else given.trials)))
+    print(report(measure(4 if given.smoke else given.trials, given.kill), given.kill))
 
 
 if __name__ == "__main__":
