@@ -77,4 +77,3 @@ def _log_path(folder: Path | None, ecology: str, name: str) -> Path:
         folder = rendezvous.runtime_folder() / "log"
         forget_oldest(folder, {f"{site.ecology}@{site.site}.log" for site in rendezvous.local_sites()})
     return folder / f"{ecology}@{name}.log"
-
