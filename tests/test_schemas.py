@@ -256,6 +256,8 @@ def instances(event: type[RunEvent], outcomes: dict[str, Any]) -> Iterator[RunEv
         "cause": Cause.CRASH.value,
         "call": Call.APPLY.value,
         "lost": {component: "crash, its liveliness has ended"},
+        "owed": (component,),
+        "task": "tell-the-time",
         "configuration": outcomes["configuration"],
         "time": 1.5,
     }

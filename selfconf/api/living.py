@@ -286,10 +286,10 @@ class LivingEcology(Ecology):
         does not obey.
         """
         running = [s for s in self.tasks if name in (None, s.configurator, task_name(s.task))]
-        silent = [one for one in self.silent if name in (None, one)]
-        kept = [record for record in self._kept() if name in (None, task_name(record.task))]
-        if silent:
-            raise NetworkError(f"the configurator {silent[0]!r} lives, but does not answer")
+        kept = self._kept(name)
+        for silent in self.silent:
+            if name in (None, silent):
+                raise NetworkError(f"the configurator {silent!r} lives, but does not answer")
         if name is not None and not running and not kept:
             raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
         for record in kept:

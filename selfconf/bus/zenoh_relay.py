@@ -29,7 +29,7 @@ from selfconf.errors import NetworkError
 
 QUIET = 0.3
 """Seconds without any change of its links after which an uplink is replaced: trees are computed in between."""
-SPREAD = 0.5
+RETRY_SPREAD = 0.5
 """By how many seconds at most a replacement is delayed, by chance: others may have lost their links with this one."""
 LINGER = 3.0
 """Seconds for which an uplink that was replaced stays, up to twice that by chance."""
@@ -96,7 +96,7 @@ class Relay:
         uplink.note(other, up)
         self._undo_replacement()
         if uplink.regained:
-            self._undo_replacement = self._loop.later(QUIET + random.uniform(0.0, SPREAD), self._replace)
+            self._undo_replacement = self._loop.later(QUIET + random.uniform(0.0, RETRY_SPREAD), self._replace)
 
     def _replace(self) -> None:
         self._undo_replacement()

@@ -263,11 +263,11 @@ class TextLines:
 
     def __call__(self, event: RunEvent) -> None:
         """Raises OSError if the line cannot be written."""
-        from selfconf.model.run_event import TaskWaiting
+        from selfconf.model.run_event import TaskStopped, TaskWaiting
         from selfconf.render.run_events import details, sentence
 
         self._began = event.time if self._began is None else self._began
-        for detail in details(event, self._names) if isinstance(event, TaskWaiting) else ():
+        for detail in details(event, self._names) if isinstance(event, TaskWaiting | TaskStopped) else ():
             print(detail, file=sys.stderr, flush=True)
         said = sentence(event, self._names)
         if said:

@@ -85,7 +85,7 @@ def proceed(state: State) -> Reaction:
         if free and not (len(free) == 1 and free[0] not in state.order.actuators):
             return _reserve(state, free[0])
         return apply_to(replace(state, phase=Phase.DEPLOYING), state.target.components)
-    return complete(state)
+    return end_deployment(state)
 
 
 def _reserve(state: State, component: IRI) -> Reaction:
@@ -145,7 +145,7 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     return apply_to(done, dict.fromkeys(waiting))
 
 
-def complete(state: State) -> Reaction:
+def end_deployment(state: State) -> Reaction:
     """Everything acts: release what is not needed any more."""
     assert state.target is not None
     wanted = set(state.target.components)

@@ -74,6 +74,7 @@ DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
 """The phases of act 4."""
 
 
+# complexity: one case for each event; what it does is a function of its own
 def step(state: State, event: Event) -> Reaction:
     """What an event does. Total: every state answers every event, if only by staying as it is."""
     match event:
@@ -189,6 +190,11 @@ def _answered(state: State, event: Answered) -> Reaction:
     if event.verdict is Verdict.NOT_HELD:
         forgotten = replace(state.held[event.component], reserved=False, active=False, confirmed=False)
         return deploying.deploy(replace(rest, held={**state.held, event.component: forgotten}))
+    return _declined(state, event)
+
+
+def _declined(state: State, event: Answered) -> Reaction:
+    """A component that is asked for cannot be had: wait for it, or go on without it."""
     busy = event.verdict is Verdict.BUSY
     if busy:
         state = replace(state, queued=state.queued | {event.component})

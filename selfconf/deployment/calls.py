@@ -60,7 +60,7 @@ CALL_ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
 WAKING = 15.0
 """Seconds that a component that a site starts may take to live."""
-ASK_AGAIN = 0.5
+RESERVE_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
 
 
@@ -171,7 +171,7 @@ class Calls:
         if effect.component not in self._awaited:
             self._awaited.add(effect.component)
             self._report(ComponentAwaited(effect.component))
-        self.bus.later(ASK_AGAIN, lambda: self._step(WaitedLong(effect.component, effect.epoch)))
+        self.bus.later(RESERVE_AGAIN, lambda: self._step(WaitedLong(effect.component, effect.epoch)))
 
     # Activating.
 

@@ -26,7 +26,7 @@ from selfconf.protocol.messages import TaskRecord
 
 log = logging.getLogger(__name__)
 
-LOOK = 1.0
+KEEPER_LOOK = 1.0
 """Seconds between two looks at which tasks this site is to run."""
 OTHERS = 2.0
 """Seconds that the other sites may take to say what they keep."""
@@ -125,7 +125,7 @@ class Keeper:
 
     def _look(self) -> None:
         """Look from time to time, as what was to be handed over may be free by now."""
-        self.bus.later(LOOK, self._look)
+        self.bus.later(KEEPER_LOOK, self._look)
         for record in list(self.folder.records.values()):
             if record.task not in self._requests and not record.ended:
                 self._requests[record.task] = self._read(record)

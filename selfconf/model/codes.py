@@ -450,7 +450,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-C11", "A failure has one component, one cause, and at most one detail and time.",
-        'The causes are "fail", "crash", "silence", "refused", "hung" and "malformed".',
+        'The causes are "fail", "crash", "silence", "refused", "hung", "malformed" and "yield".',
         '[] a sc:Failure ; sc:component :tuner ; sc:cause "tired" .',
         '[] a sc:Failure ; sc:component :tuner ; sc:cause "crash" .',
         ("FailureComponent", "FailureCause", "FailureDetail", "FailureTime"),

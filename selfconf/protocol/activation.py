@@ -110,7 +110,7 @@ class Activation:
         return hold.claim.epoch if hold is not None else dict(self.ended).get(task, 0)
 
 
-Reaction = tuple[Activation, Verdict, ActivationStep]
+Obedience = tuple[Activation, Verdict, ActivationStep]
 """The activation after a call, the verdict to answer, and what it means to the component's code."""
 
 _START = {
@@ -127,7 +127,7 @@ def obey(
     shareable: bool = False,
     actuator: bool = False,
     gone: frozenset[str] = frozenset(),
-) -> Reaction:
+) -> Obedience:
     """Return what a call makes of an activation; `gone` are the supervisors whose life was seen to end.
 
     `shareable` and `actuator` say what kind of component it is.

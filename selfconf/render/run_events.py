@@ -9,7 +9,7 @@ from typing import Any
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.run_event import EcologyDiscovered, RunEvent, SearchEnded, TaskRefused, TaskWaiting
+from selfconf.model.run_event import EcologyDiscovered, RunEvent, SearchEnded, TaskRefused, TaskStopped, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.render.bodies import configuration_body, refusal_body, undecided_body
 from selfconf.render.names import short
@@ -54,13 +54,15 @@ def sentence(event: RunEvent, name: Name) -> str:
 
 
 def details(event: RunEvent, name: Name) -> Iterator[str]:
-    """What there is to say before an event: why a task waits or is refused, and which components were lost."""
+    """What there is to say before an event: why a task waits or is refused, which components are lost or do not obey."""
     if isinstance(event, TaskWaiting | TaskRefused):
         if isinstance(event.refusal, Undecided):
             yield f"  {event.refusal}"
         elif isinstance(event.refusal, Refusal):
             yield refusal_text(event.refusal, name)
         yield from lost_sentences(event.lost, name)
+    if isinstance(event, TaskRefused | TaskStopped):
+        yield from (f"  out of control: {name(one)} was turned off and has not obeyed" for one in event.owed)
 
 
 def lost_sentences(losses: Mapping[IRI, str], name: Name) -> Iterator[str]:

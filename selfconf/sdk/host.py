@@ -31,7 +31,7 @@ JOINING = 1.0
 """Seconds that a component of the same IRI may take to say that it lives."""
 LEAVING = 2.5
 """Seconds that the code of the components may take to come to rest when the host is closed."""
-Kind = TypeVar("Kind", bound=Component)
+AnyComponent = TypeVar("AnyComponent", bound=Component)
 Heard = TypeVar("Heard")
 
 
@@ -51,7 +51,7 @@ class Host:
         if not self.code.inline:
             bus.wake_up(self._watch_code)
 
-    def add(self, component: Kind, life: str = "") -> Kind:
+    def add(self, component: AnyComponent, life: str = "") -> AnyComponent:
         """Let a component join the ecology.
 
         Raises AuthorError for an advertisement that cannot be read, and NetworkError if the component lives already.

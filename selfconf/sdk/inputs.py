@@ -20,7 +20,7 @@ import json
 import logging
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -94,8 +94,7 @@ class Inputs:
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
                 self._subscriptions[port, wire] = self._subscription(port, wire)
-        fresh = {port for port, wires in message.inputs.items() if before.get(port) and not before[port] & {*wires}}
-        waiting = {port for port in fresh if not any(self._subscriptions[port, w].heard for w in message.inputs[port])}
+        waiting = {port for port, wires in message.inputs.items() if self._loses_all(port, before.get(port), wires)}
         self._handing_over = waiting if message.gently else set()
         self._handed_over_by = self._bus.now() + HANDOVER
         for port in sorted(waiting - self._handing_over):
@@ -104,6 +103,12 @@ class Inputs:
         for key in wanted:
             self._subscriptions[key].unmute()
         self._let_go()
+
+    def _loses_all(self, port: str, before: set[Wire] | None, wires: Sequence[Wire]) -> bool:
+        """Whether an input followed outputs before and follows others now, none of which has just issued a signal."""
+        if not before or before & {*wires}:
+            return False
+        return not any(self._subscriptions[port, wire].heard for wire in wires)
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""

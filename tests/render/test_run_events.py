@@ -52,6 +52,8 @@ FACTS: dict[str, Any] = {
     "configuration": CONFIGURATION,
     "epoch": 3,
     "refusal": REFUSAL,
+    "task": "tell-the-time",
+    "owed": (SCREEN,),
     "lost": {CLOCK: "crash, its liveliness has ended"},
     "time": 12.5,
 }
