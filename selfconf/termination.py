@@ -81,6 +81,12 @@ def end_as_by_ctrl_c() -> None:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
 
 
+def ignore_from_now_on() -> None:
+    """Let SIGINT and SIGTERM change nothing any more: everything is taken down, and the exit code is decided."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+
+
 class Termination:
     """True, when called, once the program is to end; `then` is called once, on the bus's thread."""
 

@@ -90,7 +90,7 @@ def run(given: argparse.Namespace) -> int:
     """
     from selfconf.model.refusal import Undecided
     from selfconf.render import undecided_text
-    from selfconf.termination import end_as_by_ctrl_c
+    from selfconf.termination import end_as_by_ctrl_c, ignore_from_now_on
 
     end_as_by_ctrl_c()
     task = task_of(given)
@@ -102,6 +102,7 @@ def run(given: argparse.Namespace) -> int:
         for event in running.events():
             printer.put(event)
         printer.end()
+    ignore_from_now_on()
     if site is not None and site.exit_code_before_end is not None:
         raise NetworkError(f"its own site has ended with code {site.exit_code_before_end}; everything is taken down")
     if printer.trouble is not None:

@@ -54,7 +54,7 @@ def sentence(event: RunEvent, name: Name) -> str:
 
 
 def details(event: RunEvent, name: Name) -> Iterator[str]:
-    """What there is to say before an event: why a task waits or is refused, which components are lost or do not obey."""
+    """What there is to say before an event: why a task waits or is refused, what is lost or does not obey."""
     if isinstance(event, TaskWaiting | TaskRefused):
         if isinstance(event.refusal, Undecided):
             yield f"  {event.refusal}"
