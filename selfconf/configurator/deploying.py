@@ -10,8 +10,8 @@ Why in the order of the IRIs: whoever waits for a component holds none that come
 other in a circle (Havender 1968). In a repair, which holds components already, one that is held by another task counts
 as taken, unless that task is of lower priority: it is made to let go.
 
-A deployment that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
-reservation, and everything else is held already.
+A repair that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
+reservation, and everything else acts already.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from selfconf.configurator.effects import (
     Watch,
 )
 from selfconf.configurator.events import Answered, Call
-from selfconf.configurator.order import parameter_values, starting_order, wiring
+from selfconf.configurator.order import InputWires, parameter_values, resting_order, starting_order, wiring
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
@@ -82,10 +82,18 @@ def proceed(state: State) -> Reaction:
         assert state.target is not None
         assert state.order is not None
         free = sorted(component for component in state.target.components if not state.held[component].reserved)
-        if free and not (len(free) == 1 and free[0] not in state.order.actuators):
+        if free and not (len(free) == 1 and _is_reserved_by_apply(state, free[0])):
             return _reserve(state, free[0])
         return apply_to(replace(state, phase=Phase.DEPLOYING), state.target.components)
     return end_deployment(state)
+
+
+def _is_reserved_by_apply(state: State, component: IRI) -> bool:
+    """Whether the only component that is not reserved may be applied to: it can turn no motor, and the rest acts."""
+    assert state.target is not None
+    assert state.order is not None
+    rest_acts = all(state.held[other].acts for other in state.target.components if other != component)
+    return rest_acts and component not in state.order.actuators and component not in state.queued
 
 
 def _reserve(state: State, component: IRI) -> Reaction:
@@ -113,15 +121,16 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
     return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
 
 
-def _may_begin(state: State, component: IRI, wires: Mapping[IRI, Mapping[str, object]]) -> bool:
+def _may_begin(state: State, component: IRI, wires: Mapping[IRI, InputWires]) -> bool:
     """Whether everything is confirmed that must be before a component is applied to."""
     order, held = state.order, state.held
     assert order is not None
     mine = held[component]
-    if mine.active:
-        changed = [port for port, followed in mine.inputs.items() if followed != wires[component].get(port)]
-        sources = {wire.component for port in changed for wire in mine.inputs[port]}
-        if not sources or not all(source in held for source in sources):
+    if mine.acts:
+        wanted = wires[component]
+        changed = [port for port in {**mine.inputs, **wanted} if mine.inputs.get(port) != wanted.get(port)]
+        sources = {wire.component for port in changed for wire in mine.inputs.get(port, ())}
+        if not changed or not all(source in held for source in sources):
             return True
     elif component in order.actuators and any(not held[c].confirmed for c in order.before if c not in order.actuators):
         return False
@@ -136,7 +145,7 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     if answer.call is Call.RESERVE:
         known = replace(held, life=answer.life, reserved=True)
         return proceed(replace(state, held={**state.held, answer.component: known}))
-    known = replace(held, life=answer.life, reserved=True, confirmed=True)
+    known = replace(held, life=answer.life, reserved=True, acts=True, confirmed=True)
     done = replace(state, held={**state.held, answer.component: known})
     assert done.order is not None
     waiting: Iterable[IRI] = done.order.after[answer.component]
@@ -149,9 +158,11 @@ def end_deployment(state: State) -> Reaction:
     """Everything acts: release what is not needed any more."""
     assert state.target is not None
     wanted = set(state.target.components)
-    surplus = [component for component in state.held if component not in wanted]
+    wires = {component: held.inputs for component, held in state.held.items()}
+    surplus = resting_order(wires, [component for component in state.held if component not in wanted])
+    unneeded = (*surplus, *sorted(state.queued - wanted - set(surplus)))
     effects: list[Effect] = [Running(state.target)]
-    effects += [ReleaseFrom(component, state.epoch) for component in (*surplus, *sorted(state.queued - wanted))]
+    effects += [ReleaseFrom(component, state.epoch) for component in unneeded]
     effects += [Unwatch(component) for component in sorted(state.watched - wanted)]
     running = replace(
         state,
@@ -159,7 +170,7 @@ def end_deployment(state: State) -> Reaction:
         fallback=None,
         queued=frozenset(),
         held={component: held for component, held in state.held.items() if component in wanted},
-        owed={**state.owed, **dict.fromkeys(surplus, state.epoch)},
+        owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},
         watched=state.watched & wanted,
     )
     return running, tuple(effects)

@@ -83,7 +83,7 @@ def step(state: State, event: Event) -> Reaction:
         case Adopted():
             return _adopted(state, event)
         case HandedOver():
-            return (state, ()) if state.phase is Phase.STOPPED else _stand_down(state)
+            return (state, ()) if state.ended else _stand_down(state)
         case Discovered():
             return _discovered(state, event)
         case Composed():
@@ -112,7 +112,7 @@ def _adopted(state: State, event: Adopted) -> Reaction:
     if state.phase is not Phase.IDLE:
         return state, ()
     wires, values = wiring(event.configuration), parameter_values(event.configuration)
-    held = {c: Held(inputs, values[c], reserved=True, active=True) for c, inputs in wires.items()}
+    held = {c: Held(inputs, values[c], reserved=True, active=True, acts=True) for c, inputs in wires.items()}
     adopted = replace(state, epoch=event.epoch, target=event.configuration, held=held, watched=frozenset(wires))
     return then([Watch(component) for component in wires], _discover(adopted))
 
@@ -188,39 +188,58 @@ def _answered(state: State, event: Answered) -> Reaction:
     if event.verdict is Verdict.STALE and event.newest > event.epoch:
         return deploying.deploy(replace(rest, epoch=max(state.epoch, event.newest)))
     if event.verdict is Verdict.NOT_HELD:
-        forgotten = replace(state.held[event.component], reserved=False, active=False, confirmed=False)
-        return deploying.deploy(replace(rest, held={**state.held, event.component: forgotten}))
-    return _declined(state, event)
-
-
-def _declined(state: State, event: Answered) -> Reaction:
-    """A component that is asked for cannot be had: wait for it, or go on without it."""
-    busy = event.verdict is Verdict.BUSY
-    if busy:
-        state = replace(state, queued=state.queued | {event.component})
-    if busy and event.holder is not None and event.holder.task == state.task:
-        return _stand_down(state)
-    if busy and event.call is Call.RESERVE and deploying.may_wait_for(state, event.component, event.holder):
-        return deploying.await_release(state, event.component)
+        return _reserve_anew(rest, event.component)
+    if event.verdict is Verdict.BUSY:
+        return _busy(replace(state, queued=state.queued | {event.component}), event)
+    if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
+        return _lose(state, event.component, Loss(Cause.CRASH, "it has begun another life", ""))
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
-    loss = Loss(Cause.REFUSED, detail, event.life, busy, event.verdict is not None)
-    return _lose(state, event.component, loss)
+    return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life, False, event.verdict is not None))
+
+
+def _busy(state: State, event: Answered) -> Reaction:
+    """Another task holds a component: wait for it, or do without it."""
+    if event.holder is not None and event.holder.task == state.task:
+        return _stand_down(state)
+    if deploying.may_wait_for(state, event.component, event.holder):
+        if event.call is Call.RESERVE:
+            return deploying.await_release(state, event.component)
+        return _reserve_anew(state, event.component)
+    return _lose(state, event.component, Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True))
+
+
+def _reserve_anew(state: State, component: IRI) -> Reaction:
+    """Reserve a component that does not act for this task, as it was not held any more, or not yet."""
+    forgotten = replace(state.held[component], reserved=False, active=False, acts=False, confirmed=False)
+    return deploying.deploy(replace(state, held={**state.held, component: forgotten}))
 
 
 def _unasked(state: State, event: Answered) -> Reaction:
     """An answer that is not waited for: a component that is held now for nothing is released."""
-    if event.call is Call.RESERVE and event.verdict is Verdict.DONE and event.component not in state.held:
-        owed = {**state.owed, event.component: max(event.epoch, state.epoch)}
-        release = ReleaseFrom(event.component, owed[event.component])
+    unwanted = event.component not in state.held and not state.ended
+    if unwanted and event.call is Call.RESERVE and event.verdict is Verdict.DONE:
+        owed = {**state.owed, event.component: state.epoch}
+        release = ReleaseFrom(event.component, state.epoch)
         return then((release,), _freed(replace(state, owed=owed), event.component))
     return state, ()
 
 
 def _stand_down(state: State) -> Reaction:
     """Another configurator goes on with this task: leave everything as it is to that one."""
-    effects: tuple[Effect, ...] = (*(Unwatch(component) for component in sorted(state.watched)), Finish())
-    left = replace(state, phase=Phase.STOPPED, held={}, owed={}, pending=frozenset(), watched=frozenset(), target=None)
-    return left, effects
+    effects: list[Effect] = [Unwatch(component) for component in sorted(state.watched)]
+    left = replace(
+        state,
+        phase=Phase.STOPPED,
+        target=None,
+        order=None,
+        held={},
+        owed={},
+        pending=frozenset(),
+        unreleased=(),
+        watched=frozenset(),
+        queued=frozenset(),
+    )
+    return left, (*effects, Finish())
 
 
 def _failed(state: State, event: Failed) -> Reaction:
@@ -231,6 +250,8 @@ def _failed(state: State, event: Failed) -> Reaction:
         return state, ()
     if event.cause is Cause.SILENCE and not held.confirmed:
         return state, ()  # it may not have begun
+    if event.cause is Cause.YIELD and not held.reserved:
+        return state, ()  # another task is asked to let go of it, perhaps for this one
     busy = event.cause is Cause.YIELD
     return _lose(state, event.component, Loss(event.cause, event.detail, event.life or held.life, busy))
 
@@ -246,6 +267,7 @@ def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
         held={kept: held for kept, held in state.held.items() if kept != component},
         owed={**state.owed, component: epoch},
         lost={**state.lost, component: loss},
+        queued=state.queued - {component},
     )
     if state.policy is Policy.DISMANTLE:
         return _dismantle(without, Phase.COMPOSING)
@@ -268,6 +290,7 @@ def _dismantle(state: State, afterwards: Phase) -> Reaction:
         epoch=epoch,
         pending=frozenset(),
         unreleased=tuple(owed),
+        queued=state.queued - owed.keys(),
         fallback=None,
         owed=owed,
         watched=frozenset(),
@@ -286,6 +309,9 @@ def _released(state: State) -> Reaction:
         pending = frozenset((component, Call.RELEASE) for component in now)
         effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
         return replace(state, unreleased=left, pending=pending), effects
+    ends = state.afterwards is Phase.STOPPED or not state.patient
+    if ends and state.queued and state.afterwards is not Phase.COMPOSING:
+        return _released(_wait_no_more(state))
     empty = replace(state, held={}, target=None, order=None)
     if state.afterwards is Phase.COMPOSING:
         return _compose(empty)
@@ -294,31 +320,40 @@ def _released(state: State) -> Reaction:
         return ended, (Finish(),)
     if not state.patient:
         return ended, (Finish(state.refusal),)
-    return _discover(ended) if state.news else (ended, _queue(ended))
+    return _discover(ended) if state.news else _queue(ended)
 
 
-def _queue(state: State) -> tuple[Effect, ...]:
+def _wait_no_more(state: State) -> State:
+    """Have the components that remember that this task waits forget it: the task is about to end."""
+    waited_for = tuple(sorted(state.queued))
+    owed = {**state.owed, **dict.fromkeys(waited_for, state.epoch)}
+    return replace(state, queued=frozenset(), unreleased=waited_for, owed=owed)
+
+
+def _queue(state: State) -> Reaction:
     """Ask for each component that another task holds, so that it tells when it is free."""
-    waited_for = {component for component, loss in state.lost.items() if loss.busy} | state.queued
-    return tuple(QueueFor(component, state.epoch) for component in sorted(waited_for - state.owed.keys()))
+    queued = state.queued.union(component for component, loss in state.lost.items() if loss.busy)
+    effects = tuple(QueueFor(component, state.epoch) for component in sorted(queued - state.owed.keys()))
+    return replace(state, queued=queued), effects
 
 
 def _freed(state: State, component: IRI) -> Reaction:
     """A component is free, and kept for this task for a moment."""
+    if state.phase is Phase.IDLE or state.ended:
+        return state, (Decline(component, state.epoch),)
     if state.phase is Phase.RESERVING and (component, Call.RESERVE) in state.pending:
         return deploying.ask_again(state, component)
     lost = {c: loss for c, loss in state.lost.items() if c != component or not loss.busy}
     taken = {c: holder for c, holder in state.taken.items() if c != component}
     known = replace(state, lost=lost, taken=taken, queued=state.queued - {component}, news=True)
-    if state.phase is Phase.REFUSED and state.patient:
+    if state.phase is Phase.REFUSED:
         return _discover(known)
-    decline = Decline(component, state.epoch)
-    return (known if state.phase not in (Phase.IDLE, Phase.STOPPED) else state), (decline,)
+    return known, () if component in state.held else (Decline(component, state.epoch),)
 
 
 def _appeared(state: State, event: Appeared) -> Reaction:
     """A component that lives a new life is not the one that was lost, and one that seemed dead was only cut off."""
-    if state.phase in (Phase.IDLE, Phase.STOPPED):
+    if state.phase is Phase.IDLE or state.ended:
         return state, ()
     lost = {
         component: loss
@@ -326,9 +361,10 @@ def _appeared(state: State, event: Appeared) -> Reaction:
         if component not in event.lives
         or (loss.cause is not Cause.CRASH and loss.answered and event.lives[component] == loss.life)
     }
-    effects = [ReleaseFrom(component, since) for component, since in state.owed.items() if component in event.lives]
+    owed = event.lives.keys() & state.owed.keys() - set(state.unreleased)  # those come to rest in their turn
+    effects = [ReleaseFrom(component, state.owed[component]) for component in sorted(owed)]
     known = replace(state, lost=lost, news=True)
-    if state.phase is Phase.REFUSED and state.patient:
+    if state.phase is Phase.REFUSED:
         return then(effects, _discover(known))
     return known, tuple(effects)
 
@@ -353,16 +389,14 @@ def _improved(state: State, event: Composed) -> Reaction:
 
 def _reconnected(state: State) -> Reaction:
     """Components may have turned themselves off, or died: ask the ecology again, and apply to all of them anew."""
-    if state.phase in (Phase.IDLE, Phase.DISMANTLING, Phase.STOPPED):
+    if state.phase in (Phase.IDLE, Phase.DISMANTLING) or state.ended:
         return state, ()
-    if state.phase is Phase.REFUSED and not state.patient:
-        return state, ()
-    unsure = {component: replace(held, confirmed=False) for component, held in state.held.items()}
+    unsure = {component: replace(held, acts=False, confirmed=False) for component, held in state.held.items()}
     return _discover(replace(state, held=unsure, fallback=None))
 
 
 def _stopped(state: State) -> Reaction:
-    if state.phase is Phase.STOPPED or (state.phase is Phase.REFUSED and not state.patient):
+    if state.ended:
         return state, ()
     if state.phase is Phase.DISMANTLING:
         return replace(state, afterwards=Phase.STOPPED), ()

@@ -46,7 +46,7 @@ class StartingOrder:
 
 
 def starting_order(configuration: Configuration) -> StartingOrder:
-    """Return the starting order of a configuration, in time linear in its connections."""
+    """Return the starting order of a configuration, in time linear in its connections if they form no loop."""
     rank = {component: number for number, component in enumerate(configuration.components)}
     feeders: dict[IRI, set[IRI]] = {component: set() for component in rank}
     fed: dict[IRI, list[IRI]] = {component: [] for component in rank}
@@ -63,14 +63,17 @@ def starting_order(configuration: Configuration) -> StartingOrder:
 def _placed(
     rank: Mapping[IRI, int], feeders: Mapping[IRI, set[IRI]], fed: Mapping[IRI, list[IRI]]
 ) -> Mapping[IRI, int]:
-    """The place of each component in a topological order (Kahn); a loop is entered at its first role."""
+    """The place of each component in a topological order (Kahn); a loop is entered at its first role.
+
+    Of several loops that one comes first which nothing feeds that has no place yet.
+    """
     missing = {component: len(sources) for component, sources in feeders.items()}
     place: dict[IRI, int] = {}
     ready = [component for component in rank if not missing[component]]
-    rest = iter(rank)
     while len(place) < len(rank):
         if not ready:
-            ready.append(next(component for component in rest if component not in place))
+            left = {component: feeders[component] - place.keys() for component in rank if component not in place}
+            ready.append(min(_end_loop(left), key=rank.__getitem__))
         component = ready.pop()
         if component in place:
             continue
@@ -83,14 +86,43 @@ def _placed(
 
 
 def resting_next(wires: Mapping[IRI, InputWires], left: Iterable[IRI]) -> tuple[IRI, ...]:
-    """Of the components that still act, those that feed none of the others; all of them where each feeds another."""
+    """Of the components that still act, those that feed none of the others; where there is none, a loop at the end."""
     acting = tuple(left)
-    among = set(acting)
-    feeding = {
-        wire.component
-        for component in among
-        for followed in wires.get(component, {}).values()
-        for wire in followed
-        if wire.component != component
-    }
-    return tuple(component for component in acting if component not in feeding) or acting
+    fed: dict[IRI, set[IRI]] = {component: set() for component in acting}
+    for component in acting:
+        for wire in (wire for followed in wires.get(component, {}).values() for wire in followed):
+            if wire.component in fed and wire.component != component:
+                fed[wire.component].add(component)
+    sinks = tuple(component for component in acting if not fed[component])
+    if sinks or not acting:
+        return sinks
+    loop = _end_loop(fed)
+    return tuple(component for component in acting if component in loop)
+
+
+def _end_loop(graph: Mapping[IRI, Iterable[IRI]]) -> set[IRI]:
+    """Components that reach each other, and nothing else: a strongly connected component at the end of a graph."""
+    loop = _reached(next(iter(graph)), graph)
+    while smaller := next((reached for c in loop if len(reached := _reached(c, graph)) < len(loop)), None):
+        loop = smaller
+    return loop
+
+
+def _reached(component: IRI, graph: Mapping[IRI, Iterable[IRI]]) -> set[IRI]:
+    """A component, and those that an edge leads to, directly or through others."""
+    reached, new = {component}, [component]
+    while new:
+        more = set(graph[new.pop()]) - reached
+        reached |= more
+        new += more
+    return reached
+
+
+def resting_order(wires: Mapping[IRI, InputWires], components: Iterable[IRI]) -> tuple[IRI, ...]:
+    """Components in the order in which they come to rest."""
+    order: list[IRI] = []
+    left = tuple(components)
+    while left:
+        order += resting_next(wires, left)
+        left = tuple(component for component in left if component not in set(order))
+    return tuple(order)

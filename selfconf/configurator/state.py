@@ -47,6 +47,8 @@ class Held:
     """Whether it has said that it is held for this task."""
     active: bool = False
     """Whether it was applied to: it may act, if with other inputs."""
+    acts: bool = False
+    """Whether it has said that it acts, if with other inputs."""
     confirmed: bool = False
     """Whether it has said that it acts with these inputs and values."""
 
@@ -101,3 +103,8 @@ class State:
     refusal: Refusal | Undecided | None = None
     news: bool = False
     """Whether something has appeared since the ecology was last asked."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether the task has ended, so that nothing is done about it any more."""
+        return self.phase is Phase.STOPPED or (self.phase is Phase.REFUSED and not self.patient)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom
-from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Stopped
+from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom, ReserveOf
+from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Holder, Stopped
 from selfconf.configurator.machine import step
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
@@ -16,6 +16,8 @@ TRACKER, ODOMETRY, CONTROL, DRIVE = (IRI(f"urn:c:{name}") for name in ("tracker"
 EVERYBODY = (TRACKER, ODOMETRY, CONTROL, DRIVE)
 REFUSAL = Refusal(TEMPLATE, (TooFewEligible(IRI("urn:r:position"), 1, 0),))
 GOAL = Literal("(AT BEDROOM)")
+OTHERS = Holder("tidy~2", 0, 5.0, "c2", acting=True)
+"""Another task of the same priority, for which a component acts."""
 
 
 def navigation(position: IRI = TRACKER) -> Configuration:
@@ -58,20 +60,34 @@ class History:
         return self.hear(Composed(self.state.attempt, outcome))
 
     def answer(
-        self, component: IRI, call: Call, verdict: Verdict | None = Verdict.DONE, life: str = "1"
+        self,
+        component: IRI,
+        call: Call,
+        verdict: Verdict | None = Verdict.DONE,
+        life: str = "1",
+        holder: Holder | None = None,
     ) -> list[Effect]:
         """A component answers the call that it is waited for."""
-        return self.hear(
-            Answered(component, call, self.state.epoch, verdict, life if verdict else "", self.state.epoch)
-        )
+        epoch = self.state.epoch
+        return self.hear(Answered(component, call, epoch, verdict, life if verdict else "", epoch, holder=holder))
 
-    def all_answer(self) -> list[Effect]:
-        """Let every component obey its pending call, until none is pending."""
+    def busy(self, component: IRI, holder: Holder = OTHERS, call: Call = Call.RESERVE) -> list[Effect]:
+        """A component answers that another task holds it."""
+        return self.answer(component, call, Verdict.BUSY, holder=holder)
+
+    def all_answer(self, *calls: Call) -> list[Effect]:
+        """Let every component obey its pending call, or those of these kinds only, until none is pending."""
         new: list[Effect] = []
-        while self.state.pending:
-            component, call = min(self.state.pending)
-            new = self.answer(component, call)
+        while pending := [one for one in self.state.pending if not calls or one[1] in calls]:
+            new = self.answer(*min(pending))
         return new
+
+    def reserved(self, configuration: Configuration | None = None) -> History:
+        """All components of a configuration are reserved, and none has been applied to with success."""
+        self.accepted().composed(configuration or navigation())
+        self.all_answer(Call.WAKE, Call.RESERVE)
+        assert self.state.phase is Phase.DEPLOYING
+        return self
 
     def running(self, configuration: Configuration | None = None) -> History:
         """A configuration is deployed and complete."""
@@ -83,7 +99,7 @@ class History:
 
 def state_in(phase: Phase, policy: Policy = Policy.REPAIR, patient: bool = False) -> State:
     """A state in a phase, reached by a plausible history."""
-    history = History(State(policy=policy, patient=patient))
+    history = History(State(policy=policy, patient=patient, task="go~1"))
     if phase is Phase.IDLE:
         return history.state
     history.hear(Accepted(100))
@@ -96,13 +112,15 @@ def state_in(phase: Phase, policy: Policy = Policy.REPAIR, patient: bool = False
         history.composed(REFUSAL)
         return history.state
     history.composed(navigation())
+    if phase is Phase.RESERVING:
+        history.all_answer(Call.WAKE)
+        history.answer(CONTROL, Call.RESERVE)
+        return history.state
+    history.all_answer(Call.WAKE, Call.RESERVE)
     if phase is Phase.DEPLOYING:
+        history.answer(TRACKER, Call.APPLY)
         return history.state
-    for component in (TRACKER, CONTROL, DRIVE):
-        history.answer(component, Call.APPLY)
-    if phase is Phase.SETTING:
-        return history.state
-    history.answer(CONTROL, Call.SET)
+    history.all_answer()
     if phase is Phase.RUNNING:
         return history.state
     history.hear(Stopped())
@@ -114,6 +132,11 @@ def state_in(phase: Phase, policy: Policy = Policy.REPAIR, patient: bool = False
 def applied(effects: list[Effect]) -> list[IRI]:
     """Who is to be activated or wired anew."""
     return [effect.component for effect in effects if isinstance(effect, ApplyTo)]
+
+
+def reserved(effects: list[Effect]) -> list[IRI]:
+    """Who is to be reserved."""
+    return [effect.component for effect in effects if isinstance(effect, ReserveOf)]
 
 
 def released(effects: list[Effect]) -> list[IRI]:

@@ -6,9 +6,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.configurator.effects import ApplyTo, Compose, Effect, Finish, ReleaseFrom, SetOn, Unwatch, Watch
+from selfconf.configurator.effects import (
+    ApplyTo,
+    AwaitRelease,
+    Compose,
+    Effect,
+    Finish,
+    QueueFor,
+    ReleaseFrom,
+    ReserveOf,
+    Running,
+    Unwatch,
+    WakeUp,
+    Watch,
+)
 from selfconf.configurator.events import (
     Accepted,
+    Adopted,
     Answered,
     Appeared,
     Call,
@@ -16,37 +30,68 @@ from selfconf.configurator.events import (
     Discovered,
     Event,
     Failed,
+    Freed,
+    Holder,
+    Improvable,
     Reconnected,
     Stopped,
+    WaitedLong,
 )
 from selfconf.configurator.machine import OBEYED, step
-from selfconf.configurator.state import Phase, Policy, State
+from selfconf.configurator.order import parameter_values, resting_order, wiring
+from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
-from tests.configurator.builders import CONTROL, EVERYBODY, ODOMETRY, REFUSAL, TRACKER, navigation, state_in
+from tests.configurator.builders import (
+    CONTROL,
+    EVERYBODY,
+    ODOMETRY,
+    REFUSAL,
+    TRACKER,
+    navigation,
+    state_in,
+)
 
 AT_REST = (Phase.IDLE, Phase.REFUSED, Phase.STOPPED)
+HOLDERS = [
+    Holder("tidy~2", priority, float(priority), "c2", acting) for priority in (-1, 0, 1) for acting in (False, True)
+]
+SELF = Holder("go~1", 0, 0.0, "c3")
+"""Another configurator of the same task."""
+LIVES = dict.fromkeys(EVERYBODY, "1")
 ONE_OF_EACH: list[Event] = [
     Accepted(500),
+    Adopted(500, navigation(), LIVES),
     Discovered(),
+    Discovered({TRACKER: HOLDERS[1], CONTROL: HOLDERS[5]}),
     Composed(1, navigation()),
     Composed(1, REFUSAL),
+    Composed(2, navigation(ODOMETRY)),
     Composed(0, navigation()),
     *(
-        Answered(component, call, epoch, verdict, "1", epoch + 1)
+        Answered(component, call, epoch, verdict, "1", epoch + 1, holder=holder)
         for component in (TRACKER, CONTROL, ODOMETRY)
         for call in Call
         for epoch in (1, 100, 101, 102, 103)
         for verdict in (*Verdict, None)
+        for holder in ([None, *HOLDERS, SELF] if verdict is Verdict.BUSY else [None])
     ),
     *(Failed(component, life, cause) for component in EVERYBODY for life in ("", "1", "9") for cause in Cause),
+    *(Freed(component) for component in EVERYBODY),
+    *(WaitedLong(component, epoch) for component in EVERYBODY for epoch in (1, 101, 102)),
     Appeared({}),
     Appeared({TRACKER: "1"}),
     Appeared({TRACKER: "2", ODOMETRY: "1"}),
+    Improvable(),
     Reconnected(),
     Stopped(),
 ]
+
+
+def test_every_kind_of_event_is_tried() -> None:
+    assert {type(event) for event in ONE_OF_EACH} == set(Event.__args__)
 
 
 class Ledger:
@@ -60,17 +105,27 @@ class Ledger:
 
     def hear(self, event: Event) -> None:
         """One step, with everything that must hold."""
-        before, over = self.state, bool(self.finished)
+        before, over = self.state, self.state.ended
         self.state, effects = step(before, event)
-        state = self.state
-        assert state.epoch >= before.epoch
-        assert state.attempt >= before.attempt
+        assert self.state.epoch >= before.epoch
+        assert self.state.attempt >= before.attempt
+        asked = [effect for effect in effects if isinstance(effect, WakeUp | ReserveOf | ApplyTo)]
+        assert len({(type(effect), effect.component) for effect in asked}) == len(asked)
         for effect in effects:
             self._account(effect, before)
+        self._order_of_releases(effects, before)
         if isinstance(event, Answered) and event.call is Call.RELEASE and event.verdict in OBEYED:
-            taken_down = event.component not in state.held or state.phase is Phase.DISMANTLING
-            if event.component not in state.owed and taken_down:
+            taken_down = event.component not in self.state.held or self.state.phase is Phase.DISMANTLING
+            if event.component not in self.state.owed and taken_down:
                 self.maybe_active.discard(event.component)
+        if Finish() in effects and isinstance(event, Answered) and event.verdict is Verdict.BUSY:
+            self.maybe_active.clear()  # another configurator goes on with the task
+        self._check_state()
+        assert self.finished <= 1
+        assert not (over and effects)
+
+    def _check_state(self) -> None:
+        state = self.state
         assert self.maybe_active <= {*state.held, *state.owed}
         assert not set(state.held) & set(state.owed) or state.phase is Phase.DISMANTLING
         assert state.watched == self.watched
@@ -80,110 +135,233 @@ class Ledger:
             assert not state.pending
             assert not state.watched
         if state.phase is Phase.RUNNING:
-            assert state.target is not None
-            assert set(state.held) == set(state.target.components)
-            assert all(held.confirmed for held in state.held.values())
-            for setting in state.target.settings:
-                assert state.held[setting.component].values[setting.name] == setting.value
-        if state.phase in (Phase.DEPLOYING, Phase.SETTING, Phase.DISMANTLING):
+            self._check_running()
+        if state.phase in (Phase.RESERVING, Phase.DEPLOYING, Phase.DISMANTLING):
             assert state.pending
+            assert {call for _, call in state.pending} <= {
+                Phase.RESERVING: {Call.WAKE, Call.RESERVE},
+                Phase.DEPLOYING: {Call.APPLY},
+                Phase.DISMANTLING: {Call.RELEASE},
+            }[state.phase]
         else:
             assert not state.pending
-        assert not any(component in state.lost for component in state.held)
-        assert self.finished <= 1
-        assert not (over and effects)
+        assert len([call for _, call in state.pending if call is Call.RESERVE]) <= 1
+        assert {component for component, _ in state.pending} <= state.held.keys() | state.owed.keys()
+        for held in state.held.values():
+            assert held.reserved >= held.acts or state.phase is Phase.DISMANTLING
+            assert held.active >= held.acts >= held.confirmed
+        assert not any(component in state.lost for component in state.held) or state.phase is Phase.DISMANTLING
+        assert not state.ended or not state.queued
+
+    def _check_running(self) -> None:
+        """All that is wanted is held, and has confirmed that it acts with the wanted inputs and values."""
+        state = self.state
+        assert state.target is not None
+        wires, values = wiring(state.target), parameter_values(state.target)
+        assert set(state.held) == set(state.target.components) == set(state.watched)
+        for component, held in state.held.items():
+            assert held.reserved
+            assert held.confirmed
+            assert (held.inputs, held.values) == (wires[component], values[component])
 
     def _account(self, effect: Effect, before: State) -> None:
+        state = self.state
         match effect:
             case Watch(component):
                 self.watched.add(component)
             case Unwatch(component):
                 self.watched.discard(component)
-            case ApplyTo(component, epoch):
+            case WakeUp(component, epoch):
                 assert component in self.watched
-                assert epoch > before.epoch
+                assert epoch == state.epoch > before.epoch
                 self.maybe_active.add(component)
-            case SetOn(component, epoch):
-                assert component in self.maybe_active
-                assert epoch == self.state.epoch
+            case ReserveOf(component, epoch, inputs, values):
+                assert state.target is not None
+                assert component in self.watched
+                assert (epoch, state.phase) == (state.epoch, Phase.RESERVING)
+                assert not any(call is Call.WAKE for _, call in state.pending)
+                assert inputs == wiring(state.target)[component]
+                assert values == parameter_values(state.target)[component]
+                free = [c for c in state.target.components if not state.held[c].reserved]
+                assert component == min(free)
+            case ApplyTo(component):
+                assert component in self.watched
+                self._check_apply(effect, before)
             case ReleaseFrom(component, epoch):
-                assert component not in self.state.held or self.state.phase is Phase.DISMANTLING
-                assert epoch <= self.state.epoch
+                assert component not in state.held or state.phase is Phase.DISMANTLING
+                assert component in state.owed
+                assert epoch <= state.epoch
+            case AwaitRelease(component, epoch):
+                assert epoch == state.epoch
+                assert (component, Call.RESERVE) in state.pending
+            case QueueFor(component, epoch):
+                assert (state.phase, state.patient, epoch) == (Phase.REFUSED, True, state.epoch)
+                assert component in state.queued - state.owed.keys()
             case Compose(_, lost, _):
-                assert lost == set(self.state.lost)
+                despite = frozenset() if state.despite else frozenset(state.taken)
+                assert lost == frozenset(state.lost) | despite
+            case Running(configuration):
+                assert configuration == state.target
+                assert state.phase is Phase.RUNNING
             case Finish():
+                assert state.ended
                 self.finished += 1
+
+    def _check_apply(self, effect: ApplyTo, before: State) -> None:
+        """All components are reserved; sources have confirmed, and for an actuator everything else."""
+        state = self.state
+        assert state.target is not None
+        assert state.order is not None
+        component, others = effect.component, [c for c in state.target.components if c != effect.component]
+        assert effect.epoch == state.epoch
+        assert effect.inputs == wiring(state.target)[component]
+        assert effect.values == parameter_values(state.target)[component]
+        unreserved = [c for c in state.target.components if not state.held[c].reserved]
+        if unreserved:  # the apply is the reservation, in a repair that lacks one component
+            assert len(unreserved) == 1
+            assert unreserved[0] not in state.order.actuators
+            assert all(state.held[c].acts for c in state.target.components if c != unreserved[0])
+        earlier = before.held.get(component, Held({}))
+        if not state.held[component].acts:
+            assert all(state.held[source].confirmed for source in state.order.before[component])
+            if component in state.order.actuators:
+                assert all(state.held[c].confirmed for c in others if c not in state.order.actuators)
+        elif component in before.held and earlier.inputs != effect.inputs:
+            followed = {wire.component for wires in earlier.inputs.values() for wire in wires}
+            make_before_break = all(state.held[source].confirmed for source in state.order.before[component])
+            assert make_before_break or followed - state.held.keys()
+
+    def _order_of_releases(self, effects: tuple[Effect, ...], before: State) -> None:
+        """Whatever is turned off because all is, or because it is not needed any more: sinks first."""
+        released = [effect.component for effect in effects if isinstance(effect, ReleaseFrom)]
+        if self.state.phase is Phase.RUNNING and len(released) > 1:
+            surplus = [component for component in released if component in before.held]
+            wires = {component: held.inputs for component, held in before.held.items()}
+            assert surplus == list(resting_order(wires, surplus))
+        if self.state.phase is Phase.DISMANTLING and any(isinstance(effect, ReleaseFrom) for effect in effects):
+            for component in self.state.unreleased:
+                fed_by = self.state.held[component].inputs if component in self.state.held else {}
+                sources = {wire.component for wires in fed_by.values() for wire in wires}
+                assert not sources & set(released) or not self.state.held[component].active
 
 
 @pytest.mark.parametrize("phase", Phase)
 @pytest.mark.parametrize("policy", Policy)
 @pytest.mark.parametrize("patient", [False, True])
 def test_every_phase_answers_every_event(phase: Phase, policy: Policy, patient: bool) -> None:
+    state = state_in(phase, policy=policy, patient=patient)
+    assert state.phase is phase
     for event in ONE_OF_EACH:
-        state = state_in(phase, policy=policy, patient=patient)
-        assert state.phase is phase
+        if isinstance(event, Composed) and _names_a_loss(state, event):
+            continue
         Ledger(state).hear(event)
 
 
 @st.composite
 def histories(draw: st.DrawFn) -> list[tuple[int, ...]]:
     """Random numbers that a history is made of; they are read against the state they meet."""
-    return draw(st.lists(st.tuples(*[st.integers(0, 50)] * 5), min_size=5, max_size=80))
+    return draw(st.lists(st.tuples(*[st.integers(0, 60)] * 5), min_size=5, max_size=80))
 
 
 def event_of(state: State, numbers: tuple[int, ...]) -> Event:
     """An event that can come in a state: mostly the one that is waited for, often another."""
     kind, who, how, when, which = numbers
     component = EVERYBODY[who % len(EVERYBODY)]
-    if state.pending and kind < 25:
+    if state.pending and kind < 28:
         component, call = sorted(state.pending)[who % len(state.pending)]
-        verdict = [Verdict.DONE, Verdict.DONE, Verdict.DONE, Verdict.DONE, Verdict.REFUSED, Verdict.STALE, None][
-            how % 7
-        ]
-        return Answered(component, call, state.epoch, verdict, str(which % 2), state.epoch + when)
-    if kind < 30:
-        choices: list[Event] = [Accepted(when), Discovered(), Composed(state.attempt, navigation())]
+        verdict = ([Verdict.DONE] * 8 + [*Verdict, None])[how % (9 + len(Verdict))]
+        holder = [*HOLDERS, SELF, None][when % (2 + len(HOLDERS))]
+        newest = state.epoch + when % 3
+        return Answered(component, call, state.epoch, verdict, str(which % 2), newest, holder=holder)
+    if kind < 32:
+        taken = {component: HOLDERS[when % len(HOLDERS)]} if which % 2 else {}
+        choices: list[Event] = [Accepted(when), Discovered(taken), Composed(state.attempt, _found(state, how))]
         return choices[how % 3]
-    if kind < 34:
-        free = [c for c in (TRACKER, ODOMETRY) if c not in state.lost]
-        possible = bool(free) and not {CONTROL, EVERYBODY[3]} & set(state.lost)
-        return Composed(state.attempt, navigation(free[how % len(free)]) if possible else REFUSAL)
     if kind < 38:
-        verdict = [*Verdict, None][how % 5]
-        return Answered(component, list(Call)[which % 3], max(0, state.epoch - when % 3), verdict, "1", state.epoch)
-    if kind < 43:
-        return Failed(component, ["", "0", "1"][which % 3], list(Cause)[how % 4])
-    if kind < 47:
+        return Composed(state.attempt, _found(state, how))
+    if kind < 41:
+        verdict = [*Verdict, None][how % (1 + len(Verdict))]
+        calls = list(Call)
+        return Answered(component, calls[which % len(calls)], max(0, state.epoch - when % 3), verdict, "1", state.epoch)
+    if kind < 46:
+        return Failed(component, ["", "0", "1"][which % 3], list(Cause)[how % len(Cause)])
+    if kind < 50:
         return Appeared({component: str(which % 3)} if how % 2 else {})
-    if kind < 49:
-        return Reconnected()
-    return Stopped()
+    if kind < 57:
+        others: list[Event] = [
+            Freed(component),
+            WaitedLong(component, state.epoch - how % 2),
+            Improvable(),
+            Adopted(when, navigation(), LIVES),
+        ]
+        return others[which % len(others)]
+    return Reconnected() if kind < 59 else Stopped()
 
 
-@given(histories(), st.sampled_from(Policy), st.booleans())
-def test_the_invariants_hold_in_every_history(numbers: list[tuple[int, ...]], policy: Policy, patient: bool) -> None:
-    ledger = Ledger(State(policy=policy, patient=patient))
-    ledger.hear(Accepted(10))
+def _found(state: State, how: int) -> Configuration | Refusal:
+    """What a search may find, with components that are not lost."""
+    free = [c for c in (TRACKER, ODOMETRY) if c not in state.lost]
+    possible = bool(free) and not {CONTROL, EVERYBODY[3]} & set(state.lost) and how % 7
+    return navigation(free[how % len(free)]) if possible else REFUSAL
+
+
+def _names_a_loss(state: State, event: Composed) -> bool:
+    """Whether a search answers with a component that it was told is lost: none does."""
+    return isinstance(event.outcome, Configuration) and bool(set(event.outcome.components) & set(state.lost))
+
+
+@given(histories(), st.sampled_from(Policy), st.booleans(), st.booleans())
+def test_the_invariants_hold_in_every_history(
+    numbers: list[tuple[int, ...]], policy: Policy, patient: bool, adopted: bool
+) -> None:
+    ledger = Ledger(State(policy=policy, patient=patient, task="go~1"))
+    ledger.hear(Adopted(10, navigation(), LIVES) if adopted else Accepted(10))
     for drawn in numbers:
         event = event_of(ledger.state, drawn)
-        found = event.outcome if isinstance(event, Composed) else REFUSAL
-        if isinstance(found, Configuration) and set(found.components) & set(ledger.state.lost):
-            continue  # no search answers with a component that it was told is lost
-        ledger.hear(event)
+        if not (isinstance(event, Composed) and _names_a_loss(ledger.state, event)):
+            ledger.hear(event)
 
 
 @given(histories(), st.sampled_from(Policy), st.booleans())
 def test_from_every_state_a_stop_ends_once_the_pending_calls_have_ended(
     numbers: list[tuple[int, ...]], policy: Policy, patient: bool
 ) -> None:
-    state, _ = step(State(policy=policy, patient=patient), Accepted(10))
+    state, _ = step(State(policy=policy, patient=patient, task="go~1"), Accepted(10))
     for drawn in numbers:
         state, _ = step(state, event_of(state, drawn))
     state, _ = step(state, Stopped())
-    for component, call in sorted(state.pending):
-        state, _ = step(state, Answered(component, call, state.epoch, None))
+    for _ in range(2 * len(EVERYBODY)):
+        for component, call in sorted(state.pending):
+            state, _ = step(state, Answered(component, call, state.epoch, None))
     assert state.phase in (Phase.STOPPED, Phase.REFUSED)
+    assert state.ended
     assert not state.held
+
+
+@given(histories(), st.booleans())
+def test_from_every_state_a_search_that_finds_something_and_components_that_obey_lead_to_running(
+    numbers: list[tuple[int, ...]], patient: bool
+) -> None:
+    ledger = Ledger(State(patient=patient, task="go~1"))
+    ledger.hear(Accepted(10))
+    for drawn in numbers:
+        event = event_of(ledger.state, drawn)
+        if not isinstance(event, Stopped) and not (isinstance(event, Composed) and _names_a_loss(ledger.state, event)):
+            ledger.hear(event)
+    for _ in range(60):
+        state = ledger.state
+        if state.ended or state.phase is Phase.RUNNING:
+            return
+        if state.phase is Phase.REFUSED:
+            ledger.hear(Appeared(dict.fromkeys(EVERYBODY, "7")))
+        elif state.phase is Phase.DISCOVERING:
+            ledger.hear(Discovered())
+        elif state.phase is Phase.COMPOSING:
+            ledger.hear(Composed(state.attempt, _found(state, 1)))
+        else:
+            component, call = min(state.pending)
+            ledger.hear(Answered(component, call, state.epoch, Verdict.DONE, "7", state.epoch))
+    raise AssertionError(f"still {ledger.state.phase.value}")
 
 
 @given(histories())

@@ -1,4 +1,4 @@
-"""The four acts as sentences: what the configurator wants done, step by step."""
+"""The four acts as sentences: what the configurator wants done, step by step; act 4 itself is in `test_deploying`."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from selfconf.configurator.effects import (
     Compose,
     Discover,
     Finish,
+    QueueFor,
     ReleaseFrom,
+    ReserveOf,
     Running,
-    SetOn,
     Unwatch,
+    WakeUp,
     Watch,
 )
 from selfconf.configurator.events import (
@@ -25,19 +27,18 @@ from selfconf.configurator.events import (
     Composed,
     Discovered,
     Failed,
+    Freed,
     Reconnected,
     Stopped,
 )
-from selfconf.configurator.machine import wiring
 from selfconf.configurator.state import Phase, Policy, State
-from selfconf.model.configuration import Connection
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Cause, Verdict, Wire
+from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
     CONTROL,
     DRIVE,
-    GOAL,
     ODOMETRY,
+    OTHERS,
     REFUSAL,
     TRACKER,
     History,
@@ -45,65 +46,33 @@ from tests.configurator.builders import (
     kinds,
     navigation,
     released,
+    reserved,
     state_in,
 )
 
-DISMANTLE = State(policy=Policy.DISMANTLE)
-PATIENT = State(patient=True)
+DISMANTLE = State(policy=Policy.DISMANTLE, task="go~1")
+PATIENT = State(patient=True, task="go~1")
+TASK = State(task="go~1")
+HIGHER, LOWER = replace(OTHERS, priority=1), replace(OTHERS, priority=-1)
 
 
-# Deployment.
+# The four acts.
 
 
 def test_a_task_goes_through_the_four_acts() -> None:
     history = History()
     assert kinds(history.hear(Accepted(100))) == [Discover]
     assert history.hear(Discovered()) == [Compose(1, frozenset(), None)]
-    effects = history.composed(navigation())
-    assert kinds(effects) == [Watch] * 3 + [ApplyTo] * 3
-    assert history.answer(TRACKER, Call.APPLY) == []
-    assert history.answer(DRIVE, Call.APPLY) == []
-    assert history.answer(CONTROL, Call.APPLY) == [SetOn(CONTROL, history.state.epoch, {"goal": GOAL})]
-    assert history.state.pending == {(CONTROL, Call.SET)}
-    assert history.answer(CONTROL, Call.SET) == [Running(navigation())]
+    assert kinds(history.composed(navigation())) == [Watch] * 3 + [WakeUp] * 3
+    assert kinds(history.all_answer()) == [Running]
+    assert kinds(history.effects[-7:]) == [ReserveOf] * 3 + [ApplyTo] * 3 + [Running]
     assert history.state.phase is Phase.RUNNING
 
 
-def test_the_wiring_names_all_the_outputs_that_an_input_follows() -> None:
-    both = navigation()
-    both = type(both)(
-        both.template,
-        both.assignments,
-        (*both.connections, Connection(TRACKER, "quality", CONTROL, "position")),
-    )
-    assert wiring(both) == {
-        TRACKER: {},
-        CONTROL: {"position": (Wire(TRACKER, "pose"), Wire(TRACKER, "quality"))},
-        DRIVE: {"velocity": (Wire(CONTROL, "set"),)},
-    }
-
-
 def test_the_epoch_starts_above_the_one_it_was_given_and_goes_with_every_call() -> None:
-    history = History().accepted()
-    effects = history.composed(navigation())
-    assert history.state.epoch > 100
-    assert {effect.epoch for effect in effects if isinstance(effect, ApplyTo)} == {history.state.epoch}
-
-
-def test_a_configuration_without_settings_runs_as_soon_as_all_are_active() -> None:
-    plain = navigation()
-    plain = type(plain)(plain.template, plain.assignments, plain.connections)
-    history = History().accepted()
-    history.composed(plain)
-    for component in (TRACKER, CONTROL, DRIVE):
-        last = history.answer(component, Call.APPLY)
-    assert last == [Running(plain)]
-
-
-def test_a_configuration_without_components_runs_at_once() -> None:
-    nobody = type(navigation())(navigation().template, ())
-    history = History().accepted()
-    assert history.composed(nobody) == [Running(nobody)]
+    history = History().running()
+    calls = [effect for effect in history.effects if isinstance(effect, WakeUp | ReserveOf | ApplyTo)]
+    assert {effect.epoch for effect in calls} == {history.state.epoch} == {101}
 
 
 def test_a_second_task_is_passed_over_while_there_is_one() -> None:
@@ -117,161 +86,59 @@ def test_the_result_of_an_older_search_is_passed_over() -> None:
     assert history.state.phase is Phase.COMPOSING
 
 
-def test_an_answer_to_an_older_epoch_is_passed_over() -> None:
-    history = History().accepted()
-    history.composed(navigation())
-    old = history.state.epoch - 1
-    assert history.hear(Answered(TRACKER, Call.APPLY, old, Verdict.REFUSED)) == []
-    assert TRACKER in history.state.held
-
-
-def test_a_component_that_answers_twice_counts_once() -> None:
-    history = History().accepted()
-    history.composed(navigation())
-    for _ in range(3):
-        assert history.answer(TRACKER, Call.APPLY) == []
-    assert history.state.phase is Phase.DEPLOYING
-
-
 # Refusals of components.
 
 
+@pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])
 @pytest.mark.parametrize("verdict", [Verdict.REFUSED, Verdict.BUSY, None])
-def test_a_component_that_will_not_be_activated_is_dropped_and_the_search_runs_again(verdict: Verdict | None) -> None:
-    history = History().accepted()
-    history.composed(navigation())
-    history.answer(CONTROL, Call.APPLY)
-    effects = history.answer(TRACKER, Call.APPLY, verdict)
+def test_a_component_that_will_not_be_had_is_dropped_and_the_search_runs_again(
+    call: Call, verdict: Verdict | None
+) -> None:
+    history = History(TASK).reserved() if call is Call.APPLY else History(TASK).accepted()
+    if call is Call.RESERVE:
+        history.composed(navigation())
+        history.all_answer(Call.WAKE)
+        history.answer(CONTROL, Call.RESERVE)
+        history.answer(DRIVE, Call.RESERVE)
+    effects = history.answer(TRACKER, call, verdict, holder=OTHERS)
     assert released(effects) == [TRACKER]
     assert effects[-1] == Compose(2, frozenset({TRACKER}), navigation())
-    assert history.state.lost[TRACKER].cause is Cause.REFUSED
-    assert history.state.lost[TRACKER].busy == (verdict is Verdict.BUSY)
-    effects = history.composed(navigation(ODOMETRY))
-    assert sorted(applied(effects)) == sorted([ODOMETRY, CONTROL, DRIVE])
-    assert kinds(history.all_answer()) == [Running]
-
-
-def test_a_component_that_refuses_its_parameter_is_dropped() -> None:
-    history = History(state_in(Phase.SETTING))
-    effects = history.answer(CONTROL, Call.SET, Verdict.REFUSED)
-    assert released(effects) == [CONTROL]
-    assert effects[-1] == Compose(2, frozenset({CONTROL}), navigation())
-
-
-def test_a_component_that_has_obeyed_a_newer_epoch_is_asked_with_one_newer_still() -> None:
-    history = History().accepted()
-    history.composed(navigation())
-    for component in (CONTROL, DRIVE):
-        history.answer(component, Call.APPLY)
-    epoch = history.state.epoch
-    effects = history.hear(Answered(TRACKER, Call.APPLY, epoch, Verdict.STALE, "1", 5000))
-    assert effects == [ApplyTo(TRACKER, 5001, {})]
-    assert kinds(history.all_answer()) == [Running]
-
-
-def test_a_component_that_calls_an_epoch_stale_without_a_newer_one_is_dropped_for_that_would_never_end() -> None:
-    history = History().accepted()
-    history.composed(navigation())
-    epoch = history.state.epoch
-    history.hear(Answered(TRACKER, Call.APPLY, epoch, Verdict.STALE, "1", epoch))
-    assert TRACKER in history.state.lost
-
-
-def test_a_parameter_is_set_again_when_its_call_was_stale() -> None:
-    history = History(state_in(Phase.SETTING))
-    epoch = history.state.epoch
-    effects = history.hear(Answered(CONTROL, Call.SET, epoch, Verdict.STALE, "1", 7000))
-    assert effects == [SetOn(CONTROL, 7001, {"goal": GOAL})]
-    assert history.answer(CONTROL, Call.SET) == [Running(navigation())]
-
-
-def test_a_parameter_whose_setting_was_cut_short_is_set_when_the_rest_is_repaired() -> None:
-    history = History(state_in(Phase.SETTING))
-    history.hear(Failed(TRACKER, "1", Cause.FAIL))
-    effects = history.composed(navigation(ODOMETRY))
-    assert CONTROL in applied(effects)
-    last = [effect for component in (ODOMETRY, CONTROL) for effect in history.answer(component, Call.APPLY)]
-    assert last == [SetOn(CONTROL, history.state.epoch, {"goal": GOAL})]
-
-
-def test_a_parameter_is_set_again_on_one_that_began_a_new_life_while_it_was_wired_anew() -> None:
-    history = History().running()
-    history.hear(Failed(TRACKER, "1", Cause.FAIL))
+    loss = history.state.lost[TRACKER]
+    assert (loss.cause, loss.busy, loss.answered) == (Cause.REFUSED, verdict is Verdict.BUSY, verdict is not None)
     history.composed(navigation(ODOMETRY))
-    history.answer(ODOMETRY, Call.APPLY)
-    assert history.answer(CONTROL, Call.APPLY, life="2") == [SetOn(CONTROL, history.state.epoch, {"goal": GOAL})]
-    assert history.answer(CONTROL, Call.SET, life="2") == [Running(navigation(ODOMETRY))]
-
-
-def test_a_parameter_is_not_set_again_on_one_that_lives_on() -> None:
-    history = History().running()
-    history.hear(Failed(TRACKER, "1", Cause.FAIL))
-    history.composed(navigation(ODOMETRY))
-    history.answer(ODOMETRY, Call.APPLY)
-    assert history.answer(CONTROL, Call.APPLY) == [Running(navigation(ODOMETRY))]
+    assert reserved(history.answer(ODOMETRY, Call.WAKE)) == [ODOMETRY]
+    assert applied(history.answer(ODOMETRY, Call.RESERVE)) == [ODOMETRY]
+    assert kinds(history.all_answer()) == [Running]
 
 
 # Losses.
 
 
 def test_after_a_failure_the_rest_is_kept() -> None:
-    history = History().running()
+    history = History(TASK).running()
     effects = history.hear(Failed(TRACKER, "1", Cause.FAIL, "lost her"))
     assert released(effects) == [TRACKER]
     assert effects[-1] == Compose(2, frozenset({TRACKER}), navigation())
     effects = history.composed(navigation(ODOMETRY))
+    assert effects == [Watch(ODOMETRY), WakeUp(ODOMETRY, history.state.epoch), Unwatch(TRACKER)]
+    effects = history.answer(ODOMETRY, Call.WAKE)
     assert applied(effects) == [ODOMETRY, CONTROL]
-    assert effects.index(Watch(ODOMETRY)) < effects.index(
-        next(effect for effect in effects if isinstance(effect, ApplyTo) and effect.component == ODOMETRY)
-    )
-    assert DRIVE not in released(effects)
     assert history.all_answer() == [Running(navigation(ODOMETRY))]
-    assert not any(isinstance(effect, SetOn) for effect in effects)  # the goal is still set
+    assert released(history.effects) == [TRACKER]
     assert history.state.target == navigation(ODOMETRY)
 
 
-def test_a_new_component_is_applied_to_before_one_that_waits_for_its_signals() -> None:
-    first, then = (
-        replace(configuration, assignments=configuration.assignments[::-1])
-        for configuration in (navigation(), navigation(ODOMETRY))
-    )
-    history = History().running(first)
-    history.hear(Failed(TRACKER, "1", Cause.FAIL, "lost her"))
-    assert then.components.index(CONTROL) < then.components.index(ODOMETRY)
-    assert applied(history.composed(then)) == [ODOMETRY, CONTROL]
-
-
-def test_dismantling_releases_all_components_before_the_search() -> None:
+def test_dismantling_releases_all_components_before_the_search_sinks_first() -> None:
     history = History(DISMANTLE).running()
     effects = history.hear(Failed(TRACKER, "1", Cause.FAIL))
-    assert sorted(released(effects)) == sorted([TRACKER, CONTROL, DRIVE])
-    assert not any(isinstance(effect, Compose) for effect in effects)
-    history.answer(TRACKER, Call.RELEASE)
-    history.answer(CONTROL, Call.RELEASE)
-    assert history.answer(DRIVE, Call.RELEASE) == [Compose(2, frozenset({TRACKER}), None)]
-    effects = history.composed(navigation(ODOMETRY))
-    assert sorted(applied(effects)) == sorted([ODOMETRY, CONTROL, DRIVE])
-    assert history.all_answer()[-1] == Running(navigation(ODOMETRY))
-
-
-def test_the_goal_is_set_again_after_dismantling() -> None:
-    history = History(DISMANTLE).running()
-    history.hear(Failed(TRACKER, "1", Cause.FAIL))
-    history.all_answer()
+    assert kinds(effects) == [Unwatch] * 3 + [ReleaseFrom]
+    assert released(effects) == [DRIVE]
+    assert released(history.answer(DRIVE, Call.RELEASE)) == [CONTROL]
+    assert released(history.answer(CONTROL, Call.RELEASE)) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Compose(2, frozenset({TRACKER}), None)]
     history.composed(navigation(ODOMETRY))
-    history.all_answer()
-    assert sum(isinstance(effect, SetOn) for effect in history.effects) == 2
-
-
-def test_a_component_that_is_not_needed_any_more_is_released() -> None:
-    alone = navigation(ODOMETRY)
-    alone = type(alone)(alone.template, alone.assignments[:1])
-    history = History().running()
-    history.hear(Failed(TRACKER, "1", Cause.FAIL))
-    effects = history.composed(alone)
-    assert sorted(released(effects)) == sorted([CONTROL, DRIVE])
-    assert set(history.state.held) == {ODOMETRY}
-    assert history.state.watched == {ODOMETRY}
+    assert history.state.pending == {(ODOMETRY, Call.WAKE), (CONTROL, Call.WAKE), (DRIVE, Call.WAKE)}
+    assert history.all_answer()[-1] == Running(navigation(ODOMETRY))
 
 
 def test_a_component_that_crashed_is_not_released_but_owed_a_release() -> None:
@@ -293,17 +160,15 @@ def test_the_failure_of_a_stranger_is_passed_over() -> None:
 
 
 def test_a_component_that_dies_during_deployment_is_replaced() -> None:
-    history = History().accepted()
-    history.composed(navigation())
-    history.answer(CONTROL, Call.APPLY)
+    history = History().reserved()
+    history.answer(TRACKER, Call.APPLY)
     assert history.hear(Failed(TRACKER, "1", Cause.CRASH))[-1] == Compose(2, frozenset({TRACKER}), navigation())
     history.composed(navigation(ODOMETRY))
     assert kinds(history.all_answer()) == [Running]
 
 
 def test_the_silence_of_a_component_that_has_not_begun_is_no_loss() -> None:
-    history = History().accepted()
-    history.composed(navigation())
+    history = History().reserved()
     assert history.hear(Failed(TRACKER, "", Cause.SILENCE)) == []
     history.answer(TRACKER, Call.APPLY)
     assert released(history.hear(Failed(TRACKER, "", Cause.SILENCE))) == [TRACKER]
@@ -331,11 +196,11 @@ def test_a_refusal_releases_all_that_was_touched() -> None:
     history = History().running()
     history.hear(Failed(DRIVE, "1", Cause.FAIL))
     effects = history.composed(REFUSAL)
-    assert sorted(released(effects)) == sorted([TRACKER, CONTROL, DRIVE])
-    assert sorted(effect.component for effect in effects if isinstance(effect, Unwatch)) == sorted(
-        [TRACKER, CONTROL, DRIVE]
-    )
-    assert history.all_answer() == [Finish(REFUSAL)]
+    assert effects[:3] == [Unwatch(component) for component in sorted([TRACKER, CONTROL, DRIVE])]
+    assert sorted(released(effects)) == sorted([DRIVE, CONTROL])  # what the drive gave up feeds nothing any more
+    history.answer(DRIVE, Call.RELEASE)
+    assert released(history.answer(CONTROL, Call.RELEASE)) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Finish(REFUSAL)]
     assert (history.state.phase, dict(history.state.held)) == (Phase.REFUSED, {})
 
 
@@ -441,25 +306,145 @@ def test_a_release_that_could_not_be_delivered_stays_owed() -> None:
     assert not history.state.owed
 
 
-def test_after_being_cut_off_all_components_are_applied_to_anew() -> None:
-    history = History().running()
+def test_after_being_cut_off_all_components_are_applied_to_anew_in_order() -> None:
+    history = History(TASK).running()
     assert history.hear(Reconnected()) == [Discover()]
     history.hear(Discovered())
-    effects = history.composed(navigation())
-    assert sorted(applied(effects)) == sorted([TRACKER, CONTROL, DRIVE])
-    for component in (TRACKER, CONTROL, DRIVE):
-        last = history.answer(component, Call.APPLY)
-    assert kinds(last) == [SetOn]
+    assert applied(history.composed(navigation())) == [TRACKER]
+    assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
+    assert applied(history.answer(CONTROL, Call.APPLY)) == [DRIVE]
+    history.answer(DRIVE, Call.APPLY, Verdict.NOT_HELD)  # it has turned itself off meanwhile
     assert kinds(history.all_answer()) == [Running]
 
 
 def test_after_being_cut_off_during_deployment_it_begins_anew() -> None:
-    history = History().accepted()
-    history.composed(navigation())
+    history = History(TASK).reserved()
     assert history.hear(Reconnected()) == [Discover()]
     assert history.answer(TRACKER, Call.APPLY) == []
     history.hear(Discovered())
-    assert sorted(applied(history.composed(navigation()))) == sorted([TRACKER, CONTROL, DRIVE])
+    assert applied(history.composed(navigation())) == [TRACKER]
+    assert kinds(history.all_answer()) == [Running]
+
+
+def test_a_component_that_appears_while_everything_is_taken_down_comes_to_rest_in_its_turn() -> None:
+    history = History(TASK).running()
+    history.hear(Stopped())
+    assert history.hear(Appeared({TRACKER: "1", DRIVE: "1"})) == [ReleaseFrom(DRIVE, history.state.epoch)]
+
+
+# Other tasks.
+
+
+def test_what_tasks_of_the_same_or_a_higher_priority_hold_does_not_count_for_the_search() -> None:
+    history = History(replace(TASK, priority=0))
+    history.hear(Accepted(100))
+    effects = history.hear(Discovered({TRACKER: OTHERS, ODOMETRY: LOWER, CONTROL: HIGHER}))
+    assert effects == [Compose(1, frozenset({TRACKER, CONTROL}), None)]
+
+
+def test_what_this_task_holds_itself_counts_whoever_says_that_he_holds_it() -> None:
+    history = History(TASK).running()
+    history.hear(Reconnected())
+    assert history.hear(Discovered({TRACKER: OTHERS})) == [Compose(2, frozenset(), navigation())]
+
+
+def test_a_refusal_for_lack_of_what_others_hold_names_it() -> None:
+    history = History(TASK)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS, ODOMETRY: OTHERS}))
+    assert history.composed(REFUSAL) == [Compose(2, frozenset(), None)]
+    assert history.composed(navigation()) == [Finish(REFUSAL)]
+    assert history.state.lost.keys() == {TRACKER}
+    assert history.state.lost[TRACKER].busy
+    assert history.state.lost[TRACKER].detail == "the task tidy (priority 0) holds it"
+
+
+def test_a_refusal_that_nobody_else_is_to_blame_for_names_nobody() -> None:
+    history = History(TASK)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS}))
+    history.composed(REFUSAL)
+    assert history.composed(REFUSAL) == [Finish(REFUSAL)]
+    assert not history.state.lost
+
+
+def waiting() -> History:
+    """A patient task that lacks what another task holds."""
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS}))
+    history.composed(REFUSAL)
+    assert history.composed(navigation()) == [QueueFor(TRACKER, history.state.epoch)]
+    assert history.state.phase is Phase.REFUSED
+    return history
+
+
+def test_a_patient_task_waits_for_what_another_holds_and_begins_when_it_is_free() -> None:
+    history = waiting()
+    assert history.hear(Freed(TRACKER)) == [Discover()]
+    assert history.hear(Discovered()) == [Compose(3, frozenset(), None)]
+    history.composed(navigation())
+    assert kinds(history.all_answer()) == [Running]
+
+
+def test_a_patient_task_that_has_found_something_else_waits_no_more() -> None:
+    history = waiting()
+    history.hear(Appeared({ODOMETRY: "1"}), Discovered({TRACKER: OTHERS}))
+    history.composed(navigation(ODOMETRY))
+    effects = history.all_answer()
+    assert kinds(effects) == [Running, ReleaseFrom]
+    assert released(effects) == [TRACKER]
+
+
+def test_a_patient_task_that_is_stopped_waits_no_more() -> None:
+    history = waiting()
+    assert released(history.hear(Stopped())) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
+
+
+def test_what_was_not_free_for_this_task_counts_again_once_it_is() -> None:
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.YIELD))
+    history.all_answer()
+    assert history.state.lost[TRACKER].busy
+    history.hear(Freed(TRACKER))
+    assert not history.state.lost
+    assert history.composed(REFUSAL) == [Discover()]
+
+
+def test_a_task_that_is_asked_to_yield_comes_to_rest_sinks_first_and_is_configured_without_that_component() -> None:
+    history = History(TASK).running()
+    effects = history.hear(Failed(TRACKER, "1", Cause.YIELD))
+    assert released(effects) == [DRIVE]
+    assert released(history.answer(DRIVE, Call.RELEASE)) == [CONTROL]
+    assert released(history.answer(CONTROL, Call.RELEASE)) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Compose(2, frozenset({TRACKER}), None)]
+    history.composed(navigation(ODOMETRY))
+    assert kinds(history.all_answer()) == [Running]
+
+
+def test_the_task_that_a_component_is_asked_to_yield_for_does_not_yield_itself() -> None:
+    """It watches what it waits for, and hears that the component asks its holder to let go of it."""
+    history = History(TASK).accepted()
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    history.busy(CONTROL, LOWER)
+    assert history.hear(Failed(CONTROL, "1", Cause.YIELD)) == []
+    assert history.state.phase is Phase.RESERVING
+
+
+def test_a_configurator_whose_task_another_goes_on_with_leaves_everything_as_it_is() -> None:
+    history = History(TASK).running()
+    history.hear(Reconnected())
+    history.hear(Discovered())
+    history.composed(navigation())
+    effects = history.busy(TRACKER, replace(OTHERS, task="go~1"), Call.APPLY)
+    assert kinds(effects) == [Unwatch] * 3 + [Finish]
+    assert (history.state.phase, dict(history.state.held), dict(history.state.owed)) == (Phase.STOPPED, {}, {})
+
+
+def test_a_life_that_had_begun_before_the_call_was_meant_for_the_last_one_counts_when_it_is_heard_of() -> None:
+    history = History(TASK).reserved()
+    history.answer(TRACKER, Call.APPLY, Verdict.OTHER_LIFE, life="2")
+    history.hear(Failed(TRACKER, "1", Cause.CRASH), Appeared({TRACKER: "2"}))
+    assert TRACKER not in history.state.lost
 
 
 # The end.
@@ -489,17 +474,32 @@ def test_a_stop_while_dismantling_for_a_search_ends_it() -> None:
 
 def test_a_stop_does_not_wait_for_a_component_that_cannot_be_reached() -> None:
     history = History().running()
-    history.hear(Stopped())
-    for component in (TRACKER, CONTROL):
-        history.answer(component, Call.RELEASE)
-    assert history.answer(DRIVE, Call.RELEASE, None) == [Finish()]
+    assert released(history.hear(Stopped())) == [DRIVE]
+    assert released(history.answer(DRIVE, Call.RELEASE, None)) == [CONTROL]
+    assert released(history.answer(CONTROL, Call.RELEASE)) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
     assert history.state.owed.keys() == {DRIVE}
 
 
 def test_a_stop_waits_for_a_component_that_was_just_released() -> None:
     history = History().running()
     history.hear(Failed(TRACKER, "1", Cause.FAIL), Stopped())
-    for component in (CONTROL, DRIVE):
-        history.answer(component, Call.RELEASE)
-    assert history.state.phase is Phase.DISMANTLING
+    history.answer(DRIVE, Call.RELEASE)
+    history.answer(CONTROL, Call.RELEASE)
+    assert history.state.pending == {(TRACKER, Call.RELEASE)}
     assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
+
+
+@pytest.mark.parametrize("state", [Phase.STOPPED, Phase.REFUSED])
+def test_nothing_is_done_any_more_about_a_task_that_has_ended(state: Phase) -> None:
+    history = History(state_in(state))
+    late = Answered(TRACKER, Call.RESERVE, history.state.epoch, Verdict.DONE, "1")
+    for event in (
+        late,
+        Appeared({TRACKER: "2"}),
+        Freed(TRACKER),
+        Reconnected(),
+        Stopped(),
+        Failed(TRACKER, "1", Cause.FAIL),
+    ):
+        assert history.hear(event) == []
