@@ -85,7 +85,7 @@ def proceed(state: State) -> Reaction:
         if free and not (len(free) == 1 and _is_reserved_by_apply(state, free[0])):
             return _reserve(state, free[0])
         return apply_to(replace(state, phase=Phase.DEPLOYING), state.target.components)
-    return end_deployment(state)
+    return completed(state)
 
 
 def _is_reserved_by_apply(state: State, component: IRI) -> bool:
@@ -154,7 +154,7 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     return apply_to(done, dict.fromkeys(waiting))
 
 
-def end_deployment(state: State) -> Reaction:
+def completed(state: State) -> Reaction:
     """Everything acts: release what is not needed any more."""
     assert state.target is not None
     wanted = set(state.target.components)
@@ -194,7 +194,8 @@ def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:
 
 def await_release(state: State, component: IRI) -> Reaction:
     """Wait for a component that another task holds; it tells when it is free, and is asked again if it does not."""
-    return state, (AwaitRelease(component, state.epoch),)
+    waiting = replace(state, pending=state.pending | {(component, Call.RESERVE)})
+    return waiting, (AwaitRelease(component, state.epoch),)
 
 
 def ask_again(state: State, component: IRI) -> Reaction:

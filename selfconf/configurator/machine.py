@@ -95,8 +95,7 @@ def step(state: State, event: Event) -> Reaction:
         case Freed():
             return _freed(state, event.component)
         case WaitedLong():
-            current = event.epoch == state.epoch and state.phase is Phase.RESERVING
-            return deploying.ask_again(state, event.component) if current else (state, ())
+            return deploying.ask_again(state, event.component) if event.epoch == state.epoch else (state, ())
         case Appeared():
             return _appeared(state, event)
         case Improvable():
@@ -183,12 +182,15 @@ def _answered(state: State, event: Answered) -> Reaction:
     rest = replace(known, pending=state.pending - {(event.component, event.call)})
     if state.phase is Phase.DISMANTLING:
         return _released(rest)
-    if event.verdict is Verdict.DONE:
-        return deploying.confirmed(rest, event)
+    return deploying.confirmed(rest, event) if event.verdict is Verdict.DONE else _declined(rest, event)
+
+
+def _declined(state: State, event: Answered) -> Reaction:
+    """A component has not done what it was asked: ask once more where that may help, else do without it."""
     if event.verdict is Verdict.STALE and event.newest > event.epoch:
-        return deploying.deploy(replace(rest, epoch=max(state.epoch, event.newest)))
+        return deploying.deploy(replace(state, epoch=max(state.epoch, event.newest)))
     if event.verdict is Verdict.NOT_HELD:
-        return _reserve_anew(rest, event.component)
+        return _reserve_anew(state, event.component)
     if event.verdict is Verdict.BUSY:
         return _busy(replace(state, queued=state.queued | {event.component}), event)
     if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
@@ -303,31 +305,33 @@ def _released(state: State) -> Reaction:
     if state.pending:
         return state, ()
     if state.unreleased:
-        wires = {component: held.inputs for component, held in state.held.items() if held.active}
-        now = resting_next(wires, state.unreleased)
-        left = tuple(component for component in state.unreleased if component not in set(now))
-        pending = frozenset((component, Call.RELEASE) for component in now)
-        effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
-        return replace(state, unreleased=left, pending=pending), effects
-    ends = state.afterwards is Phase.STOPPED or not state.patient
-    if ends and state.queued and state.afterwards is not Phase.COMPOSING:
-        return _released(_wait_no_more(state))
+        return _release_next(state)
     empty = replace(state, held={}, target=None, order=None)
     if state.afterwards is Phase.COMPOSING:
         return _compose(empty)
     ended = replace(empty, phase=state.afterwards)
-    if state.afterwards is Phase.STOPPED:
-        return ended, (Finish(),)
-    if not state.patient:
-        return ended, (Finish(state.refusal),)
-    return _discover(ended) if state.news else _queue(ended)
+    if not ended.ended:
+        return _discover(ended) if state.news else _queue(ended)
+    if state.queued:
+        return _wait_no_more(state)
+    return ended, (Finish(state.refusal if ended.phase is Phase.REFUSED else None),)
 
 
-def _wait_no_more(state: State) -> State:
+def _release_next(state: State) -> Reaction:
+    """Release those that feed none of the others that are to come to rest."""
+    wires = {component: held.inputs for component, held in state.held.items() if held.active}
+    now = resting_next(wires, state.unreleased)
+    left = tuple(component for component in state.unreleased if component not in set(now))
+    pending = frozenset((component, Call.RELEASE) for component in now)
+    effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
+    return replace(state, unreleased=left, pending=pending), effects
+
+
+def _wait_no_more(state: State) -> Reaction:
     """Have the components that remember that this task waits forget it: the task is about to end."""
     waited_for = tuple(sorted(state.queued))
     owed = {**state.owed, **dict.fromkeys(waited_for, state.epoch)}
-    return replace(state, queued=frozenset(), unreleased=waited_for, owed=owed)
+    return _release_next(replace(state, queued=frozenset(), unreleased=waited_for, owed=owed))
 
 
 def _queue(state: State) -> Reaction:
