@@ -85,7 +85,7 @@ def proceed(state: State) -> Reaction:
         if free and not (len(free) == 1 and _is_reserved_by_apply(state, free[0])):
             return _reserve(state, free[0])
         return apply_to(replace(state, phase=Phase.DEPLOYING), state.target.components)
-    return completed(state)
+    return end_deployment(state)
 
 
 def _is_reserved_by_apply(state: State, component: IRI) -> bool:
@@ -154,7 +154,7 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     return apply_to(done, dict.fromkeys(waiting))
 
 
-def completed(state: State) -> Reaction:
+def end_deployment(state: State) -> Reaction:
     """Everything acts: release what is not needed any more."""
     assert state.target is not None
     wanted = set(state.target.components)

@@ -222,7 +222,7 @@ def _unasked(state: State, event: Answered) -> Reaction:
     if unwanted and event.call is Call.RESERVE and event.verdict is Verdict.DONE:
         owed = {**state.owed, event.component: state.epoch}
         release = ReleaseFrom(event.component, state.epoch)
-        return then((release,), _freed(replace(state, owed=owed), event.component))
+        return then((release,), _free(replace(state, owed=owed), event.component))
     return state, ()
 
 
@@ -347,12 +347,17 @@ def _freed(state: State, component: IRI) -> Reaction:
         return state, (Decline(component, state.epoch),)
     if state.phase is Phase.RESERVING and (component, Call.RESERVE) in state.pending:
         return deploying.ask_again(state, component)
+    known, effects = _free(state, component)
+    cannot_take = not effects and component not in state.held
+    return known, (Decline(component, state.epoch),) if cannot_take else effects
+
+
+def _free(state: State, component: IRI) -> Reaction:
+    """No other task holds a component any more: it counts again for the search."""
     lost = {c: loss for c, loss in state.lost.items() if c != component or not loss.busy}
     taken = {c: holder for c, holder in state.taken.items() if c != component}
     known = replace(state, lost=lost, taken=taken, queued=state.queued - {component}, news=True)
-    if state.phase is Phase.REFUSED:
-        return _discover(known)
-    return known, () if component in state.held else (Decline(component, state.epoch),)
+    return _discover(known) if state.phase is Phase.REFUSED else (known, ())
 
 
 def _appeared(state: State, event: Appeared) -> Reaction:

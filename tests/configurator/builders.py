@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom, ReserveOf
-from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Holder, Stopped
+from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Stopped
 from selfconf.configurator.machine import step
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.term import IRI, Literal
 from selfconf.protocol.messages import Verdict

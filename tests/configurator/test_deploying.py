@@ -11,6 +11,8 @@ from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
     Compose,
+    Discover,
+    Finish,
     ReleaseFrom,
     ReserveOf,
     Running,
@@ -23,15 +25,17 @@ from selfconf.configurator.events import (
     Answered,
     Call,
     Composed,
+    Discovered,
     Failed,
     Freed,
-    Holder,
+    HandedOver,
     Improvable,
     WaitedLong,
 )
 from selfconf.configurator.order import wiring
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.configuration import Assignment, Configuration, Connection
+from selfconf.model.holder import Holder
 from selfconf.model.term import IRI, Literal
 from selfconf.protocol.messages import Cause, Verdict, Wire
 from tests.configurator.builders import (
@@ -282,13 +286,20 @@ def test_an_actuator_that_has_not_said_that_it_acts_is_not_started_before_the_re
 
 def test_a_task_that_is_adopted_goes_on_and_every_component_hears_for_whom() -> None:
     history = History(TASK)
-    lives = {TRACKER: "1", CONTROL: "1", DRIVE: "1"}
-    effects = history.hear(Adopted(500, navigation(), lives))
-    assert kinds(effects) == [Watch] * 3 + [ApplyTo] * 3
+    assert kinds(history.hear(Adopted(500, navigation()))) == [Watch] * 3 + [Discover]
+    assert history.hear(Discovered()) == [Compose(1, frozenset(), navigation())]
+    effects = history.composed(navigation())
+    assert kinds(effects) == [ApplyTo] * 3
     assert {effect.epoch for effect in effects if isinstance(effect, ApplyTo)} == {501}
     assert history.all_answer() == [Running(navigation())]
-    assert {component: held.life for component, held in history.state.held.items()} == lives
-    assert history.hear(Adopted(900, navigation(), lives)) == []
+    assert history.hear(Adopted(900, navigation())) == []
+
+
+def test_a_task_that_is_handed_over_is_left_as_it_runs() -> None:
+    history = History(TASK).running()
+    assert kinds(history.hear(HandedOver())) == [Unwatch] * 3 + [Finish]
+    assert (history.state.phase, dict(history.state.held), dict(history.state.owed)) == (Phase.STOPPED, {}, {})
+    assert history.hear(HandedOver()) == []
 
 
 # What is not done.

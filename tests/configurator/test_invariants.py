@@ -10,6 +10,7 @@ from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
     Compose,
+    Decline,
     Effect,
     Finish,
     QueueFor,
@@ -31,7 +32,7 @@ from selfconf.configurator.events import (
     Event,
     Failed,
     Freed,
-    Holder,
+    HandedOver,
     Improvable,
     Reconnected,
     Stopped,
@@ -41,6 +42,7 @@ from selfconf.configurator.machine import OBEYED, step
 from selfconf.configurator.order import parameter_values, resting_order, wiring
 from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -60,10 +62,10 @@ HOLDERS = [
 ]
 SELF = Holder("go~1", 0, 0.0, "c3")
 """Another configurator of the same task."""
-LIVES = dict.fromkeys(EVERYBODY, "1")
 ONE_OF_EACH: list[Event] = [
     Accepted(500),
-    Adopted(500, navigation(), LIVES),
+    Adopted(500, navigation()),
+    HandedOver(),
     Discovered(),
     Discovered({TRACKER: HOLDERS[1], CONTROL: HOLDERS[5]}),
     Composed(1, navigation()),
@@ -106,6 +108,8 @@ class Ledger:
     def hear(self, event: Event) -> None:
         """One step, with everything that must hold."""
         before, over = self.state, self.state.ended
+        if isinstance(event, Adopted) and before.phase is Phase.IDLE:
+            self.maybe_active.update(event.configuration.components)
         self.state, effects = step(before, event)
         assert self.state.epoch >= before.epoch
         assert self.state.attempt >= before.attempt
@@ -118,11 +122,12 @@ class Ledger:
             taken_down = event.component not in self.state.held or self.state.phase is Phase.DISMANTLING
             if event.component not in self.state.owed and taken_down:
                 self.maybe_active.discard(event.component)
-        if Finish() in effects and isinstance(event, Answered) and event.verdict is Verdict.BUSY:
+        handed_over = isinstance(event, HandedOver) or (isinstance(event, Answered) and event.verdict is Verdict.BUSY)
+        if handed_over and Finish() in effects:
             self.maybe_active.clear()  # another configurator goes on with the task
         self._check_state()
         assert self.finished <= 1
-        assert not (over and effects)
+        assert not over or all(isinstance(effect, Decline) for effect in effects)
 
     def _check_state(self) -> None:
         state = self.state
@@ -197,6 +202,8 @@ class Ledger:
             case QueueFor(component, epoch):
                 assert (state.phase, state.patient, epoch) == (Phase.REFUSED, True, state.epoch)
                 assert component in state.queued - state.owed.keys()
+            case Decline(component):
+                assert component not in state.held
             case Compose(_, lost, _):
                 despite = frozenset() if state.despite else frozenset(state.taken)
                 assert lost == frozenset(state.lost) | despite
@@ -292,7 +299,8 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
             Freed(component),
             WaitedLong(component, state.epoch - how % 2),
             Improvable(),
-            Adopted(when, navigation(), LIVES),
+            Adopted(when, navigation()),
+            *([HandedOver()] if how == when else []),
         ]
         return others[which % len(others)]
     return Reconnected() if kind < 59 else Stopped()
@@ -315,7 +323,7 @@ def test_the_invariants_hold_in_every_history(
     numbers: list[tuple[int, ...]], policy: Policy, patient: bool, adopted: bool
 ) -> None:
     ledger = Ledger(State(policy=policy, patient=patient, task="go~1"))
-    ledger.hear(Adopted(10, navigation(), LIVES) if adopted else Accepted(10))
+    ledger.hear(Adopted(10, navigation()) if adopted else Accepted(10))
     for drawn in numbers:
         event = event_of(ledger.state, drawn)
         if not (isinstance(event, Composed) and _names_a_loss(ledger.state, event)):
@@ -346,7 +354,9 @@ def test_from_every_state_a_search_that_finds_something_and_components_that_obey
     ledger.hear(Accepted(10))
     for drawn in numbers:
         event = event_of(ledger.state, drawn)
-        if not isinstance(event, Stopped) and not (isinstance(event, Composed) and _names_a_loss(ledger.state, event)):
+        if not isinstance(event, Stopped | HandedOver) and not (
+            isinstance(event, Composed) and _names_a_loss(ledger.state, event)
+        ):
             ledger.hear(event)
     for _ in range(60):
         state = ledger.state

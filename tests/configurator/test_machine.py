@@ -9,6 +9,7 @@ import pytest
 from selfconf.configurator.effects import (
     ApplyTo,
     Compose,
+    Decline,
     Discover,
     Finish,
     QueueFor,
@@ -409,6 +410,19 @@ def test_what_was_not_free_for_this_task_counts_again_once_it_is() -> None:
     assert history.composed(REFUSAL) == [Discover()]
 
 
+def test_what_is_kept_for_a_task_that_cannot_take_it_now_goes_to_the_next() -> None:
+    history = History(TASK).running()
+    assert history.hear(Freed(ODOMETRY)) == [Decline(ODOMETRY, history.state.epoch)]
+
+
+def test_a_notice_that_comes_after_the_component_was_reserved_lets_it_not_go() -> None:
+    history = History(TASK).running()
+    assert history.hear(Freed(TRACKER)) == []
+    history = History(TASK).accepted()
+    history.composed(navigation())
+    assert history.hear(Freed(TRACKER)) == []  # it is about to be reserved
+
+
 def test_a_task_that_is_asked_to_yield_comes_to_rest_sinks_first_and_is_configured_without_that_component() -> None:
     history = History(TASK).running()
     effects = history.hear(Failed(TRACKER, "1", Cause.YIELD))
@@ -497,9 +511,9 @@ def test_nothing_is_done_any_more_about_a_task_that_has_ended(state: Phase) -> N
     for event in (
         late,
         Appeared({TRACKER: "2"}),
-        Freed(TRACKER),
         Reconnected(),
         Stopped(),
         Failed(TRACKER, "1", Cause.FAIL),
     ):
         assert history.hear(event) == []
+    assert kinds(history.hear(Freed(TRACKER))) == [Decline]

@@ -45,6 +45,11 @@ def test_every_message_is_read_as_it_was_written(message: Message) -> None:
     assert decode(encode(message), type(message)) == message
 
 
+@given(st.data())
+def test_messages_of_every_kind_are_tried(data: st.DataObject) -> None:
+    assert {type(data.draw(one)) for one in strategies.messages.original_strategies} == set(KINDS)
+
+
 @given(strategies.terms)
 def test_every_term_is_read_as_it_was_written(term: Term) -> None:
     again = decode_term(json.loads(json.dumps(encode_term(term))))
