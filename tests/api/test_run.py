@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 import threading
+import time
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
 import selfconf as sc
 from selfconf import read, template
 from selfconf.api.answer import Method
-from selfconf.api.run import Run
+from selfconf.api.run import Run, WorkQueue
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
@@ -34,15 +37,17 @@ pytestmark = pytest.mark.process
 
 def test_events_are_values_in_the_order_in_which_things_happen(served: Home, clock: sc.TaskSpecification) -> None:
     seen: list[RunEvent] = []
-    with sc.join(served.ecology) as living, living.run(clock) as run:
-        for event in run.events():
-            seen.append(event)
-            if isinstance(event, TaskRunning):
-                assert run.configuration == event.configuration
-                assert event.configuration.components == living.configure(clock)["source"] + (
-                    sc.IRI("https://example.org/my-home#display"),
-                )
-                run.stop()
+    with sc.join(served.ecology) as living:
+        would_be = living.configure(clock)
+        assert isinstance(would_be, sc.Configuration)
+        with living.run(clock) as run:
+            for event in run.events():
+                seen.append(event)
+                if isinstance(event, TaskRunning):
+                    assert run.configuration == event.configuration
+                    assert event.configuration.components == would_be.components
+                    assert not living.configure(clock)  # what this task holds counts for no other
+                    run.stop()
     milestones = (EcologyAsked, EcologyDiscovered, SearchEnded, TaskRunning, TaskStopped)
     assert [type(event) for event in seen if isinstance(event, milestones)] == list(milestones)
     assert sum(isinstance(event, ComponentReleased) for event in seen) == 2
@@ -222,3 +227,89 @@ def test_a_run_that_cannot_begin_is_an_error(house: Home) -> None:
         run(house, template(NAVIGATE))
     with pytest.raises(SelfconfError, match="no endpoint"):
         Run(TASK, Method(), house.ecology, ["here"])
+
+
+# The run's own threads: the bus listens, whatever the thread does that reads the events.
+
+
+def test_a_run_answers_while_no_event_is_read(house: Home) -> None:
+    """The configurator answers while the thread that reads the events does something else."""
+    with run(house) as running:
+        events = running.events()
+        next(event for event in events if isinstance(event, TaskRunning))
+        bus = running._bus
+        answered: list[object] = []
+        bus.ask(running._runner.keys.configurator_call(running.name, "status"), b"", 5.0, answered.append)
+        pause = threading.Event()
+        deadline = time.monotonic() + 5.0
+        while not answered and time.monotonic() < deadline:
+            pause.wait(0.01)
+        assert answered
+
+
+def test_searches_are_done_by_the_thread_that_reads_the_events_and_keep_the_run_from_nothing(
+    house: Home, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    searching, go_on = threading.Event(), threading.Event()
+    searched_by: list[threading.Thread] = []
+
+    class Held(Run):
+        def _compose(self, *arguments: Any) -> Any:
+            searched_by.append(threading.current_thread())
+            searching.set()
+            go_on.wait(10.0)
+            return super()._compose(*arguments)
+
+    monkeypatch.setattr(sys.modules[__name__], "Run", Held)
+    moments: list[float] = []
+
+    def look() -> None:
+        """While the search goes on, the configurator answers `status` and obeys `stop`, each within 50 ms."""
+        searching.wait(10.0)
+        answered = threading.Event()
+        began = time.monotonic()
+        running._bus.ask(
+            running._runner.keys.configurator_call(running.name, "stop"), b"", 5.0, lambda _: answered.set()
+        )
+        answered.wait(5.0)
+        moments.append(time.monotonic() - began)
+        go_on.set()
+
+    with run(house) as running:
+        watcher = threading.Thread(target=look)
+        watcher.start()
+        *_, last = running.events()
+        watcher.join(10.0)
+    assert isinstance(last, TaskStopped)
+    assert searched_by == [threading.current_thread()]
+    assert moments[0] < 0.5  # it takes a few milliseconds; the processors of a test are shared
+    assert house.active(*EVERYBODY) == set()
+
+
+def test_work_is_done_before_events_are_read_and_in_order() -> None:
+    queue, done = WorkQueue(), list[int]()
+    event, other = EcologyAsked(), TaskStopped()
+    queue.report(event)
+    for number in range(3):
+        queue.work(lambda number=number: done.append(number))  # type: ignore[misc]  # a default binds it
+    queue.report(other)
+    assert (queue.next(0.0), done) == (event, [0, 1, 2])
+    assert (queue.next(0.0), queue.next(0.0)) == (other, None)
+
+
+def test_work_that_makes_an_event_is_followed_by_it() -> None:
+    queue, event = WorkQueue(), EcologyAsked()
+    queue.work(lambda: queue.report(event))
+    assert queue.next(0.0) is event
+
+
+@pytest.mark.parametrize("act", ["work", "report", "wake up"])
+def test_the_queue_wakes_the_thread_that_waits(act: str) -> None:
+    queue = WorkQueue()
+    acts = {"work": lambda: queue.work(lambda: None), "report": lambda: queue.report(EcologyAsked())}
+    began = time.monotonic()
+    timer = threading.Timer(0.05, acts.get(act, queue.wake_up))
+    timer.start()
+    queue.next(10.0)
+    assert time.monotonic() - began < 5.0
+    timer.join()

@@ -153,7 +153,7 @@ def test_every_call_names_the_life_that_is_meant_so_that_no_other_life_obeys_it(
 
 
 def test_nothing_acts_before_everything_is_reserved(lab: Lab) -> None:
-    """The sonar array cannot be reserved: what comes before it is held, what comes after it is not; nothing acts."""
+    """The sonar array cannot be reserved: what comes before it is held, nothing else is, and nothing acts."""
     runtime = lab.runtimes["sonar"]
     runtime._served()
     agent = lab.agent()
