@@ -23,7 +23,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.protocol.messages import CallAnswer, Cause
 
-LOOK = 1.0
+SITES_CALL = 1.0
 """Seconds that the network may take to say which sites live."""
 SECOND_LOOK = 0.03
 """Seconds until the second look at a life that has ended, where no site answers: a lost link may show later."""
@@ -31,7 +31,7 @@ AWAY = 0.3
 """Seconds that a component may take to find another router when its own is gone."""
 CUT_OFF = 0.25
 """Seconds between two looks of a configurator that is cut off whether it still is."""
-ASK_AGAIN = 5.0
+ASK_SITE_AGAIN = 5.0
 """Seconds after which a site that lives, but has not answered in full, is taken for news, and so is asked again."""
 AUDIT = 1.0
 """Seconds between two looks at what runs: a component may have let go of its task, or have failed, unnoticed."""
@@ -83,7 +83,7 @@ class Liveness:
         self.ecology.follow(self._life_changed, self._site_changed)
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
         if discovery.missing:
-            self._ask_again = self.bus.later(ASK_AGAIN, lambda: self._step(Appeared({})))
+            self._ask_again = self.bus.later(ASK_SITE_AGAIN, lambda: self._step(Appeared({})))
 
     def _life_changed(self, key: str, alive: bool) -> None:
         chunk, life = owner_of(key), life_of(key)
@@ -111,7 +111,7 @@ class Liveness:
         """Ask which sites live, once for all lives that have ended before."""
         self._asking = True
         asked, self._doubted = sorted(self._doubted), set()
-        self.bus.roll_call(self.ecology.keys.any_site_life(), LOOK, partial(self._network_answered, asked))
+        self.bus.roll_call(self.ecology.keys.any_site_life(), SITES_CALL, partial(self._network_answered, asked))
 
     def _network_answered(self, asked: Sequence[tuple[str, str]], sites: tuple[str, ...]) -> None:
         self._asking = False

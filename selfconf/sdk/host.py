@@ -31,8 +31,8 @@ JOINING = 1.0
 """Seconds that a component of the same IRI may take to say that it lives."""
 LEAVING = 2.5
 """Seconds that the code of the components may take to come to rest when the host is closed."""
-AnyComponent = TypeVar("AnyComponent", bound=Component)
-Heard = TypeVar("Heard")
+_Kind = TypeVar("_Kind", bound=Component)
+_Heard = TypeVar("_Heard")
 
 
 class Host:
@@ -51,7 +51,7 @@ class Host:
         if not self.code.inline:
             bus.wake_up(self._watch_code)
 
-    def add(self, component: AnyComponent, life: str = "") -> AnyComponent:
+    def add(self, component: _Kind, life: str = "") -> _Kind:
         """Let a component join the ecology.
 
         Raises AuthorError for an advertisement that cannot be read, and NetworkError if the component lives already.
@@ -104,13 +104,13 @@ class Host:
         while not until():
             self.code.poll(0.01)
 
-    def _on_bus_thread(self, action: Callable[[Callable[[Heard], None]], None]) -> Heard:
+    def _on_bus_thread(self, action: Callable[[Callable[[_Heard], None]], None]) -> _Heard:
         """Do something on the thread of the bus that hears of a result, and wait for that. What it raises is raised."""
-        heard: list[Heard] = []
+        heard: list[_Heard] = []
         raised: list[BaseException] = []
         there = threading.Event()
 
-        def hear(result: Heard) -> None:
+        def hear(result: _Heard) -> None:
             heard.append(result)
             there.set()
 

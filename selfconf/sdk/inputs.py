@@ -88,13 +88,12 @@ class Inputs:
         New connections are made first, because others wait for what flows over them; the old ones end when the call
         has been answered.
         """
-        before = self._followed_by_port()
         wanted = dict.fromkeys((port, wire) for port, wires in message.inputs.items() for wire in wires)
         spare = dict.fromkeys((port, wire) for port, wires in message.standby.items() for wire in wires)
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
                 self._subscriptions[port, wire] = self._subscription(port, wire)
-        waiting = {port for port, wires in message.inputs.items() if self._loses_all(port, before.get(port), wires)}
+        waiting = self._left_without(message.inputs)
         self._handing_over = waiting if message.gently else set()
         self._handed_over_by = self._bus.now() + HANDOVER
         for port in sorted(waiting - self._handing_over):
@@ -104,11 +103,11 @@ class Inputs:
             self._subscriptions[key].unmute()
         self._let_go()
 
-    def _loses_all(self, port: str, before: set[Wire] | None, wires: Sequence[Wire]) -> bool:
-        """Whether an input followed outputs before and follows others now, none of which has just issued a signal."""
-        if not before or before & {*wires}:
-            return False
-        return not any(self._subscriptions[port, wire].heard for wire in wires)
+    def _left_without(self, inputs: Mapping[str, tuple[Wire, ...]]) -> set[str]:
+        """The inputs that lose every output they follow, to others of which none has just issued a signal."""
+        before = self._followed_by_port()
+        fresh = [port for port, wires in inputs.items() if before.get(port) and not before[port] & {*wires}]
+        return {port for port in fresh if not any(self._subscriptions[port, wire].heard for wire in inputs[port])}
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""

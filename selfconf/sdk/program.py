@@ -18,7 +18,7 @@ from selfconf.termination import Termination, started_by_another
 
 HUNG_ENDS = 0.2
 """Seconds from the FAIL of code that hangs to the end of its process, if a site started it and can start it again."""
-CODE_ENDING = 2.5
+TIME_TO_END = 2.5
 """Seconds that a program may take to end on SIGINT or SIGTERM; code that does not return is not waited for longer."""
 HUNG_EXIT_CODE = 70
 """The exit code of a program that was ended because its code hung: EX_SOFTWARE of sysexits.h."""
@@ -81,7 +81,7 @@ def run_until_ended(host: Host) -> None:
     def then() -> None:
         host.code.wake_up()
         if not host.code.inline:
-            host.bus.later(CODE_ENDING, lambda: os._exit(HUNG_EXIT_CODE))
+            host.bus.later(TIME_TO_END, lambda: os._exit(HUNG_EXIT_CODE))
 
     ending = Termination(host.bus, then)
     try:

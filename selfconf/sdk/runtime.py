@@ -60,7 +60,7 @@ YIELDING = 2.0
 """Seconds that a task has to let go of a component that a task of higher priority asks for."""
 LOOKS_FOR_OTHERS = (0.0, 1.0)
 """Seconds after the beginning of a life at which it is looked whether another process is the same component."""
-OTHERS_ANSWER = 3.0
+LIVES_CALL = 3.0
 """Seconds that this may take."""
 Reply = Callable[[CallAnswer], None]
 
@@ -414,7 +414,7 @@ class ComponentRuntime:
                 self.close(partial(self._superseded, reason))
 
         if not self._closed:
-            self.bus.roll_call(self.keys.lives(self.profile.component), OTHERS_ANSWER, called)
+            self.bus.roll_call(self.keys.lives(self.profile.component), LIVES_CALL, called)
 
     # What is noticed of the inputs.
 

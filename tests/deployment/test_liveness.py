@@ -12,7 +12,7 @@ from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import liveness
-from selfconf.deployment.liveness import ASK_AGAIN, AUDIT, AWAY, SETTLING
+from selfconf.deployment.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, SETTLING
 from selfconf.discovery import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
@@ -328,7 +328,7 @@ def test_a_site_that_answers_later_is_not_missing_from_the_refusal_any_more(tmp_
     node.announce(lab.keys.site_life("living-room", "1"))
     undo = node.serve(lab.keys.advertisements("living-room"), lambda _: None)
     agent = lab.agent(patient=True)
-    lab.let_pass(2 * ASK_AGAIN)
+    lab.let_pass(2 * ASK_SITE_AGAIN)
     assert isinstance(agent.state.refusal, Refusal)
     assert agent.state.refusal.missing_sites == ("living-room",)
     undo()
@@ -339,7 +339,7 @@ def test_a_site_that_answers_later_is_not_missing_from_the_refusal_any_more(tmp_
         request.finish()
 
     node.serve(lab.keys.advertisements("living-room"), answer)
-    lab.let_pass(2 * ASK_AGAIN)
+    lab.let_pass(2 * ASK_SITE_AGAIN)
     assert isinstance(agent.state.refusal, Refusal)
     assert agent.state.refusal.missing_sites == ()
 
@@ -361,9 +361,9 @@ def test_a_site_that_does_not_answer_is_asked_again_at_one_interval_whatever_els
     for _ in range(20):
         lab.let_pass(0.2)
         changed.put(b"")
-    lab.let_pass(ASK_AGAIN)
+    lab.let_pass(ASK_SITE_AGAIN)
     asked.clear()
-    lab.let_pass(10 * ASK_AGAIN)
+    lab.let_pass(10 * ASK_SITE_AGAIN)
     assert len(asked) <= 10 * DISCOVERY_ATTEMPTS
 
 
@@ -374,7 +374,7 @@ def test_a_site_that_is_started_again_is_news_though_its_earlier_life_has_not_en
         lab.component(name)
     first = lab.site("living-room", "pippi")
     agent = lab.agent(patient=True)
-    lab.let_pass(2 * ASK_AGAIN)
+    lab.let_pass(2 * ASK_SITE_AGAIN)
     assert agent.state.phase is Phase.REFUSED
     (tmp_path / "living-room" / "pippi.ttl").unlink()
     lab.site("living-room", "tracker")

@@ -15,7 +15,7 @@ import pytest
 
 from selfconf.bus.zenoh_bus import client
 from selfconf.sdk import Component, main, parent_environment
-from selfconf.sdk.program import CODE_ENDING, HUNG_EXIT_CODE
+from selfconf.sdk.program import HUNG_EXIT_CODE, TIME_TO_END
 from tests.lab import write_advertisements
 from tests.sdk.living import PATIENCE, PREFIXES, LivingStage, until
 
@@ -174,7 +174,7 @@ def test_a_program_whose_code_hangs_ends_on_a_signal_all_the_same(programs: Prog
     process.send_signal(signal.SIGTERM)
     _, said = process.communicate(timeout=2 * PATIENCE)
     assert process.returncode == HUNG_EXIT_CODE
-    assert time.monotonic() - began < CODE_ENDING + 1.0
+    assert time.monotonic() - began < TIME_TO_END + 1.0
     assert "urn:c:lamp: `every` has not returned within 0.3 s" in said
 
 
