@@ -5,8 +5,9 @@ serialiser, a few hundred triples at a time, and what comes out is text in one l
 a subject, which is a statement (`selfconf.rdf.advertisements.statement_table`).
 
 Blank nodes become part of the statement that leads to them: `sc:hasInput [ sc:name "pose" ; ... ]`, as their author
-wrote them. That is sound where every blank node is written in brackets or as a list, so that exactly one statement
-leads to it. Labels of blank nodes have become names before (`selfconf.rdf.advertisements.segments`).
+wrote them. That is sound where exactly one statement leads to each blank node: where it is written in brackets or as a
+list, and of those with labels, where no other statement has the label (`labelled`). Else labels become names before
+(`selfconf.rdf.advertisements.segments`).
 """
 
 from __future__ import annotations
@@ -112,6 +113,18 @@ def _with_brackets(line: str, take: Callable[[str], str]) -> str:
         raise NotInlinableError from None
 
 
+def labelled(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]] | None:
+    """What a document says of each named subject, whose blank nodes may have labels, and be described anywhere.
+
+    None where a blank node is that of two statements, where one is a component, or where the text is no Turtle.
+    """
+    try:
+        return _afterwards(text, base, statements)
+    except (SyntaxError, MemoryError, NotInlinableError):
+        return None
+
+
+# complexity: the loop over all statements of documents with labels; calls in it would add a fifth
 def _afterwards(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]]:
     """Inline once all is read, with lists, and each blank node of several objects in a statement of its own."""
     triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
@@ -119,16 +132,34 @@ def _afterwards(text: bytes, base: str | None, statements: StatementTable) -> di
     while segment := ox.serialize(islice(triples, CHUNK_TRIPLES), format=ox.RdfFormat.TURTLE):
         for block in segment[: -len(END)].decode().split(END):
             subject, _, rest = block.partition(" ")
-            lines.setdefault(subject, []).extend(rest.split(NEXT))
+            said = lines.get(subject)
+            if said is None:
+                lines[subject] = rest.split(NEXT)
+            else:
+                said += rest.split(NEXT)
     names = [subject for subject in lines if subject[0] != "_"]
-    subjects = {name: [statements[line] for line in _nested(lines.pop(name), lines, 0)] for name in names}
+    known, taken = statements.get, set[str]()
+    subjects: dict[str, list[Statement]] = {}
+    for name in names:
+        subjects[name] = found = []
+        for line in lines.pop(name):
+            if "_:" in line:
+                predicate, _, node = line.partition(" ")
+                inner = NEXT.join(lines.get(node, ()))
+                if not inner or "_:" in inner or _CELL[0] in inner:
+                    found += [statements[each] for each in _nested([line], lines, taken, 0)]
+                    continue
+                del lines[node]
+                taken.add(node)
+                line = f"{predicate} [ {inner} ]"
+            found.append(known(line) or statements[line])
     if lines:
         raise NotInlinableError
     return subjects
 
 
-def _nested(said: Iterable[str], lines: dict[str, list[str]], depth: int) -> Iterator[str]:
-    """Statements with what is said of blank nodes in the place of these, which are taken out of `lines`."""
+def _nested(said: Iterable[str], lines: dict[str, list[str]], taken: set[str], depth: int) -> Iterator[str]:
+    """Statements with what is said of blank nodes in the place of these, which are taken out of `lines`, once."""
     if depth > _DEPTH:
         raise NotInlinableError
     for line in said:
@@ -137,22 +168,30 @@ def _nested(said: Iterable[str], lines: dict[str, list[str]], depth: int) -> Ite
             yield line
             continue
         for found in _OBJECT.findall(objects):
-            yield f"{predicate} {_written(found, lines, depth)}"
+            yield f"{predicate} {_written(found, lines, taken, depth)}"
 
 
-def _written(found: str, lines: dict[str, list[str]], depth: int) -> str:
+def _written(found: str, lines: dict[str, list[str]], taken: set[str], depth: int) -> str:
     """An object; a blank node as a list, where it is the first cell of one, or in brackets."""
     if not found.startswith("_:"):
         return found
     members: list[str] = []
     at = found
-    while [line.partition(" ")[0] for line in sorted(lines.get(at, ()))] == _CELL:
-        first, rest = sorted(lines.pop(at))
-        (member,) = _nested([first], lines, depth + 1)
+    while len(cell := lines.get(at, ())) == len(_CELL) and [part.partition(" ")[0] for part in sorted(cell)] == _CELL:
+        first, rest = sorted(_take(at, lines, taken))
+        (member,) = _nested([first], lines, taken, depth + 1)
         members.append(member.partition(" ")[2])
         at = rest.partition(" ")[2]
     if not members:
-        return bracketed("", _nested(lines.pop(at, ()), lines, depth + 1)).lstrip()
+        return bracketed("", _nested(_take(at, lines, taken), lines, taken, depth + 1)).lstrip()
     if at != f"<{NIL}>":
         raise NotInlinableError
     return f"( {' '.join(members)} )"
+
+
+def _take(node: str, lines: dict[str, list[str]], taken: set[str]) -> list[str]:
+    """What is said of a blank node. Raises NotInlinableError if another statement has led to it already."""
+    if node in taken:
+        raise NotInlinableError
+    taken.add(node)
+    return lines.pop(node, [])

@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
-from selfconf.rdf.advertisements.inlining import inlined
+from selfconf.rdf.advertisements.inlining import inlined, labelled
 from selfconf.rdf.advertisements.statement_table import NotInlinableError, Statement, StatementTable
 from selfconf.rdf.advertisements.token_templates import TokenTemplates, patterns_of
 from selfconf.rdf.turtle import SKOLEM
@@ -174,6 +174,9 @@ def inlined_document(
 
     Blank nodes with labels have the names of `selfconf.rdf.turtle.SKOLEM`. Raises TurtleError.
     """
+    found = labelled(text, base, segments) if b"_:" in text else None
+    if found is not None:
+        return found
     cuttable = SEGMENT.encode() not in text and SKOLEM.encode() not in text
     found = _assembled(text, source, base, segments) if segments.pays and cuttable else None
     if found is None and b"_:" not in text:

@@ -139,10 +139,13 @@ class StatementTable(dict[str, Statement]):
 
     def typed(self, said: list[Statement]) -> None:
         """Make one statement of all that give types to a subject, unless one of them has brackets."""
-        kinds = [statement for statement in said if statement.slot is TYPE]
-        if len(kinds) > 1 and not any("[" in statement.text for statement in kinds):
-            said[said.index(kinds[0])] = self["a " + " , ".join(statement.text[len("a ") :] for statement in kinds)]
-            said[:] = [statement for statement in said if statement not in kinds]
+        kinds = dict.fromkeys(statement for statement in said if statement.slot is TYPE)
+        repeated = sum(statement.slot is TYPE for statement in said) > 1
+        if repeated and not any("[" in statement.text for statement in kinds):
+            first = next(iter(kinds))
+            whole = self["a " + " , ".join(statement.text[len("a ") :] for statement in kinds)]
+            place = said.index(first)
+            said[place:] = [whole, *(statement for statement in said[place:] if statement not in kinds)]
 
     def _types(self, statement: WrittenStatement) -> None:
         if _TYPES.fullmatch(statement.text) and turtle.SKOLEM not in statement.text:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 
 import pyoxigraph as ox
@@ -13,11 +14,13 @@ from selfconf.errors import TurtleError
 from selfconf.rdf.advertisements import loader, statement_table
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
+from selfconf.rdf.advertisements.loader import LoadedAdvertisement
 from selfconf.rdf.advertisements.segments import SegmentCache
 from selfconf.rdf.permitted_fields import SETTINGS
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle.document import Triple
 from selfconf.rdf.turtle.serialization import ntriples
+from selfconf.rdf.vocabulary import SC
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 VALUES = st.sampled_from(
@@ -188,3 +191,50 @@ def test_oxigraph_writes_a_subject_as_the_fast_loader_expects_it() -> None:
     ]
     assert lines[0] == ["a <s:T> , <s:U>", '<s:p> "x\\ty ;\\n\\t"']
     assert [line[0].partition(" ")[0] for line in lines[1:]] == ["<s:q>", "<s:q>", "<s:r>", "<s:p>"]
+
+
+def _seconds(text: str) -> float:
+    """Processor time of loading a text, the least of three."""
+    found = []
+    for _ in range(3):
+        began = time.process_time()
+        loader.read_advertisements(text.encode(), "a.ttl")
+        found.append(time.process_time() - began)
+    return min(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", [":c a sc:Component, :C ; :p {} .\n", ":c a sc:Component, :C{0} ; :p {0} .\n"])
+def test_a_block_repeated_for_one_subject_costs_as_much_each_time(block: str) -> None:
+    few, many = ("".join([PREFIXES, *(block.format(number) for number in range(size))]) for size in (4_000, 32_000))
+    assert _seconds(many) < 30 * _seconds(few) + 0.1  # 8 times, or 64 if it were quadratic
+
+
+def test_labels_of_blank_nodes_are_read_as_brackets_wherever_they_are_described() -> None:
+    lines = [
+        f"<urn:c> a <{SC.Component}> .",
+        "<urn:c> a <urn:Kind> .",
+        f"<urn:c> <{SC.hasOutput}> _:o .",
+        f'_:o <{SC.name}> "out" .',
+        f"_:o <{SC.signalType}> <urn:Signal> .",
+        "<urn:c> <urn:list> _:l .",
+        "_:l <http://www.w3.org/1999/02/22-rdf-syntax-ns#first> _:m .",
+        "_:l <http://www.w3.org/1999/02/22-rdf-syntax-ns#rest> <http://www.w3.org/1999/02/22-rdf-syntax-ns#nil> .",
+        '_:m <urn:p> "_:o" .',
+    ]
+    for order in (lines, lines[::-1], [*lines[4:], *lines[:4]]):
+        text = "\n".join(order).encode()
+        (one,), _ = loader.read_advertisements(text, "a.nt.ttl")
+        (other,), _ = advertisements.read_document(turtle.parse(text, "a.nt.ttl"))
+        assert isinstance(one, LoadedAdvertisement)
+        assert one.profile.outputs == other.profile.outputs != ()
+        assert len(one.triples) == len(other.triples) == len(lines)
+
+
+def test_a_blank_node_that_two_components_share_stays_one_node() -> None:
+    shared = f"<urn:{{}}> a <{SC.Component}>, <urn:Kind> ; <urn:room> _:room . "
+    text = "".join(map(shared.format, "ab")) + '_:room <urn:name> "hall" .'
+    found, _ = loader.read_advertisements(text.encode(), "a.ttl")
+    rooms = {value for one in found for predicate, value in one.profile.properties if predicate == "urn:room"}
+    assert len(found) == 2
+    assert len(rooms) == 1
