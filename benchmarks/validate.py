@@ -4,7 +4,7 @@
 `--full` adds 10,000, `--smoke` does it with 20. pyshacl has every shape of selfconf in one file and is run once for
 each of ten files, which is extrapolated to all of them, and once over one file with everything. Times are of processes,
 start included: the fastest of several for selfconf, one run for pyshacl, which takes minutes. Both must find the same
-files wrong, in the very runs that are timed.
+files wrong, in the very runs that are timed. Memory is that of the largest process. A second table has odd files.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from benchmarks.machine import described, table
 from selfconf import library
@@ -44,23 +46,33 @@ def advertisement(number: int) -> str:
 """
 
 
-def fastest(action: Callable[[], object], times: int) -> float:
-    """Seconds of the fastest of several runs."""
-    seconds = []
-    for _ in range(times):
-        began = time.perf_counter()
-        action()
-        seconds.append(time.perf_counter() - began)
-    return min(seconds)
+class Finished(NamedTuple):
+    """A program that has ended: exit code, output, seconds from start to end, octets at the peak."""
+
+    code: int
+    output: str
+    seconds: float
+    memory: int
 
 
-def run(arguments: Sequence[str], cache: Path) -> tuple[int, str]:
-    """Exit code and output of a Python program."""
+def run(arguments: Sequence[str], cache: Path) -> Finished:
+    """Run a Python program to its end."""
     environment = {**os.environ, "SELFCONF_CACHE_DIR": str(cache)}
-    done = subprocess.run(
-        [sys.executable, "-m", *arguments], capture_output=True, text=True, env=environment, check=False
-    )
-    return done.returncode, done.stdout
+    with tempfile.TemporaryFile() as output:
+        began = time.perf_counter()
+        process = subprocess.Popen(
+            [sys.executable, "-m", *arguments], stdout=output, stderr=subprocess.DEVNULL, env=environment
+        )
+        _, status, usage = os.wait4(process.pid, 0)
+        seconds = time.perf_counter() - began
+        process.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        return Finished(process.returncode, output.read().decode(), seconds, usage.ru_maxrss << 10)
+
+
+def fastest(arguments: Sequence[str], cache: Path, times: int) -> Finished:
+    """The fastest of several runs."""
+    return min((run(arguments, cache) for _ in range(times)), key=lambda done: done.seconds)
 
 
 def measure(number: int, times: int, folder: Path) -> list[list[str]]:
@@ -76,28 +88,53 @@ def measure(number: int, times: int, folder: Path) -> list[list[str]]:
     pyshacl = ["pyshacl", "-s", str(shapes), "-f", "human"]
     listed = sorted(files.iterdir())[-SAMPLE:]
 
-    verdicts = json.loads(run(validate, folder)[1])["diagnostics"]
+    cold = fastest(validate, folder, times)
+    verdicts = json.loads(cold.output)["diagnostics"]
     ours = {Path(found["file"]).name for found in verdicts if found["severity"] == "error"}
-    cold = fastest(lambda: run(validate, folder), times)
     run([*validate, "--cache"], folder)
-    warm = fastest(lambda: run([*validate, "--cache"], folder), times)
+    warm = fastest([*validate, "--cache"], folder, times)
 
-    began = time.perf_counter()
-    theirs = {path.name for path in listed if run([*pyshacl, str(path)], folder)[0]}
-    single = (time.perf_counter() - began) / len(listed) * number
+    single = [run([*pyshacl, str(path)], folder) for path in listed]
+    theirs = {path.name for path, done in zip(listed, single, strict=True) if done.code}
     assert theirs == {path.name for path in listed} & ours, (theirs, ours)
-    began = time.perf_counter()
-    report = run([*pyshacl, str(whole)], folder)[1]
-    batch = time.perf_counter() - began
-    blamed = set(re.findall(r"Focus Node: \S*?c(\d+)\b", report))
+    batch = run([*pyshacl, str(whole)], folder)
+    blamed = set(re.findall(r"Focus Node: \S*?c(\d+)\b", batch.output))
     assert {f"{int(each):05}.ttl" for each in blamed} == ours, (len(blamed), len(ours))
+    seconds = sum(done.seconds for done in single) / len(single) * number
     rows = [
-        ("selfconf validate", cold),
-        ("selfconf validate --cache, nothing changed", warm),
-        ("pyshacl, all in one file", batch),
-        (f"pyshacl, file by file, from {len(listed)} of them", single),
+        ("selfconf validate", cold.seconds, cold.memory),
+        ("selfconf validate --cache, nothing changed", warm.seconds, warm.memory),
+        ("pyshacl, all in one file", batch.seconds, batch.memory),
+        (f"pyshacl, file by file, from {len(listed)} of them", seconds, max(done.memory for done in single)),
     ]
-    return [[f"{number:,}", name, f"{seconds:.2f}", f"{seconds / cold:.1f}"] for name, seconds in rows]
+    return [
+        [f"{number:,}", name, f"{taken:.2f}", f"{taken / cold.seconds:.1f}", f"{memory >> 20:,}"]
+        for name, taken, memory in rows
+    ]
+
+
+def odd(number: int, folder: Path) -> list[list[str]]:
+    """The rows for files that are odd: what they cost besides a good file of the same size."""
+    wrong = "".join(f":c{each} a sc:Component, rob:Tuneer . " for each in range(number))
+    foreign = "".join(
+        f":c{each} a sc:Component, :Kind ; sc:hasOutput [ sc:name 'x' ; sc:signalType <urn:my#S> ] .\n"
+        for each in range(10 * number)
+    )
+    texts = {
+        f"{number:,} warnings on one line": wrong,
+        f"{10 * number:,} components of a foreign signal type": foreign,
+        "a literal of 17 MiB": f':c a sc:Component, :Kind ; :p "{"x" * (17 << 20)}" .',
+        f"a list of {number:,} members": f":c a sc:Component, :Kind ; :p ( {'1 ' * number}) .",
+    }
+    rows = []
+    for name, text in texts.items():
+        path = folder / "odd.ttl"
+        path.write_text(HEAD + text)
+        done = run(["selfconf", "validate", str(path), "--format", "json"], folder)
+        found = json.loads(done.output)["diagnostics"]
+        said = ", ".join(f"{count:,} {code}" for code, count in sorted(Counter(one["code"] for one in found).items()))
+        rows.append([name, said or "nothing", str(done.code), f"{done.seconds:.2f}", f"{done.memory >> 20:,}"])
+    return rows
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -109,9 +146,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     sizes = [20] if given.smoke else [1_000, 10_000] if given.full else [1_000]
     with tempfile.TemporaryDirectory() as folder:
         rows = [row for size in sizes for row in measure(size, 1 if given.smoke else 3, Path(folder))]
+        strange = odd(20 if given.smoke else 8_000, Path(folder))
     print(described("selfconf", "pyshacl", "rdflib", "pyoxigraph"))
     print()
-    print(table(["advertisements", "program", "seconds", "to selfconf validate"], rows))
+    print(table(["advertisements", "program", "seconds", "to selfconf validate", "MiB at the peak"], rows))
+    print()
+    print(table(["odd file", "what is found", "exit code", "seconds", "MiB at the peak"], strange))
     return 0
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import rdflib
 
-from benchmarks.scale import engines, report, worlds
+from benchmarks.scale import engines, report, styles, worlds
 from selfconf.rdf.advertisements import read_advertisements
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -23,6 +23,7 @@ def test_the_short_run_runs() -> None:
     assert done.returncode == 0, done.stderr
     assert "| 200 |" in done.stdout
     assert "each with a label" in done.stdout
+    assert "N-Triples, shuffled" in done.stdout
 
 
 def test_rdflib_reads_the_same_profiles() -> None:
@@ -41,6 +42,18 @@ def test_other_forms_of_an_advertisement_are_advertisements() -> None:
         text = head + "".join(form(text, number) for number, text in enumerate(advertisements))
         good, bad = read_advertisements(text.encode(), "a.ttl")
         assert (len(good), bad) == (20, [])
+
+
+@pytest.mark.parametrize("style", styles.STYLES)
+def test_the_ecology_is_the_same_as_whatever_program_writes_it(style: str) -> None:
+    text = "".join(worlds.ecology(20))
+    plain, _ = read_advertisements(text.encode(), "a.ttl")
+    good, bad = read_advertisements(styles.STYLES[style](text).encode(), "a.ttl")
+    assert not bad
+    found, expected = ({one.component: one.profile for one in ads} for ads in (good, plain))
+    if "store" in style:  # which writes 0.040 as 0.04
+        found, expected = ({c: replace(p, properties=()) for c, p in some.items()} for some in (found, expected))
+    assert found == expected
 
 
 def measured(load: float, refusal: float) -> engines.Found:

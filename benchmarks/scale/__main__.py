@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ from pathlib import Path
 
 from benchmarks.scale.engines import ENGINES, Found
 from benchmarks.scale.report import page
+from benchmarks.scale.styles import STYLES
 from benchmarks.scale.worlds import ecology, labelled, linked, topical, unlike
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "scale.md"
@@ -50,6 +52,13 @@ class Bench:
             (path / f"{number:06}.ttl").write_text(head + text)
         return path
 
+    def styled(self, name: str, size: int, style: Callable[[str], str]) -> Path:
+        """A file with so many advertisements, as some program writes it."""
+        path = self.folder / f"{re.sub('[^a-z]+', '-', name.lower())}.ttl"
+        if not path.exists():
+            path.write_text(style("".join(ecology(size))))
+        return path
+
     def measured(self, engine: str, path: Path, trials: int) -> Found:
         """What an engine measures."""
         kept = self.folder / f"{path.stem}.{engine}.json"
@@ -80,10 +89,13 @@ def measure(bench: Bench, sizes: tuple[int, ...], rdflib_most: int, form_size: i
         "unlike": bench.ecology("unlike", form_size, unlike),
     }
     forms = {form: bench.measured("loading", path, 5) for form, path in paths.items()}
+    styles = {
+        name: bench.measured("loading", bench.styled(name, form_size, style), 5) for name, style in STYLES.items()
+    }
     few, unwanted = crowd
     bench.ecology("unwanted", unwanted, wanted=False)
     crowded = bench.measured("crowd", bench.ecology("wanted", few), 1)
-    return page(rows, forms, form_size, crowded)
+    return page(rows, forms, styles, form_size, crowded)
 
 
 def main() -> int:

@@ -82,6 +82,7 @@ def verdict(met: bool) -> str:
 def page(
     rows: Mapping[int, tuple[Found, Found | None, Found | None]],
     forms: Mapping[str, Found],
+    styles: Mapping[str, Found],
     form_size: int,
     crowded: Found,
 ) -> str:
@@ -90,6 +91,11 @@ def page(
         [FORMS[form], f"{found['load'] / found['parse']:.2f}", f"{found['bytes']:,.0f}"]
         for form, found in forms.items()
     ]
+    written = [
+        [style, f"{found['load'] / found['parse']:.2f}", f"{found['bytes']:,.0f}"] for style, found in styles.items()
+    ]
+    slow = [style for style, found in styles.items() if found["load"] > LOAD * found["parse"]]
+    slower = f" Beyond {LOAD:g} times the parsing: {'; '.join(slow)}." if slow else ""
     worst = [FORMS[form] for form, found in forms.items() if found["load"] > LOAD * found["parse"]]
     beyond = f" Beyond {LOAD:g} times the parsing: {'; '.join(worst)}." if worst else ""
     goals = "\n".join(f"* {line}" for line in judged(rows, crowded))
@@ -121,6 +127,12 @@ Load parses each piece of text once, however many components say it, and pieces 
 once for all of them. So it depends on how much components have in common; {form_size:,} components.{beyond}
 
 {table(("advertisements", "load / parse", "octets each"), formed)}
+
+## By what wrote the file
+
+The same {form_size:,} components as programs write them; the goal is {LOAD:g} times the parsing for each.{slower}
+
+{table(("written by", "load / parse", "octets each"), written)}
 
 {described("pyoxigraph", "rdflib")}
 """
