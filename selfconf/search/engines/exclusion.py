@@ -21,7 +21,7 @@ than slots.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from selfconf.search.engines.matching import HallSet, unmatchable
@@ -62,7 +62,11 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
 
     If components need not be distinct, one component in two roles is no conflict.
     """
-    graph = _Conflicts(reduced, distinct)
+    needs = _fed_by_one(reduced)
+    names = [option.component for options in reduced.options for option in options if option.component]
+    if not needs and (not distinct or len(set(names)) == len(names)):
+        return ExclusiveGroups()
+    graph = _Conflicts(reduced, needs, distinct)
     if not any(graph.across):
         return ExclusiveGroups()
     groups = list(graph.groups())
@@ -77,10 +81,22 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
     )
 
 
+def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
+    """Return for each role with one slot the needs of other roles that it alone can feed."""
+    asked = Counter(reduced.slots)
+    found: dict[int, set[int]] = {}
+    for number, (role, _, sources, _) in enumerate(reduced.needs):
+        if sources and sources[0][0] == sources[-1][0] != role and asked[sources[0][0]] == 1:
+            source = sources[0][0]
+            if len(sources) == 1 or all(other == source for other, _ in sources):
+                found.setdefault(source, set()).add(number)
+    return found
+
+
 class _Conflicts:
     """The graph of conflicts between options; sets of options are masks."""
 
-    def __init__(self, reduced: ReducedProblem, distinct: bool) -> None:
+    def __init__(self, reduced: ReducedProblem, needs: Mapping[int, set[int]], distinct: bool) -> None:
         self.reduced = reduced
         self.options: list[Option] = [option for options in reduced.options for option in options]
         self.asked = Counter(reduced.slots)
@@ -89,37 +105,31 @@ class _Conflicts:
         self.across = [0] * len(self.options)
         """For each option the options of other roles that it excludes."""
         self.stated: set[int] = set()
-        self._by_needs()
+        self._by_needs(needs)
         if distinct:
             self._by_components()
 
-    def _by_needs(self) -> None:
-        having: dict[int, int] = {}
+    def _by_needs(self, fed_by: Mapping[int, set[int]]) -> None:
+        having: dict[int, list[int]] = {need: [] for needs in fed_by.values() for need in needs}
         for number, option in enumerate(self.options):
             for need in option.kind.needs:
-                having[need] = having.get(need, 0) | 1 << number
-        fed_by: dict[int, set[int]] = {}
-        for need in having:
-            wanted = self.reduced.needs[need]
-            sources = {source for source, _ in wanted.sources} or {wanted.role}
-            source = min(sources)
-            if len(sources) == 1 and source != wanted.role and self.asked[source] == 1:
-                fed_by.setdefault(source, set()).add(need)
+                if need in having:
+                    having[need].append(number)
         left = CONFLICTS_PER_OPTION * len(self.options)
         for source, needs in fed_by.items():
             lacking = self._lacking(source, needs)
             few = max(1, len(self.reduced.options[source]) // SHARE_UNFIT)
-            for need in needs:
-                numbers = lacking.get(need, ())
+            self.stated |= needs - lacking.keys()
+            for need, numbers in lacking.items():
                 left -= len(numbers)
                 if len(numbers) > few or left < 0:
                     continue
                 self.stated.add(need)
-                have, lack = having[need], 0
+                have = having[need]
+                lack, need_it = _mask(numbers), _mask(have)
                 for number in numbers:
-                    self.across[number] |= have
-                    lack |= 1 << number
-                for number in _bits(have):
+                    self.across[number] |= need_it
+                for number in have:
                     self.across[number] |= lack
 
     def _lacking(self, source: int, needs: set[int]) -> dict[int, list[int]]:
@@ -252,6 +262,13 @@ class _Counting:
             self.excluded |= shares[name] & graph.of_role[role]
         if len(slots) == len(shares):
             self.played += shares.values()
+
+
+def _mask(numbers: Sequence[int]) -> int:
+    mask = 0
+    for number in numbers:
+        mask |= 1 << number
+    return mask
 
 
 def _masks(roles: Sequence[int], number: int) -> list[int]:
