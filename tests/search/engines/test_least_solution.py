@@ -1,0 +1,114 @@
+"""The engines that take turns, or work beside each other, find the least solution, whichever of them settles what."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from benchmarks.search.further_families import cover, queens
+from selfconf.search.budget import Budget
+from selfconf.search.engines import least_solution
+from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses
+from selfconf.search.engines.rival import Rival
+from selfconf.search.problem import Problem
+from selfconf.search.reduction import pruned, reduced
+from tests.effort import examples
+from tests.search.comparison import least_numbers, numbers
+from tests.search.worlds import agreement, problems, rivalries
+
+pytest.importorskip("pysat")
+
+
+@given(st.one_of(problems(), rivalries()))
+@agreement()
+def test_solvers_that_take_turns_find_the_least_solution(problem: Problem) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(least_solution, "ALONE", 1)
+        assert numbers(least_by_clauses(reduced(problem), Budget(100_000))) == least_numbers(problem)
+
+
+@pytest.mark.process
+@given(st.one_of(problems(), rivalries()))
+@settings(agreement(0.1), max_examples=examples(30), suppress_health_check=list(HealthCheck))
+def test_a_rival_that_does_all_the_work_finds_the_least_solution(problem: Problem) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(least_solution, "ALONE", 0)
+        patch.setattr(Rival, "available", staticmethod(lambda: True))
+        patch.setattr(least_solution._Descent, "_ask", lambda *_: time.sleep(0))
+        assert numbers(least_by_clauses(reduced(problem), Budget())) == least_numbers(problem)
+
+
+@pytest.mark.process
+def test_what_both_settle_by_turns_is_the_same_as_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    for problem in (queens(14, 1, 3), cover(30, 24, 6, 0.25, 1)):
+        alone = numbers(least_by_clauses(pruned(reduced(problem)), Budget()))
+        monkeypatch.setattr(least_solution, "ALONE", 1)
+        monkeypatch.setattr(least_solution, "BESIDE", 20)
+        assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == alone
+        assert any_by_clauses(pruned(reduced(problem)), Budget()) is not None
+
+
+def test_a_budget_of_steps_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(least_solution, "ALONE", 1)
+    monkeypatch.setattr(subprocess, "Popen", None)
+    assert least_by_clauses(pruned(reduced(queens(10, 1, 2))), Budget(100_000))
+
+
+SEARCHING = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background ignores it
+from benchmarks.search.families import satisfiability
+from selfconf.search.budget import Budget
+from selfconf.search.engines import least_solution, rival
+from selfconf.search.reduction import reduced
+least_solution.ALONE = 1
+popen = rival.subprocess.Popen
+def started(*arguments, **options):
+    process = popen(*arguments, **options)
+    print(process.pid, flush=True)
+    return process
+rival.subprocess.Popen = started
+least_solution.least_by_clauses(reduced(satisfiability(400, 4.26, 1)), Budget())
+"""
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL], ids=lambda number: number.name)
+def test_the_rival_ends_with_the_search(number: signal.Signals) -> None:
+    root = Path(__file__).resolve().parents[3]
+    command = [
+        sys.executable,
+        "-c",
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)" + SEARCHING,
+    ]
+    with subprocess.Popen(command, cwd=root, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as search:
+        assert search.stdout is not None
+        rival = int(search.stdout.readline())
+        search.send_signal(number)
+        search.wait(30)
+        deadline = time.monotonic() + 60
+        while _lives(rival):
+            assert time.monotonic() < deadline
+            os.sched_yield()
+
+
+def _lives(process: int) -> bool:
+    try:
+        return "Z" not in Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    except FileNotFoundError:
+        return False
+    except ProcessLookupError:
+        return False
+
+
+def test_without_a_processor_to_spare_there_is_no_rival(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
+    assert not Rival.available()
