@@ -9,6 +9,8 @@ of the values that it admits, or none of those that it does not admit.
 *Groups.* Where options exclude each other (`exclusion`), one bound for each group says so, in place of the needs from
 which that follows; and what counting the groups has proved is added.
 
+*Order.* Where only the least solution is asked for, or any, interchangeable roles are played in order (`symmetry`).
+
 *Guards.* Each constraint may have a literal that puts it in force, to be assumed: the solver then names assumptions
 that cannot hold together, an unsatisfiable core. A role that is not in force may still be played, so that fewer
 constraints in force never make less possible. There are no groups then, as each follows from many constraints.
@@ -22,6 +24,7 @@ from typing import NamedTuple
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.search.engines.exclusion import ExclusiveGroups, exclusive_groups
+from selfconf.search.engines.symmetry import interchangeable
 from selfconf.search.reduction import Constraint, Distinct, Fed, Played, ReducedProblem, Shared
 
 
@@ -36,7 +39,9 @@ class AtMost(NamedTuple):
 class Encoding:
     """The clauses and bounds of a reduced problem; literals are numbered from one."""
 
-    def __init__(self, reduced: ReducedProblem, guarded: bool = False, distinct: bool = True) -> None:
+    def __init__(
+        self, reduced: ReducedProblem, guarded: bool = False, distinct: bool = True, ordered: bool = False
+    ) -> None:
         self.reduced = reduced
         self.top = 0
         """The highest literal so far."""
@@ -56,6 +61,9 @@ class Encoding:
         self._needs(groups.stated)
         self._values()
         self._groups(groups)
+        if ordered:
+            for first, second in interchangeable(reduced):
+                self._ascending(self.plays[first], self.plays[second])
 
     def literal(self) -> int:
         """Return a new literal."""
@@ -159,6 +167,15 @@ class Encoding:
             for k in range(width):
                 if not mask >> k & 1:
                     self.clauses.append([*force, -literal, -values[k]])
+
+    def _ascending(self, first: Sequence[int], second: Sequence[int]) -> None:
+        """Let the option of one role come before that of another one; one of each plays."""
+        before: int | None = None
+        for earlier, later in zip(first, second, strict=True):
+            self.clauses.append([-later] if before is None else [-later, before])
+            reached = self.literal()
+            self.clauses.append([-reached, earlier] if before is None else [-reached, earlier, before])
+            before = reached
 
     def _groups(self, known: ExclusiveGroups) -> None:
         if known.impossible:

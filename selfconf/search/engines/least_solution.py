@@ -95,7 +95,7 @@ class _Descent:
 
     def run(self) -> list[Option] | Undecided | None:
         """Return the solution, None if there is none, or Undecided when the budget ends."""
-        encoding = Encoding(self.reduced)
+        encoding = Encoding(self.reduced, ordered=True)
         self.plays = encoding.plays
         with ExitStack() as stack:
             turns = [_Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))]
