@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -24,7 +25,7 @@ from zenoh.handlers import Callback
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.bus.zenoh_relay import Hub, Relay
-from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, open_session
+from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, open_session
 from selfconf.errors import NetworkError
 
 log = logging.getLogger(__name__)
@@ -64,14 +65,19 @@ def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = (), othe
     return bus
 
 
-def client(connect: Sequence[str], seconds: float = 5.0) -> ZenohBus:
+def client(connect: Sequence[str], seconds: float = 4.0) -> ZenohBus:
     """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers.
 
-    Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one.
+    Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one. Where nothing
+    listens it is tried again for that long, as a site may be about to; what listens and stays silent is no site.
     """
+    began = time.monotonic()
     try:
         return ZenohBus(open_session("client", connect=connect))
     except NetworkError:
+        if time.monotonic() - began > HANDSHAKE_MS / 1000:
+            where = ", ".join(connect)
+            raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
         return ZenohBus(open_session("client", connect=connect, connect_seconds=seconds))
 
 

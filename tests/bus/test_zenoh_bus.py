@@ -37,6 +37,14 @@ def test_a_client_without_an_answer_says_where_it_has_asked() -> None:
         client([endpoint], seconds=0.2)
 
 
+def test_what_listens_and_stays_silent_is_no_site() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        began = time.monotonic()
+        with pytest.raises(NetworkError, match="stays silent"):
+            client([f"tcp/127.0.0.1:{silent.getsockname()[1]}"])
+        assert time.monotonic() - began < 5.0
+
+
 def test_a_router_on_an_endpoint_that_is_taken_says_which(zenoh_router: ZenohBus) -> None:
     with pytest.raises(NetworkError, match=f"cannot listen on {zenoh_router.endpoint}"):
         router(zenoh_router.endpoint)
