@@ -3,19 +3,23 @@
 Discovery is acts 1 and 2 of the paper (section 2.4). It asks liveliness which sites there are, asks them all for their
 advertisements, and ends when all have answered, or at the time-out, with the names of those that did not. An answer is
 checked for completeness, n of n, because the network does not report a site that dies in the middle of its answer.
+
+Answers are told apart by the *life* of the site and not by its name: where two sites have one name, both are read, and
+lists name both. What a site has answered is remembered; asked again, it is told which revision is known, and replies
+only that this is still the one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode
+from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, component_chunk, life_of, owner_of, site_of
-from selfconf.protocol.messages import Page
+from selfconf.protocol.messages import Known, Page
 from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
 
@@ -35,6 +39,8 @@ class FoundAdvertisement:
     site: str
     source: str
     startable: bool
+    site_life: str = ""
+    """Which life of the site has answered."""
 
 
 @dataclass(slots=True)
@@ -43,13 +49,44 @@ class Discovery:
 
     found: dict[IRI, FoundAdvertisement] = field(default_factory=dict)
     sites: tuple[str, ...] = ()
-    """Every site that lives or has answered, sorted."""
+    """Every site that lives or has answered, sorted; one whose name another has as well is named with its life."""
     missing: tuple[str, ...] = ()
     """The sites that did not answer, or not in full: what they advertise may be missing from `found`. Sorted."""
     site_tokens: frozenset[str] = frozenset()
     """The liveliness keys of the sites at the roll-call: which life of which site was asked."""
+    answered: frozenset[str] = frozenset()
+    """Those of them whose sites have answered in full."""
     complaints: list[str] = field(default_factory=list)
     """What was left out, and why, in sentences."""
+
+
+SiteLife = tuple[str, str]
+"""A site by its name and its life; the life is empty for a site of before that does not say it."""
+
+
+@dataclass(frozen=True, slots=True)
+class KnownSite:
+    """What a site has answered in full: at which revision, how many pages, and what was read in them."""
+
+    revision: int
+    total: int
+    found: tuple[FoundAdvertisement, ...]
+    complaints: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class _SiteAnswer:
+    """What has come of a site's answer so far."""
+
+    revision: int
+    total: int
+    pages: dict[int, tuple[Page, Sample]] = field(default_factory=dict)
+    unchanged: bool = False
+    """Whether the site has said that what is known of it still holds."""
+
+    @property
+    def complete(self) -> bool:
+        return self.unchanged or len(self.pages) == self.total
 
 
 class EcologyView:
@@ -60,6 +97,8 @@ class EcologyView:
         self.lives: dict[str, tuple[str, ...]] = {}
         """The lives of each living component, sorted, by the component's chunk: more than one where processes clash."""
         self.discovery = Discovery()
+        self.known: dict[SiteLife, KnownSite] = {}
+        """What the sites that live have answered before."""
         self._followed = False
         self._undo: list[Undo] = []
 
@@ -119,9 +158,9 @@ class _Inquiry:
     def __init__(self, ecology: EcologyView, done: Callable[[Discovery], None]) -> None:
         self.ecology, self.bus, self.keys, self._done = ecology, ecology.bus, ecology.keys, done
         self._tokens: tuple[str, ...] = ()
-        self._sites: tuple[str, ...] = ()
-        self._pages: dict[str, dict[int, tuple[Page, Sample]]] = {}
-        self._expected: dict[str, tuple[int, int]] = {}
+        self._lives: dict[str, set[str]] = {}
+        """The lives of the sites at the roll-call, by their names."""
+        self._answers: dict[SiteLife, _SiteAnswer] = {}
         self._complaints: list[str] = []
         self._attempt = 0
         self._segments = advertisements.SegmentCache()
@@ -142,55 +181,91 @@ class _Inquiry:
         self.bus.roll_call(self.keys.any_site_life(), DISCOVERY, self._called)
 
     def _called(self, keys: tuple[str, ...]) -> None:
-        self._tokens, self._sites = keys, tuple(sorted({owner_of(key) for key in keys}))
+        self._tokens = keys
+        for key in keys:
+            self._lives.setdefault(owner_of(key), set()).add(life_of(key))
         self._ask("*")
 
     def _ask(self, site: str) -> None:
         self._attempt += 1
-        self.bus.ask(self.keys.advertisements(site), b"", DISCOVERY, self._replied)
+        known = Known({f"{name}/{life}": known.revision for (name, life), known in self.ecology.known.items() if life})
+        self.bus.ask(self.keys.advertisements(site), encode(known), DISCOVERY, self._replied)
 
     def _replied(self, replies: Replies) -> None:
         for sample in replies.samples:
             self._take(sample)
-        # A site may begin to answer and die, or begin to live after the roll-call: pages count as much as a token.
-        incomplete = [site for site in sorted({*self._sites, *self._pages}) if not self._complete(site)]
+        incomplete = [site for site in self._sites() if site not in self._answers or not self._answers[site].complete]
         if incomplete and self._attempt < DISCOVERY_ATTEMPTS and replies.complete:
-            self._ask(incomplete[0] if len(incomplete) == 1 else "*")
+            self._ask(incomplete[0][0] if len(incomplete) == 1 else "*")
         else:
-            self._done(self._result(tuple(incomplete)))
+            self._done(self._result(incomplete))
+
+    def _sites(self) -> list[SiteLife]:
+        """Every site; one may begin to answer and die, or begin to live after the roll-call: a page is as a token."""
+        called = {(name, life) for name, lives in self._lives.items() for life in lives}
+        return sorted(called | self._answers.keys())
 
     def _take(self, sample: Sample) -> None:
         try:
-            page, site = decode(sample.attachment, Page), site_of(sample.key)
+            page, name = decode(sample.attachment, Page), site_of(sample.key)
         except PeerError as error:
             self._complaints.append(f"a reply on {sample.key} is none: {error}")
             return
-        expected = (page.revision, page.total)
-        if self._expected.get(site, expected) != expected and self._expected[site][0] > page.revision:
+        lives = self._lives.get(name, set())
+        site = name, page.life or (next(iter(lives)) if len(lives) == 1 else "")
+        answer = self._answers.get(site)
+        if answer is not None and answer.revision > page.revision:
             return
-        if self._expected.get(site) != expected:
-            self._expected[site], self._pages[site] = expected, {}
-        if page.component is not None:
-            self._pages[site][page.index] = page, sample
+        if answer is None or (answer.revision, answer.total) != (page.revision, page.total):
+            answer = self._answers[site] = _SiteAnswer(page.revision, page.total)
+        known = self.ecology.known.get(site)
+        if page.component is None:
+            answer.unchanged = known is not None and (known.revision, known.total) == (page.revision, page.total)
+            return
+        before = answer.pages.setdefault(page.index, (page, sample))
+        if before[0].component != page.component:
+            self._complaints.append(
+                f"left out {page.component} of site {name}: its page {page.index} is that of {before[0].component}"
+            )
 
-    def _complete(self, site: str) -> bool:
-        return site in self._expected and len(self._pages[site]) == self._expected[site][1]
-
-    def _result(self, missing: tuple[str, ...]) -> Discovery:
+    def _result(self, missing: list[SiteLife]) -> Discovery:
         found: dict[IRI, FoundAdvertisement] = {}
-        for site in sorted(self._pages):
-            for _, (page, sample) in sorted(self._pages[site].items()):
-                advertisement = self._advertisement(site, page, sample.payload)
-                if advertisement is None:
-                    continue
-                component = advertisement.profile.component
+        read = {site: self._read(site, answer) for site, answer in sorted(self._answers.items())}
+        self.ecology.known = {site: known for site, known in read.items() if site not in missing}
+        names = _Names(self._sites())
+        for site, known in read.items():
+            self._complaints += known.complaints
+            for one in known.found:
+                component = one.advertisement.profile.component
                 if component in found:
-                    other = found[component].site
-                    self._complaints.append(f"left out {component} of site {site}: site {other} advertises it too")
+                    other = names.of((found[component].site, found[component].site_life))
+                    text = f"left out {component} of site {names.of(site)}: site {other} advertises it too"
+                    self._complaints.append(text)
                 else:
-                    found[component] = FoundAdvertisement(advertisement, site, page.source, page.startable)
-        sites = tuple(sorted({*self._sites, *self._pages}))
-        return Discovery(found, sites, missing, frozenset(self._tokens), self._complaints)
+                    found[component] = one
+        self._complaints += names.complaints()
+        answered = frozenset(key for key in self._tokens if (owner_of(key), life_of(key)) not in missing)
+        return Discovery(
+            found,
+            tuple(map(names.of, self._sites())),
+            tuple(map(names.of, missing)),
+            frozenset(self._tokens),
+            answered,
+            self._complaints,
+        )
+
+    def _read(self, site: SiteLife, answer: _SiteAnswer) -> KnownSite:
+        """What a site has answered, now or before."""
+        if answer.unchanged:
+            return self.ecology.known[site]
+        complaints, self._complaints = self._complaints, []
+        found = []
+        for _, (page, sample) in sorted(answer.pages.items()):
+            advertisement = self._advertisement(site[0], page, sample.payload)
+            if advertisement is not None:
+                found.append(FoundAdvertisement(advertisement, site[0], page.source, page.startable, site[1]))
+        said, self._complaints = self._complaints, complaints
+        return KnownSite(answer.revision, answer.total, tuple(found), tuple(said))
 
     def _advertisement(self, site: str, page: Page, payload: bytes) -> Advertisement | None:
         """The advertisement in a reply, which is untrusted: there must be one, of the component that its page names."""
@@ -209,3 +284,25 @@ class _Inquiry:
         if len(mine) != 1 and not bad:
             self._complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
         return mine[0] if len(mine) == 1 else None
+
+
+class _Names:
+    """What sites are called in lists: by their names, and by their lives where several have one name."""
+
+    def __init__(self, sites: Sequence[SiteLife]) -> None:
+        self._lives: dict[str, list[str]] = {}
+        for name, life in sites:
+            self._lives.setdefault(name, []).append(life)
+
+    def of(self, site: SiteLife) -> str:
+        """The name of a site that tells it from all others."""
+        name, life = site
+        return name if len(self._lives.get(name, ())) < 2 else f"{name} ({life or 'no life given'})"
+
+    def complaints(self) -> list[str]:
+        """A sentence for each name that several sites have."""
+        return [
+            f"{len(lives)} sites are called {name}: {', '.join(self.of((name, life)) for life in lives)}"
+            for name, lives in sorted(self._lives.items())
+            if len(lives) > 1
+        ]

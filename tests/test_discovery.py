@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.memory import Faults, Network
+from selfconf.bus.memory import Faults, Network, _Request
 from selfconf.bus.port import Request
 from selfconf.discovery import DISCOVERY, LARGEST_ADVERTISEMENT, Discovery, EcologyView
 from selfconf.model.term import IRI
@@ -114,6 +114,60 @@ def test_another_ecology_is_not_found(field: Field) -> None:
     write_advertisements(field.folder / "other", "tracker")
     Site(field.network.node(), "other", "other", Shelf([field.folder / "other"], print))
     assert field.discover() == Discovery()
+
+
+# Sites of one name, and sites that were asked before.
+
+
+def test_two_sites_of_one_name_are_both_read_and_both_named(field: Field) -> None:
+    field.site("home", "tracker")
+    (field.folder / "other").mkdir()
+    shelf = Shelf([write_advertisements(field.folder / "other", "drive")], print)
+    other = Site(field.network.node(), "lab", "home", shelf, life="other")
+    discovery = field.discover()
+    assert {component.short for component in discovery.found} == {"person-tracker", "astrid-drive"}
+    assert len(discovery.sites) == 2
+    assert f"home ({other.life})" in discovery.sites
+    assert discovery.missing == ()
+    assert any("2 sites are called home" in complaint for complaint in discovery.complaints)
+
+
+def test_a_site_is_not_read_again_as_long_as_its_advertisements_are_the_same(
+    field: Field, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = field.site("living-room", "tracker")
+    field.site("astrid", "drive", "pippi")
+    replied: list[str] = []
+    reply = _Request.reply
+
+    def counted(request: _Request, key: str, payload: bytes, attachment: bytes = b"") -> None:
+        replied.append(key)
+        reply(request, key, payload, attachment)
+
+    monkeypatch.setattr(_Request, "reply", counted)
+    first = field.discover()
+    assert len(replied) == 3
+    again = field.discover()
+    assert (again.found, again.sites, again.missing) == (first.found, first.sites, ())
+    assert len(replied) == 3 + 2
+    write_advertisements(field.folder / "living-room", "tracker", "sonar")
+    field.network.run(lambda: len(site.shelf.advertisements) == 2, 5.0)
+    assert iri("sonar-array") in field.discover().found
+    assert len(replied) == 3 + 2 + 1 + 2
+
+
+def test_two_pages_of_one_number_are_not_both_passed_over(field: Field) -> None:
+    def answer(request: Request) -> None:
+        for name in ("tracker", "drive"):
+            component = iri({"tracker": "person-tracker", "drive": "astrid-drive"}[name])
+            page = encode(Page(0, 1, 1, component, "x.ttl"))
+            payload = (PREFIXES + ADVERTISEMENTS[name]).encode()
+            request.reply(KEYS.advertisement("liar", component), payload, page)
+
+    field.stranger("liar", answer)
+    discovery = field.discover()
+    assert list(discovery.found) == [TRACKER]
+    assert any("astrid-drive" in complaint for complaint in discovery.complaints)
 
 
 # Sites that do not answer, or not in full.

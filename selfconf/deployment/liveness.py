@@ -76,7 +76,7 @@ class Liveness:
     def discovered(self, discovery: Discovery) -> None:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
         self._names.update((component_chunk(component), component) for component in discovery.found)
-        self._sites.update(key for key in discovery.site_tokens if owner_of(key) not in discovery.missing)
+        self._sites.update(discovery.answered)
         if not self.ecology.followed:
             self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
             self.bus.later(SETTLING, self._end_unseen)

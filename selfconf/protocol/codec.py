@@ -22,6 +22,7 @@ from selfconf.protocol.messages import (
     End,
     Fail,
     Free,
+    Known,
     Message,
     Page,
     Release,
@@ -46,6 +47,7 @@ KINDS: dict[type, str] = {
     Free: "free",
     Wake: "wake",
     End: "end",
+    Known: "known",
     Page: "page",
     Stamp: "stamp",
     Status: "status",
@@ -207,6 +209,10 @@ def _values(value: object) -> dict[str, Term]:
     return {_name(name): decode_term(item) for name, item in _object(value).items()}
 
 
+def _revisions(value: object) -> dict[str, int]:
+    return {_name(site): _whole(revision) for site, revision in _object(value).items()}
+
+
 def _iris(value: object) -> tuple[IRI, ...]:
     return tuple(_iri(item) for item in _list(value))
 
@@ -253,6 +259,8 @@ _READERS: dict[tuple[type, str], Any] = {
     (Page, "component"): _maybe_iri,
     (Page, "source"): _text,
     (Page, "startable"): _truth,
+    (Page, "life"): _text,
+    (Known, "revisions"): _revisions,
     (Stamp, "sequence"): _whole,
     (Stamp, "time"): _number,
     (Status, "configurator"): _text,

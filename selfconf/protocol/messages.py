@@ -182,6 +182,20 @@ class Page:
     component: IRI | None = None
     source: str = ""
     startable: bool = False
+    life: str = ""
+    """Which life of the site replies: another one may have its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What goes with the question for advertisements: which revision of which site the asker knows already.
+
+    A site of which that is the present one replies one page without a component, that says the revision and how many
+    there are.
+    """
+
+    revisions: Mapping[str, int] = field(default_factory=dict)
+    """By the name and the life of the site, with a slash between."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,5 +259,18 @@ class TaskRecord:
 
 
 Message = (
-    Reserve | Apply | Release | StateOf | CallAnswer | Fail | Free | Wake | End | Page | Stamp | Status | TaskRecord
+    Reserve
+    | Apply
+    | Release
+    | StateOf
+    | CallAnswer
+    | Fail
+    | Free
+    | Wake
+    | End
+    | Known
+    | Page
+    | Stamp
+    | Status
+    | TaskRecord
 )

@@ -17,7 +17,7 @@ from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
-from selfconf.protocol.messages import End, Page, Wake
+from selfconf.protocol.messages import End, Known, Page, Wake
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import ntriples
 from selfconf.site.processes import ComponentProcesses, Started, cannot_start, started_once
@@ -53,6 +53,7 @@ class Site:
         shelf: Shelf,
         environment: Mapping[str, str] | None = None,
         log_path: Path | None = None,
+        life: str = "",
     ) -> None:
         """`environment` is what a started component finds its ecology by; None: this site starts none.
 
@@ -60,6 +61,8 @@ class Site:
         """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
         self.processes = ComponentProcesses(bus, self.keys, environment, log_path)
+        self.life = life or secrets.token_hex(4)
+        """Which life of the site this is: another site may have its name."""
         self._revision = 1
         shelf.refresh()
         self._served: list[_ServedAdvertisement] = []
@@ -68,7 +71,7 @@ class Site:
         bus.serve(self.keys.advertisements(name), self._answer)
         bus.serve(self.keys.wake(name), self._wake)
         bus.serve(self.keys.end(name), self._end)
-        bus.announce(self.keys.site_life(name, secrets.token_hex(4)))  # last: from now on it is asked
+        bus.announce(self.keys.site_life(name, self.life))  # last: from now on it is asked
         self._look()
 
     def close(self) -> None:
@@ -123,14 +126,22 @@ class Site:
         """Reply the advertisements, each with its page: the asker counts them, n of n."""
         try:
             total = len(self._served)
+            if total == 0 or self._is_known(request.payload):
+                page = Page(0, total, self._revision, life=self.life)
+                request.reply(self.keys.advertisements(self.name).replace("**", "none"), b"", encode(page))
+                return
             for index, one in enumerate(self._served):
-                page = Page(index, total, self._revision, one.component, one.source, one.startable)
+                page = Page(index, total, self._revision, one.component, one.source, one.startable, self.life)
                 request.reply(one.key, one.payload, encode(page))
-            if not total:
-                empty = Page(0, 0, self._revision)
-                request.reply(self.keys.advertisements(self.name).replace("**", "none"), b"", encode(empty))
         finally:
             request.finish()
+
+    def _is_known(self, payload: bytes) -> bool:
+        """Whether the asker knows the present advertisements; one of before says nothing about it."""
+        try:
+            return decode(payload, Known).revisions.get(f"{self.name}/{self.life}") == self._revision
+        except PeerError:
+            return False
 
     def _end(self, request: Request) -> None:
         """End the process of a component, and reply once it is gone."""
