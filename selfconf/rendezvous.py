@@ -162,6 +162,15 @@ def leave(path: Path) -> None:
         return
 
 
+def _is_the_same(site: LocalSite, path: Path) -> bool:
+    """Whether the process of that number is the one that has written the file, and not a later one."""
+    began = start_time(site.process)
+    if site.started or not began:
+        return site.started in ("", began)
+    since_boot = time.clock_gettime(time.CLOCK_BOOTTIME) - int(began) / os.sysconf("SC_CLK_TCK")
+    return time.time() - since_boot < path.stat().st_mtime + 1.0  # it began before the file was written
+
+
 def local_sites(ecology: str | None = None) -> list[LocalSite]:
     """The sites that run on this machine, of one ecology or of all, sorted."""
     found: list[LocalSite] = []
@@ -171,7 +180,7 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
     for path in sorted(root.glob("*.json")):
         try:
             site = LocalSite(**json.loads(path.read_text()))
-            living = alive(int(site.process)) and site.started in ("", start_time(site.process))
+            living = alive(int(site.process)) and _is_the_same(site, path)
         except (OSError, ValueError, TypeError):
             continue
         if not living:

@@ -99,6 +99,16 @@ def test_a_site_that_does_not_say_when_its_process_began_is_known_by_its_number(
     assert rendezvous.local_sites() == [meeting()]
 
 
+def test_a_file_that_is_older_than_the_process_of_its_number_is_that_of_another_process() -> None:
+    path = rendezvous.announce(meeting())
+    body = json.loads(path.read_text())
+    del body["started"]
+    path.write_text(json.dumps(body))
+    os.utime(path, (1e9, 1e9))
+    assert rendezvous.local_sites() == []
+    assert not path.exists()
+
+
 def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
     path = rendezvous.announce(meeting(process=dead_process()))
     assert rendezvous.local_sites() == []

@@ -24,12 +24,17 @@ from selfconf.bus.zenoh_bus import ZenohBus, client, router
 from selfconf.bus.zenoh_relay import Hub
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK
 from selfconf.errors import NetworkError
+from selfconf.protocol.keys import Keys
 from selfconf.rendezvous import LocalSite
 
 HASTE = 0.05
 """Seconds within which, by chance, a site that has lost its hub looks whether there is a place to take."""
 LOOK_AGAIN = 0.2
 """Seconds after which a site that still has no hub looks again."""
+NAMESAKE = 1.0
+"""Seconds that the network may take to say whether another site has the same name."""
+MEETING = 0.6
+"""Seconds that it may take to see the sites of other hosts after connecting to them."""
 STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
 HUNG = 0.5
@@ -62,6 +67,20 @@ class Joining:
     def endpoints(self) -> list[str]:
         """Where a component of this site looks for a hub: where the site is reached first."""
         return list(dict.fromkeys([self.endpoint, *self._usual]))
+
+    def namesake(self) -> str:
+        """The life of another site of this name, if one is seen in the ecology; empty if not."""
+        deadline = self.bus.now() + (MEETING if self._elsewhere else 0.0)  # over an uplink others are seen only later
+        while not (lives := self._lives_of_name()) and self.bus.now() < deadline:
+            self.bus.poll(0.05)
+        return lives[0].rpartition("/")[2] if lives else ""
+
+    def _lives_of_name(self) -> tuple[str, ...]:
+        heard: list[tuple[str, ...]] = []
+        self.bus.roll_call(Keys(self._ecology).site_life(self._name, "*"), NAMESAKE, heard.append)
+        deadline = self.bus.now() + 2 * NAMESAKE
+        self.bus.run(lambda: bool(heard) or self.bus.now() > deadline)
+        return heard[0] if heard else ()
 
     def announce(self) -> None:
         """Write down for others on this machine where this site is reached. Raises NetworkError."""

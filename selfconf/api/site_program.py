@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import platform
+import re
 import secrets
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -13,8 +16,8 @@ from selfconf.api.joining import Joining
 from selfconf.api.reading import existing
 from selfconf.api.run import WorkQueue
 from selfconf.deployment import Keeper, TaskFolder
-from selfconf.errors import AuthorError
-from selfconf.protocol.keys import checked_name
+from selfconf.errors import AuthorError, NetworkError
+from selfconf.protocol.keys import checked_name, life_of
 from selfconf.render import count
 from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
@@ -52,13 +55,16 @@ def serve(
     with rendezvous.turn():
         joining = Joining(ecology, name, listen, connect)
         bus = joining.bus
+        _refuse_taken(name, ecology, joining)
+        life = f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}"
         ended = Termination(bus)
         work = WorkQueue()
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints))
-        site = Site(bus, ecology, name, shelf, environment, _log_path(log, ecology, name))
+        site = Site(bus, ecology, name, shelf, environment, _log_path(log, ecology, name), life)
         keeper = Keeper(bus, ecology, name, records, partial(request_of, aside=work.work))
         joining.announce()
+        bus.watch(site.keys.site_life(name, "*"), partial(_met, complain, site))
     served = count(len(site.shelf.advertisements), "advertisement")
     complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}")
     bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
@@ -69,6 +75,36 @@ def serve(
         joining.leave()
         bus.wake_up(keeper.close)
         site.close()
+
+
+_HOST = re.sub(r"[^A-Za-z0-9-]", "-", platform.node())[:32] or "unknown"
+"""This host, as a part of the life of a site: so others can say who has a name."""
+
+
+def _refuse_taken(name: str, ecology: str, joining: Joining) -> None:
+    """Raise NetworkError if another site of this name lives in the ecology: commands would take one for the other."""
+    try:
+        life = joining.namesake()
+        if life:
+            raise NetworkError(
+                f"a site {name!r} of ecology {ecology!r} lives already, {_whose(life)}; choose another name"
+            )
+    except BaseException:
+        joining.bus.close()
+        raise
+
+
+def _met(complain: Callable[[str], None], site: Site, key: str, alive: bool) -> None:
+    """Say that another site of the same name has come: the two have met only now."""
+    life = life_of(key)
+    if alive and life != site.life:
+        complain(f"another site is called {site.name} as well, {_whose(life)}; give one of them another name")
+
+
+def _whose(life: str) -> str:
+    """Whose life it is, in words."""
+    parts = life.split(".", 2)
+    return f"process {parts[1]} on host {parts[2]}" if len(parts) == 3 else f"life {life}"
 
 
 def _log_path(folder: Path | None, ecology: str, name: str) -> Path:

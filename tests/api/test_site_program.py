@@ -100,3 +100,30 @@ def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(
     somebody_else.close()
     assert site.end() == 0
     assert site.complaints.count("\n") == 1
+
+
+@pytest.mark.process
+def test_a_second_site_of_a_name_does_not_start_and_says_who_has_it(home: Home, tmp_path: Path) -> None:
+    first = home.site("a", "ads/tracker.ttl")
+    elsewhere = {**home.environment, "SELFCONF_RUNTIME_DIR": str(tmp_path / "elsewhere")}  # as on another host
+    home.environment, here = elsewhere, home.environment
+    arguments = "--ecology", home.ecology, "--name", "a", "--connect", home.endpoint("a")
+    second = home.selfconf("site", "ads/drive.ttl", *arguments)
+    assert second.ended() == 2
+    assert f"a site 'a' of ecology {home.ecology!r} lives already, process {first.number} on host" in second.complaints
+    assert second.complaints.count("\n") == 1
+    home.environment = here
+
+
+@pytest.mark.process
+def test_two_sites_of_a_name_that_meet_later_say_so(home: Home, tmp_path: Path) -> None:
+    first = home.site("a", "ads/tracker.ttl")
+    home.environment, here = {**home.environment, "SELFCONF_RUNTIME_DIR": str(tmp_path / "elsewhere")}, home.environment
+    second = home.selfconf("site", "ads/drive.ttl", "--ecology", home.ecology, "--name", "a")
+    assert home.until(lambda: " on tcp/" in second.complaints)
+    there = second.complaints.rpartition(" on ")[2].strip()
+    home.environment = here
+    bridge = home.site("bridge", "ads/pippi.ttl", connect=(there,))
+    assert home.until(lambda: f"as well, process {second.number} on host" in first.complaints)
+    assert home.until(lambda: f"as well, process {first.number} on host" in second.complaints)
+    assert not bridge.over
