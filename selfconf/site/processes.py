@@ -50,6 +50,8 @@ class ComponentProcesses:
         component, started = profile.component, started_once(profile)
         if started is None or self._environment is None:
             raise cannot_start(component)
+        if self._closed:
+            raise PeerError("this site is ending")
         program = self.by_component.get(component)
         if program is None or not program.running:  # the command of one that runs may have changed since
             program = self._programs.get(started)

@@ -12,6 +12,7 @@ import pytest
 from selfconf.bus.zenoh_bus import ZenohBus, router
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import End, Wake
+from selfconf.rendezvous import LIFE_VARIABLE
 from selfconf.termination import alive
 from tests.cli.command import run
 from tests.cli.processes import Home, component_of, dormant
@@ -126,7 +127,10 @@ def test_a_component_that_does_not_want_to_end_is_ended_and_can_be_started_again
     state = home.state(component_of("tracker"))
     (process,) = site.children()
     os.kill(process, signal.SIGSTOP)
-    asked = home.ask(home.keys.end("a"), encode(End(component_of("tracker"), state.life if state else "")))
+    given = Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
+    assert state is not None
+    assert f"{LIFE_VARIABLE}={state.life}".encode() in given
+    asked = home.ask(home.keys.end("a"), encode(End(component_of("tracker"), state.life)))
     assert [sample.payload for sample in asked.samples] == [b"ended"], asked.errors
     assert not alive(process)
     wake(home, "tracker")

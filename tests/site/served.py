@@ -42,6 +42,14 @@ def live(network: Network, condition: Callable[[], bool], seconds: float = 20.0)
     return condition()
 
 
+def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+    """Wait in real time for a condition."""
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        threading.Event().wait(0.002)
+    return condition()
+
+
 def dormant(folder: Path, command: str, *names: str, more: str = "") -> Path:
     """Advertisements of components with one command that a site can start."""
     folder.mkdir(parents=True, exist_ok=True)

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -21,7 +22,7 @@ from selfconf.site import Site, component_program, life_watch, restart_limit
 from selfconf.site.component_program import ComponentProgram
 from selfconf.termination import alive
 from tests.lab import iri
-from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve
+from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve, until
 
 pytestmark = pytest.mark.process
 NUMBERED = 'import os; open("run-%d" % len(os.listdir()), "w").write(str(os.getpid()))'
@@ -303,3 +304,23 @@ def test_what_is_ended_while_it_pauses_is_not_started_again(
     assert ended
     live(network, lambda: len(runs(tmp_path)) > 1, 1.0)
     assert len(runs(tmp_path)) == 1
+
+
+def test_nothing_is_started_again_once_the_site_closes_on_another_thread(
+    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(restart_limit, "FIRST_PAUSE", 0.0)
+    made = site(python(NUMBERED + "; raise SystemExit(3)"), more="; sc:restarts 1000 ")
+    made.start(SLEEPER)
+    over = threading.Event()
+    bus = threading.Thread(target=live, args=(network, over.is_set))
+    bus.start()
+    assert until(lambda: len(runs(tmp_path)) > 3)
+    made.processes.close()
+    started = len(list((tmp_path / "here").glob("run-*")))
+    assert not over.wait(0.5)
+    over.set()
+    bus.join()
+    assert len(list((tmp_path / "here").glob("run-*"))) == started
+    with pytest.raises(PeerError, match="is ending"):
+        made.start(SLEEPER)

@@ -12,7 +12,7 @@ import pytest
 
 from selfconf.site.process_group import ProcessGroup
 from selfconf.termination import alive
-from tests.site.test_processes import until
+from tests.site.served import until
 
 pytestmark = pytest.mark.process
 CHILD = (

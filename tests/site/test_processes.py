@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -21,17 +20,9 @@ from selfconf.protocol.messages import Fail, Page, Release, Wake
 from selfconf.site import Site
 from selfconf.site.process_group import ProcessGroup
 from tests.lab import iri, write_advertisements
-from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve
+from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve, until
 
 pytestmark = pytest.mark.process
-
-
-def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
-    """Wait in real time for a condition."""
-    deadline = time.monotonic() + seconds
-    while not condition() and time.monotonic() < deadline:
-        os.sched_yield()
-    return condition()
 
 
 def group_of(site: Site) -> ProcessGroup:
