@@ -81,6 +81,8 @@ class Failed:
     life: str
     cause: Cause
     detail: str = ""
+    startable: bool = False
+    """Whether the site of the component can start it again."""
 
 
 @dataclass(frozen=True, slots=True)

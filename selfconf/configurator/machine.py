@@ -13,7 +13,8 @@ that was touched, those that are fed before those that feed them, so that nothin
 Two policies for a loss. `REPAIR` keeps what runs and changes what must change; `DISMANTLE` first takes everything
 down, as the paper does (section 4.2). Either way the lost component is turned off and its profile dropped, and the
 search runs again. A search that finds nothing counts only if nothing has appeared since the ecology was asked; else
-it is asked again.
+it is asked again. Nor does it count before the lost components whose sites can start them again are searched with: they
+are woken as dormant ones are, and how often that is done in vain is limited by their sites.
 
 Other tasks. Components that a task of the same or a higher priority holds do not count for the search. If it fails for
 that reason, it is found out which of them would be needed: these are named, and a patient task waits for them. A task
@@ -70,6 +71,8 @@ from selfconf.protocol.messages import Cause, Verdict
 
 OBEYED = (Verdict.DONE, Verdict.STALE, Verdict.OTHER_LIFE)
 """The answers to a release after which a component obeys no older call of this task."""
+PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
+"""The causes for which a component is started again: a site ends a process that hangs."""
 DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
 """The phases of act 4."""
 
@@ -151,6 +154,8 @@ def _composed(state: State, event: Composed) -> Reaction:
         return _refuse(_coveted(state, event))
     if isinstance(event.outcome, Configuration):
         return deploying.deploy(replace(state, target=event.outcome, refusal=None))
+    if any(loss.startable for loss in state.lost.values()):
+        return _compose(replace(state, lost={c: loss for c, loss in state.lost.items() if not loss.startable}))
     if state.news:
         return _discover(state)
     refused = replace(state, refusal=event.outcome)
@@ -254,8 +259,8 @@ def _failed(state: State, event: Failed) -> Reaction:
         return state, ()  # it may not have begun
     if event.cause is Cause.YIELD and not held.reserved:
         return state, ()  # another task is asked to let go of it, perhaps for this one
-    busy = event.cause is Cause.YIELD
-    return _lose(state, event.component, Loss(event.cause, event.detail, event.life or held.life, busy))
+    loss = Loss(event.cause, event.detail, event.life or held.life, busy=event.cause is Cause.YIELD)
+    return _lose(state, event.component, replace(loss, startable=event.startable and event.cause in PROCESS_ENDS))
 
 
 def _lose(state: State, component: IRI, loss: Loss) -> Reaction:

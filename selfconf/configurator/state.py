@@ -64,6 +64,8 @@ class Loss:
     """Whether another task held it: it may be had once that one lets go of it."""
     answered: bool = True
     """Whether that is known from the component: else it could not be reached, and may well be able to act."""
+    startable: bool = False
+    """Whether its process has ended, or is about to, and its site can start it again."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -165,6 +165,9 @@ class TaskRunner:
 
     def _step(self, event: Event) -> None:
         """Feed the machine; an event that an effect brings about comes after the other effects."""
+        if isinstance(event, Failed):
+            found = self.ecology.discovery.found.get(event.component)
+            event = replace(event, startable=found is not None and found.startable)
         self._events.append(event)
         if self._stepping:
             return

@@ -164,3 +164,18 @@ def test_a_component_that_is_frozen_is_ended_and_lives_again(home: Home) -> None
     assert home.until(lambda: not alive(process))
     assert home.until(lambda: home.state(component_of("tracker")) is not None)
     assert process not in site.children()
+
+
+def test_a_task_whose_only_tracker_crashes_goes_on_with_the_tracker_that_its_site_starts_again(home: Home) -> None:
+    (home.folder / "ads" / "odometry.ttl").unlink()
+    dormant(home, "tracker")
+    site = home.site("a", "ads")
+    home.components("sonar", "encoder", "control", "drive")
+    run = home.run()
+    run.act("running")
+    (process,) = site.children()
+    os.kill(process, signal.SIGKILL)
+    assert run.act("waking")["component"] == component_of("tracker")
+    run.act("running")
+    assert home.active("tracker", "control", "drive") == {"tracker", "control", "drive"}
+    assert run.end(signal.SIGINT) == 0

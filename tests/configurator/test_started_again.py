@@ -1,0 +1,80 @@
+"""What crashed and can be started again counts before a task is refused for lack of it; what was refused does not."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.configurator.effects import Compose, Finish, ReleaseFrom, WakeUp
+from selfconf.configurator.events import Call, Failed
+from selfconf.configurator.state import Phase, State
+from selfconf.protocol.messages import Cause
+from tests.configurator.builders import CONTROL, DRIVE, ODOMETRY, REFUSAL, TRACKER, History, navigation
+
+
+def lost(cause: Cause = Cause.CRASH, startable: bool = True, patient: bool = False) -> History:
+    """The tracker of a running task is lost, and the search without it is going on."""
+    history = History(State(patient=patient)).running()
+    history.hear(Failed(TRACKER, "1", cause, "it is gone", startable))
+    assert history.effects[-1] == Compose(history.state.attempt, frozenset({TRACKER}), history.state.target)
+    return history
+
+
+@pytest.mark.parametrize("cause", [Cause.CRASH, Cause.HUNG])
+@pytest.mark.parametrize("patient", [False, True])
+def test_what_can_be_started_again_is_searched_with_before_the_task_is_refused(cause: Cause, patient: bool) -> None:
+    history = lost(cause, patient=patient)
+    effects = history.composed(REFUSAL)
+    assert effects == [Compose(history.state.attempt, frozenset(), history.state.target)]
+    effects = history.composed(navigation())
+    assert [effect.component for effect in effects if isinstance(effect, WakeUp)] == [TRACKER]
+    assert not [effect for effect in effects if isinstance(effect, ReleaseFrom)]
+    assert {CONTROL, DRIVE} < set(history.state.held)
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert not history.state.owed
+
+
+def test_another_candidate_that_is_there_comes_first() -> None:
+    history = lost()
+    history.composed(navigation(ODOMETRY))
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert TRACKER in history.state.lost
+
+
+@pytest.mark.parametrize("cause", [Cause.FAIL, Cause.SILENCE, Cause.MALFORMED])
+def test_what_can_be_started_but_says_that_it_cannot_act_is_not_asked_again(cause: Cause) -> None:
+    history = lost(cause)
+    history.composed(REFUSAL)
+    assert history.state.phase is Phase.DISMANTLING
+
+
+def test_what_no_site_can_start_is_not_waited_for() -> None:
+    history = lost(startable=False)
+    history.composed(REFUSAL)
+    assert history.state.phase is Phase.DISMANTLING
+
+
+def test_what_its_site_starts_no_more_is_a_reason_to_refuse() -> None:
+    history = lost()
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    history.answer(TRACKER, Call.WAKE, None)
+    assert not history.state.lost[TRACKER].startable
+    history.composed(REFUSAL)
+    history.all_answer()
+    assert history.state.phase is Phase.REFUSED
+    assert history.effects[-1] == Finish(REFUSAL)
+
+
+def test_what_crashes_again_while_it_is_waited_for_is_started_again_as_often_as_its_site_does() -> None:
+    history = lost()
+    for _ in range(3):
+        history.composed(REFUSAL)
+        history.composed(navigation())
+        assert (TRACKER, Call.WAKE) in history.state.pending
+        history.hear(Failed(TRACKER, "", Cause.CRASH, "it is gone again", True))
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
