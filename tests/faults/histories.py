@@ -28,8 +28,10 @@ from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Site
 from tests.faults.script import SITES, Action, Script
 from tests.faults.simulated_code import ReportsLate, SimulatedCodeThread
-from tests.lab import Lab, Recorder
+from tests.lab import NAVIGATE, Lab, Recorder
 
+DRIVELESS = NAVIGATE.replace(" :drive )", " )").replace("sc:feeds :drive ;", "").partition(":drive a sc:Role")[0]
+"""The paper's task without the drive."""
 SETTLED = 60.0
 """Seconds after the last fault in which the ecology must come into order."""
 SPOKEN = 1.0
@@ -166,6 +168,8 @@ class History:
 
         def hung(what: str, limit: float) -> None:
             runtime.hung(what, limit)
+            for share in (0.25, 0.75):  # so that it is looked what has become of it
+                self.network.after(share * HUNG_ENDS, lambda: None)
             self.network.after(HUNG_ENDS, node.close)
 
         thread = SimulatedCodeThread(node, hung)
@@ -286,6 +290,8 @@ class History:
             return False
         plan = self.script.tasks[action.who]
         agent = self.lab.agent(
+            NAVIGATE if plan.drives else DRIVELESS,
+            (("robot", ":Astrid"), ("goal", f"(AT {action.who})")),
             policy=Policy.DISMANTLE if plan.dismantles else Policy.REPAIR,
             patient=plan.patient,
             name=action.who,

@@ -206,7 +206,7 @@ STEPS = (
     Invariant("nobody obeys two", obeys_two),
     Invariant("no actuator acts on part", acts_on_part, lambda history: GRACE + LEASE + travel(history)),
     Invariant("no actuator acts blind", acts_blind, lambda h: TOLERATES + LEASE + GRACE + travel(h) + 1.0),
-    Invariant("who hangs has failed", hangs_unnoticed, lambda history: 0.1),
+    Invariant("who hangs has failed", hangs_unnoticed, lambda history: 0.05),
     Invariant("what waits is bounded", network_overflows),
 )
 """What must hold at every step."""
@@ -391,7 +391,14 @@ class Watch:
         ]
         return (
             [
-                (life.node.open, life.node.paused, life.thread.hangs, life.runtime.active, id(life.runtime.activation))
+                (
+                    life.node.open,
+                    life.node.paused,
+                    life.thread.hangs,
+                    life.runtime.active,
+                    len(life.recorder.said),
+                    id(life.runtime.activation),
+                )
                 for life in history.lives
             ],
             [(id(agent.state), node_of(agent).open, node_of(agent).paused) for agent in history.agents],

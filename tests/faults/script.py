@@ -45,6 +45,8 @@ class TaskPlan:
     priority: int = 0
     patient: bool = True
     dismantles: bool = False
+    drives: bool = True
+    """Whether it is the paper's task; else it wants everything of it but the drive."""
 
 
 @dataclass(frozen=True, slots=True)
