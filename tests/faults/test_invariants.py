@@ -61,7 +61,8 @@ class Mutation(NamedTuple):
     faults: Faults = Faults()
 
 
-CALLS, RUNTIME = "selfconf.deployment.calls", "selfconf.sdk.runtime.ComponentRuntime"
+CALLS, LIVENESS = "selfconf.deployment.calls", "selfconf.deployment.liveness"
+RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
 SHARES_ALL = {
     "selfconf.protocol.activation._blocked": lambda *_: False,
@@ -78,13 +79,13 @@ MUTATIONS = {
     ),
     "nobody acts for nobody": Mutation({"selfconf.sdk.supervision.GRACE": 1e9}, (Action(2.0, "crash_task", "task-1"),)),
     "who acts is known": RELEASES_NOTHING,
-    "running means running": Mutation({f"{CALLS}.Calls.audit": nothing}, (LATER,), Faults(most_event_delay=2.0)),
+    "running means running": Mutation({f"{LIVENESS}.Liveness.audit": nothing}, (LATER,), Faults(most_event_delay=2.0)),
     "each runs with its own": Mutation(SHARES_ALL, (SECOND,)),
     "held is known": RELEASES_NOTHING,
     "nobody obeys two": Mutation(SHARES_ALL, (SECOND, Action(4.0, "fail", "tracker"))),
     "no actuator acts on part": Mutation(
         {
-            f"{CALLS}.Calls.audit": nothing,
+            f"{LIVENESS}.Liveness.audit": nothing,
             "selfconf.deployment.runner.ask_holders": lambda bus, keys, name, answered: answered({}),
         },
         (Action(2.0, "begin", "task-3"), Action(4.0, "mute", "task-1", "control"), LATER),
@@ -93,7 +94,7 @@ MUTATIONS = {
         {"selfconf.sdk.component_code.TOLERATES": 1e9}, (Action(2.0, "mute", "control", "drive"), LATER)
     ),
     "who hangs has failed": Mutation({f"{RUNTIME}.hung": nothing}, (Action(0.0, "slow", "drive", "", 12.0),)),
-    "what waits is bounded": Mutation({f"{CALLS}.AUDIT": 0.05, f"{CALLS}.CALL": 100.0}),
+    "what waits is bounded": Mutation({f"{LIVENESS}.AUDIT": 0.05, f"{CALLS}.CALL": 100.0}),
     "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
     "nobody waits in vain": Mutation(
         {
@@ -114,9 +115,7 @@ MUTATIONS = {
         }
     ),
     "the last signal is heard": Mutation({"selfconf.sdk.inputs.InputSubscription._read": nothing}),
-    "nothing breaks": Mutation(
-        {"selfconf.deployment.liveness.Liveness._ended": breaks}, (Action(2.0, "crash", "pippi"),)
-    ),
+    "nothing breaks": Mutation({f"{LIVENESS}.Liveness._ended": breaks}, (Action(2.0, "crash", "pippi"),)),
 }
 
 
