@@ -15,6 +15,7 @@ to have every action dropped that is not needed:
 from __future__ import annotations
 
 import traceback
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,9 +27,10 @@ from selfconf.sdk.component import Refused
 from selfconf.sdk.program import HUNG_ENDS
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Site
-from tests.faults.script import SITES, Action, Script
+from tests.faults.script import COMPONENTS, SITES, Action, Script
 from tests.faults.simulated_code import ReportsLate, SimulatedCodeThread
-from tests.lab import NAVIGATE, Lab, Recorder
+from tests.faults.simulated_processes import SimulatedProcesses
+from tests.lab import ADVERTISEMENTS, NAVIGATE, Lab, Recorder
 
 DRIVELESS = NAVIGATE.replace(" :drive )", " )").replace("sc:feeds :drive ;", "").partition(":drive a sc:Role")[0]
 """The paper's task without the drive."""
@@ -36,6 +38,11 @@ SETTLED = 60.0
 """Seconds after the last fault in which the ecology must come into order."""
 SPOKEN = 1.0
 """Seconds in which everybody must have heard what was said last."""
+
+
+def startable(advertisement: str) -> str:
+    """An advertisement with a command, by which its site can start the component."""
+    return advertisement.removesuffix(".") + '; sc:grounding [ sc:command "simulated" ] .'
 
 
 @dataclass(slots=True)
@@ -61,7 +68,10 @@ class History:
         from tests.faults.invariants import Watch
 
         self.script = script
-        self.lab = Lab(folder, script.seed, script.faults)
+        advertised = {
+            name: startable(text) if name in script.startable else text for name, text in ADVERTISEMENTS.items()
+        }
+        self.lab = Lab(folder, script.seed, script.faults, advertised)
         self.network = self.lab.network
         self.told: list[str] = []
         self.lives: list[Life] = []
@@ -74,8 +84,9 @@ class History:
         self._powerless: list[MemoryBus] = []
         for name in SITES:
             self._begin_site(name)
-        for name in (name for names in SITES.values() for name in names):
-            self._begin_life(name)
+        for name in COMPONENTS:
+            if name not in script.startable:
+                self._begin_life(name)
         self.watch = Watch(self)
         self.network.stepped = self.watch.look
 
@@ -159,6 +170,9 @@ class History:
         site = self.lab.site(name, *SITES[name])
         self.sites[name] = site
         assert isinstance(site.bus, MemoryBus)
+        names = {self.lab.profile(one).component: one for one in COMPONENTS}
+        processes: Any = SimulatedProcesses(self, site.bus, names)
+        site.processes = processes
         self._joined(name, site.bus)
 
     def _begin_life(self, name: str) -> Life:
@@ -189,8 +203,8 @@ class History:
         self._joined(name, node)
         return self.lives[-1]
 
-    def _try_to_begin(self, name: str, attempts: int = 8) -> None:
-        """Start a process of a component, as its site does: it ends if it sees another one, and is started again."""
+    def begin_process(self, name: str, begun: Callable[[MemoryBus | None], None]) -> None:
+        """Start a process of a component; it ends at once if it sees another one. `begun` hears of its node, if any."""
         scout = self.network.node()
         for other in self._isolated:
             lone = self.node(other)
@@ -199,12 +213,18 @@ class History:
 
         def called(lives: tuple[str, ...]) -> None:
             scout.close()
-            if not lives:
-                self._begin_life(name)
-            elif attempts > 1 and all(not life.node.open for life in self.lives if life.name == name):
-                self.network.after(1.0, lambda: self._try_to_begin(name, attempts - 1))
+            begun(None if lives else self._begin_life(name).node)
 
         scout.roll_call(self.lab.keys.lives(self.lab.profile(name).component), 1.0, called)
+
+    def _try_to_begin(self, name: str, attempts: int = 8) -> None:
+        """Start a process of a component, and again if another one seems to live, but does not."""
+
+        def begun(node: MemoryBus | None) -> None:
+            if node is None and attempts > 1 and all(not life.node.open for life in self.lives if life.name == name):
+                self.network.after(1.0, lambda: self._try_to_begin(name, attempts - 1))
+
+        self.begin_process(name, begun)
 
     # What is done. Each action says whether it was possible.
 
@@ -230,7 +250,7 @@ class History:
         return bool(lives)
 
     def _start(self, action: Action) -> bool:
-        if self.life(action.who) is not None:
+        if self.life(action.who) is not None or action.who in self.script.startable:
             return False
         self._try_to_begin(action.who)
         return True
@@ -277,6 +297,8 @@ class History:
         node = self.node(action.who)
         if node is not None:
             node.close()
+            processes: Any = self.sites[action.who].processes
+            self.network.after(0.2, processes.ended_with_the_site)
         return node is not None
 
     def _start_site(self, action: Action) -> bool:

@@ -222,6 +222,7 @@ def undecided(history: History) -> Iterator[str]:
 def refused_in_vain(history: History) -> Iterator[str]:
     """No task that waits could run, with what is free or held by tasks of lower priority."""
     alive = {life.runtime.profile.component for life in history.lives if life.node.open}
+    alive |= {history.lab.profile(name).component for name in history.script.startable}
     sites = [site for name, site in history.sites.items() if history.node(name) is not None]
     found = {c: a for site in sites for c, a in site.shelf.advertisements.items() if c in alive}
     for agent in history.living():

@@ -50,6 +50,8 @@ def _shorter(script: Script) -> Iterator[Script]:
         yield replace(script, actions=script.actions[:number] + script.actions[number + 1 :])
     if script.clocks:
         yield replace(script, clocks={})
+    if script.startable:
+        yield replace(script, startable=frozenset())
     calm = Faults()
     for name in ("loss", "doubling", "most_delay", "most_event_delay"):
         if getattr(script.faults, name) != getattr(calm, name):

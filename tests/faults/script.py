@@ -58,11 +58,14 @@ class Script:
     clocks: Mapping[str, float] = field(default_factory=dict)
     """By how many seconds the clock of a task's node is wrong."""
     tasks: Mapping[str, TaskPlan] = field(default_factory=dict)
+    startable: frozenset[str] = frozenset()
+    """The components that their sites start on demand, and again when they crash."""
     actions: tuple[Action, ...] = ()
 
     def __str__(self) -> str:
         lines = [f"seed {self.seed}: {self.faults}"]
         lines += [f"    {name}: {plan}, clock {self.clocks.get(name, 0.0):+g} s" for name, plan in self.tasks.items()]
+        lines += [f"    started by their sites: {', '.join(sorted(self.startable))}"] if self.startable else []
         return "\n".join([*lines, *map(str, self.actions)])
 
 
@@ -112,6 +115,7 @@ def write(seed: int, without: tuple[str, ...] = ()) -> Script:
     clocks = {name: chance.choice((0.0, 0.0, -300.0, 300.0)) for name in TASKS}
     dismantles = chance.random() < 0.3
     tasks = {name: TaskPlan(chance.choice((0, 0, 0, 1, 2)), chance.random() < 0.7, dismantles) for name in TASKS}
+    starts = frozenset(name for name in COMPONENTS if chance.random() < chance.choice((0.0, 0.5, 1.0)))
     time, actions = 0.0, [Action(0.0, "begin", TASKS[0])]
     kinds = [kind for kind in KINDS if kind not in without]
     weights = [KINDS[kind][0] for kind in kinds]
@@ -122,4 +126,4 @@ def write(seed: int, without: tuple[str, ...] = ()) -> Script:
         other = chance.choice([one for one in KINDS[kind][1] if one != who]) if kind in PAIRED else ""
         seconds = chance.choice(PAUSES if kind == "pause" else SLOWNESS) if kind in ("pause", "slow") else 0.0
         actions.append(Action(time, kind, who, other, seconds))
-    return Script(seed, faults, clocks, tasks, tuple(actions))
+    return Script(seed, faults, clocks, tasks, starts, tuple(actions))

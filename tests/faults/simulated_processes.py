@@ -1,0 +1,79 @@
+"""The processes that a site starts, in simulated time: they begin after a while, and again when they crash."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from selfconf.bus.memory import MemoryBus
+from selfconf.model.profile import Profile
+from selfconf.model.term import IRI
+
+if TYPE_CHECKING:
+    from tests.faults.histories import History
+
+BEGINNING = 0.3
+"""Seconds that a process takes to begin."""
+RESTARTS = 3
+"""How often a process that crashes is started again."""
+CHECK = 0.2
+"""Seconds between two looks at a process."""
+
+
+class SimulatedProcesses:
+    """What a site has started, by component; it stands in for `ComponentProcesses`."""
+
+    def __init__(self, history: History, site: MemoryBus, names: dict[IRI, str]) -> None:
+        self._history, self._site, self._names = history, site, names
+        self._nodes: dict[str, MemoryBus | None] = {}
+        """The node of each process that is to run; None while it begins."""
+        self._restarts: dict[str, int] = {}
+
+    def start(self, profile: Profile, sharing: Iterable[Profile] = ()) -> None:
+        """Start the process of a component, unless it runs."""
+        name = self._names[profile.component]
+        if name not in self._nodes:
+            self._restarts[name] = 0
+            self._begin(name)
+
+    def end(self, component: IRI, life: str = "", ended: Callable[[], None] = lambda: None) -> None:
+        """End the process of a component for good."""
+        node = self._nodes.pop(self._names[component], None)
+        if node is not None:
+            node.close()
+        ended()
+
+    def close(self) -> None:
+        """End everything."""
+        self.ended_with_the_site()
+
+    def ended_with_the_site(self) -> None:
+        """A component that a site has started ends when that site is gone."""
+        nodes, self._nodes = self._nodes, {}
+        for node in nodes.values():
+            if node is not None:
+                node.close()
+
+    def _begin(self, name: str) -> None:
+        self._nodes[name] = None
+
+        def begun() -> None:
+            if name in self._nodes:
+                self._history.begin_process(name, lambda node: self._watch(name, node))
+
+        self._history.network.after(BEGINNING, begun)
+
+    def _watch(self, name: str, node: MemoryBus | None) -> None:
+        """Look at a process until it ends, and start it again; None: it has ended at once, as another one lives."""
+        if name not in self._nodes:
+            if node is not None:
+                node.close()
+            return
+        self._nodes[name] = node
+        if node is not None and node.open:
+            self._history.network.after(CHECK, lambda: self._watch(name, node))
+        elif self._restarts[name] < RESTARTS and self._site.open:
+            self._restarts[name] += 1
+            self._history.network.after(1.0, lambda: self._begin(name) if name in self._nodes else None)
+        else:
+            self._nodes.pop(name)
