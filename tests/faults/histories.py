@@ -34,7 +34,7 @@ from tests.lab import ADVERTISEMENTS, NAVIGATE, Lab, Recorder
 
 DRIVELESS = NAVIGATE.replace(" :drive )", " )").replace("sc:feeds :drive ;", "").partition(":drive a sc:Role")[0]
 """The paper's task without the drive."""
-SETTLED = 60.0
+SETTLED = 75.0
 """Seconds after the last fault in which the ecology must come into order."""
 SPOKEN = 1.0
 """Seconds in which everybody must have heard what was said last."""
