@@ -12,8 +12,9 @@
         main(Thermostat)
 
 Threads. All methods of a component that selfconf calls (`started`, `stopped`, `received`, `parameter_set`, timers) are
-called on one thread, one after the other; return soon, for control calls wait in the same queue. `emit` and `fail` may
-be called from any thread. Work that takes long belongs on a thread of its own, which emits when it is done.
+called on one thread, one after the other, and have to return: one that outlasts its deadline (`sc:deadline`; 2 seconds,
+8 for `started`) counts as hung, and the component as failed. `emit` and `fail` may be called from any thread. Work that
+takes long belongs on a thread of its own, which emits when it is done.
 """
 
 from selfconf.sdk.component import Component, Refused, Signal
