@@ -69,7 +69,7 @@ def test_the_ecology_is_asked_in_sparql(served: Home) -> None:
 def test_stopping_what_is_not_there_says_what_to_try(served: Home) -> None:
     with sc.join() as living:
         assert living.stop() == ()
-        with pytest.raises(NetworkError, match="selfconf status"):
+        with pytest.raises(NetworkError, match="selfconf tasks"):
             living.stop("c123")
 
 
@@ -145,7 +145,7 @@ def test_a_run_is_shown_while_it_lasts_and_can_be_stopped_by_another_program(
     program.act("running")
     (status,) = living.tasks
     assert (status.process, status.phase, status.template) == (program.number, "running", iri("navigate"))
-    with pytest.raises(NetworkError, match="no configurator 'nobody' answers"):
+    with pytest.raises(NetworkError, match="no task or configurator 'nobody' answers"):
         living.stop("nobody")
     assert living.stop(status.configurator) == (status.configurator,)
     assert program.ended() == 0

@@ -15,11 +15,11 @@
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
 from selfconf.search.engines.clause_learning import ClauseSolver, solver_available
 from selfconf.search.engines.exclusion import exclusive_groups
+from selfconf.search.engines.hitting_sets import smallest_core
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses, least_of_clauses
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
 from selfconf.search.engines.reduced_search import ReducedSearch, first_solution
-from selfconf.search.engines.smallest_core import smallest_core
 
 __all__ = [
     "SLOT_HEADROOM",

@@ -1,0 +1,42 @@
+"""A task as it is handed to the sites, and as a site reads it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import selfconf as sc
+from selfconf.api.answer import Method
+from selfconf.api.detached import request_of, task_record
+from selfconf.configurator.state import Policy
+from selfconf.errors import AuthorError
+from selfconf.model.configuration import Configuration
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import TaskRecord
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def record() -> TaskRecord:
+    """The clock's task, as its record arrives at a site."""
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":kitchen")
+    return decode(encode(task_record(task, Method.of("best"), Policy.REPAIR, priority=2, upgrade=5.0)), TaskRecord)
+
+
+def test_a_site_composes_what_the_library_composes() -> None:
+    home = sc.read(ROOT / "examples" / "clock")
+    request = request_of(record(), lambda work: work())
+    outcome = request.compose(home.advertisements(), frozenset(), None)
+    wanted = sc.configure(sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":kitchen"), home)
+    assert isinstance(outcome, Configuration)
+    assert isinstance(wanted, Configuration)
+    assert (outcome.assignments, outcome.connections) == (wanted.assignments, wanted.connections)
+    assert (request.patient, request.priority, request.upgrade) == (True, 2, 5.0)
+
+
+def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> None:
+    assert record().task.startswith("tell-the-time~")
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")
+    with pytest.raises(AuthorError, match="cannot name a task"):
+        task_record(task, Method.of(), Policy.REPAIR, "no/name")

@@ -1,0 +1,65 @@
+"""`tasks`, `run --detach` and `stop TASK`: tasks with names, in real processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.command import run
+from tests.cli.processes import Home
+
+pytestmark = pytest.mark.process
+
+ROOT = Path(__file__).resolve().parents[2]
+CLOCK = str(ROOT / "examples" / "clock")
+TEMPLATE = str(ROOT / "examples" / "clock" / "tell-the-time.ttl")
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[Home]:
+    """An ecology of its own, which ends with the test."""
+    home = Home(tmp_path)
+    yield home
+    home.close()
+
+
+def test_a_task_that_runs_is_listed_by_its_name_and_stopped_by_it(
+    house: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    house.site("kitchen", CLOCK)
+    where = house.arguments()
+    assert run(capsys, "tasks", *where).out == f"there is no task in ecology {house.ecology}\n"
+    program = house.selfconf("run", TEMPLATE, *where, "--format", "json", "--name", "noon", "--priority", "3")
+    program.act("running")
+    (task,) = run(capsys, "tasks", "--format", "json", *where).body
+    assert (task["task"], task["priority"], task["phase"], task["detached"]) == ("noon", 3, "running", False)
+    again = run(capsys, "run", TEMPLATE, *where, "--name", "noon")
+    assert again.is_one_sentence("a task 'noon' lives already")
+    assert run(capsys, "stop", "midnight", *where).is_one_sentence("no task or configurator 'midnight' answers")
+    assert run(capsys, "stop", "noon", *where).code == 0
+    assert program.ended() == 0
+
+
+def test_a_detached_task_runs_without_the_command_that_began_it(
+    house: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    house.site("kitchen", CLOCK)
+    where = house.arguments()
+    outcome = run(capsys, "run", TEMPLATE, "--detach", "--format", "json", *where)
+    assert (outcome.code, outcome.body["act"], outcome.body["task"]) == (0, "detached", "tell-the-time")
+
+    def phases() -> list[tuple[str, bool]]:
+        return [(task["phase"], task["detached"]) for task in run(capsys, "tasks", "--format", "json", *where).body]
+
+    assert house.until(lambda: phases() == [("running", True)])
+    assert run(capsys, "run", TEMPLATE, "--detach", *where).is_one_sentence("a task 'tell-the-time' lives already")
+    assert run(capsys, "stop", "tell-the-time", *where).code == 0
+    assert phases() == []
+
+
+def test_a_detached_task_needs_sites_that_are_there_already(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "run", TEMPLATE, "--ads", CLOCK, "--detach").is_one_sentence(
+        "a detached task lives in the sites"
+    )

@@ -1,0 +1,138 @@
+"""Tasks that live in the sites: who runs them, and how they change hands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.bus.port import Bus
+from selfconf.composition import Composer
+from selfconf.configurator.state import Phase
+from selfconf.deployment import Keeper, RunRequest, TaskFolder
+from selfconf.deployment.keeper import keeper_of
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import TaskRecord
+from selfconf.rdf import turtle
+from selfconf.rdf.tasks import bind, complete, read_task
+from tests.deployment.tasks import TASK
+from tests.lab import NAVIGATE, Lab
+
+RECORD = TaskRecord("patrol~1", 1, priority=1, beginning=5.0)
+
+
+def request_for(record: TaskRecord) -> RunRequest:
+    """The paper's task."""
+    task = complete(bind(read_task(turtle.parse(NAVIGATE, "t")), (("robot", ":Astrid"), ("goal", "(AT BEDROOM)"))))
+    return RunRequest(task=task.task, compose=Composer(task).compose, patient=True, priority=record.priority)
+
+
+class Keepers:
+    """The paper's ecology, with a keeper at each of three more sites."""
+
+    def __init__(self, lab: Lab, folder: Path) -> None:
+        self.lab, self.folder = lab, folder
+        self.buses: dict[str, Bus] = {}
+        self.keepers: dict[str, Keeper] = {}
+        for name in ("a", "b", "c"):
+            self.begin(name)
+        lab.let_pass(0.1)
+
+    def begin(self, name: str) -> None:
+        """Start a site that keeps tasks, with the disk that it had."""
+        bus = self.buses[name] = self.lab.network.node()
+        self.keepers[name] = Keeper(bus, "lab", name, TaskFolder(self.folder / name), request_for)
+        bus.announce(self.lab.keys.site_life(name, f"{name}{len(self.lab.network.nodes)}"))
+
+    def end(self, name: str) -> None:
+        """End a site as kill -9 does."""
+        del self.keepers[name]
+        self.buses[name].close()
+
+    def hand_over(self, record: TaskRecord) -> None:
+        """Give a record to all sites, as `run --detach` does."""
+        self.lab.network.node().ask(self.lab.keys.keep(), encode(record), 1.0, lambda replies: None)
+
+    def running(self) -> list[str]:
+        """The sites that run the task."""
+        return [
+            name
+            for name, keeper in self.keepers.items()
+            if any(runner.state.phase is Phase.RUNNING for runner in keeper.runners.values())
+        ]
+
+
+@pytest.fixture
+def keepers(lab: Lab, tmp_path: Path) -> Keepers:
+    """Three sites that keep tasks."""
+    return Keepers(lab, tmp_path / "disks")
+
+
+def test_the_keeper_is_the_same_for_all_and_few_tasks_move_when_a_site_goes() -> None:
+    tasks = [f"t~{number}" for number in range(200)]
+    before = {task: keeper_of(task, ["a", "b", "c"]) for task in tasks}
+    after = {task: keeper_of(task, ["c", "a"]) for task in tasks}
+    assert set(before.values()) == {"a", "b", "c"}
+    assert all(after[task] == site for task, site in before.items() if site != "b")
+    assert keeper_of("t", []) == ""
+
+
+def test_a_task_that_is_handed_over_runs_at_one_site_and_is_kept_by_all(keepers: Keepers) -> None:
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(2.0)
+    assert keepers.running() == [keeper_of(RECORD.task, "abc")]
+    assert {name: list(k.folder.records) for name, k in keepers.keepers.items()} == {
+        name: [RECORD.task] for name in "abc"
+    }
+
+
+def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> None:
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    said = {name: list(recorder.said) for name, recorder in keepers.lab.components.items()}
+    (keeper,) = keepers.running()
+    keepers.end(keeper)
+    assert keepers.lab.until(lambda: bool(keepers.running()), 0.9)
+    keepers.lab.let_pass(5.0)
+    assert {name: list(recorder.said) for name, recorder in keepers.lab.components.items()} == said
+    assert keepers.lab.active() == TASK | {"tracker"}
+    keepers.lab.components["tracker"].fail("lost")
+    assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"odometry"})
+
+
+def test_a_site_that_comes_and_is_to_run_the_task_gets_it_from_the_one_that_has_it(keepers: Keepers) -> None:
+    first = keeper_of(RECORD.task, "abc")
+    keepers.end(first)
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    said = {name: list(recorder.said) for name, recorder in keepers.lab.components.items()}
+    keepers.begin(first)
+    assert keepers.lab.until(lambda: keepers.running() == [first])
+    assert {name: list(recorder.said) for name, recorder in keepers.lab.components.items()} == said
+
+
+def test_after_all_sites_were_restarted_the_task_comes_back_from_their_disks(keepers: Keepers) -> None:
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    for name in "abc":
+        keepers.end(name)
+    keepers.lab.let_pass(5.0)
+    assert keepers.lab.active() == set()
+    for name in "abc":
+        keepers.begin(name)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"tracker"})
+
+
+def test_a_task_that_was_ended_comes_to_rest_and_does_not_come_back(keepers: Keepers) -> None:
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.hand_over(TaskRecord(RECORD.task, 100, ended=True))
+    assert keepers.lab.until(lambda: not keepers.lab.active())
+    keepers.end("a")
+    keepers.begin("a")
+    keepers.lab.let_pass(5.0)
+    assert (keepers.running(), keepers.lab.active()) == ([], set())
