@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 
 from selfconf.composition import composer as compose
 from selfconf.composition.composer import STANDBY, Composer, Strategy
+from selfconf.configurator.state import Phase
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.optimum import Optimum
@@ -20,7 +22,7 @@ from selfconf.rdf.tasks import templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
 from tests import hostile_words
-from tests.lab import PREFIXES, iri
+from tests.lab import NAVIGATE, PREFIXES, Lab, iri
 
 NOBODY: frozenset[IRI] = frozenset()
 CONTROL = """
@@ -225,3 +227,23 @@ def test_what_strangers_say_keeps_them_out_and_no_one_else() -> None:
     second = composer.compose(found, frozenset({iri("cam-1"), iri("ear-1")}), first)
     assert isinstance(second, Configuration)
     assert second.components == tuple(map(iri, ("cam-2", "ear-2", "arm-1", "screen")))
+
+
+def test_a_running_task_survives_what_strangers_advertise_and_the_failure_of_a_component(tmp_path: Path) -> None:
+    folder = tmp_path / "living-room"
+    folder.mkdir()
+    for number in range(40):
+        text = f'{PREFIXES}:stranger{number} a sc:Component, rob:PositionSensor ; sc:preference 99 ; :model "{"ab" * 40}!" .'
+        (folder / f"stranger{number}.ttl").write_text(text)
+    harmless = (
+        ':position sh:property [ sh:path :model ; sh:pattern "^(\\\\w+\\\\s?)*$" ; sh:pattern "^(?=(\\\\w+)+$)" ] .'
+    )
+    lab = Lab(tmp_path)
+    lab.navigation()
+    agent = lab.agent(NAVIGATE + harmless)
+    assert lab.running(agent)
+    assert agent.configuration is not None
+    assert iri("person-tracker") in agent.configuration.components
+    lab.crash("tracker")
+    assert lab.until(lambda: "odometry" in lab.active() and agent.state.phase is Phase.RUNNING)
+    assert lab.ended == []
