@@ -233,7 +233,8 @@ def test_a_running_task_survives_what_strangers_advertise_and_the_failure_of_a_c
     folder = tmp_path / "living-room"
     folder.mkdir()
     for number in range(40):
-        text = f'{PREFIXES}:stranger{number} a sc:Component, rob:PositionSensor ; sc:preference 99 ; :model "{"ab" * 40}!" .'
+        said = f'sc:preference 99 ; :model "{"ab" * 40}!"'
+        text = f"{PREFIXES}:stranger{number} a sc:Component, rob:PositionSensor ; {said} ."
         (folder / f"stranger{number}.ttl").write_text(text)
     harmless = (
         ':position sh:property [ sh:path :model ; sh:pattern "^(\\\\w+\\\\s?)*$" ; sh:pattern "^(?=(\\\\w+)+$)" ] .'
