@@ -17,6 +17,7 @@ from selfconf.protocol.messages import Cause
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.supervision import GRACE
 from tests.faults.histories import History, Life
+from tests.faults.script import SITES
 
 CALLS = 2.0
 """Seconds after which a configurator looks again at a call that was not answered."""
@@ -222,9 +223,10 @@ def undecided(history: History) -> Iterator[str]:
 def refused_in_vain(history: History) -> Iterator[str]:
     """No task that waits could run, with what is free or held by tasks of lower priority."""
     alive = {life.runtime.profile.component for life in history.lives if life.node.open}
-    alive |= {history.lab.profile(name).component for name in history.script.startable}
-    sites = [site for name, site in history.sites.items() if history.node(name) is not None]
-    found = {c: a for site in sites for c, a in site.shelf.advertisements.items() if c in alive}
+    sites = {name: site for name, site in history.sites.items() if history.node(name) is not None}
+    startable = {one for name in sites for one in SITES[name] if one in history.script.startable}
+    alive |= {history.lab.profile(name).component for name in startable}
+    found = {c: a for site in sites.values() for c, a in site.shelf.advertisements.items() if c in alive}
     for agent in history.living():
         if agent.state.phase is not Phase.REFUSED or not agent.state.patient:
             continue
