@@ -9,8 +9,7 @@ PYTHON ?= $(shell for p in python3.11 python3.10 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && echo $$p && exit; done)
 SEEDS  ?= 20
 
-.PHONY: demo test quick nightly faults check package format lint types floors shapes docs-check experiment bench clean
-.PHONY: demo test quick nightly fuzz check package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test quick nightly faults fuzz check package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -27,15 +26,12 @@ quick: $(VENV)/with-dev
 
 # Ten thousand random ecologies for each property of the search, against every oracle, and ten thousand histories with
 # faults; about half an hour.
-nightly: $(VENV)/with-dev
+nightly: $(VENV)/with-dev fuzz
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults
 
 # Five hundred real faults: processes that are killed, stopped and ended at random moments; about an hour.
 faults: $(VENV)/with-dev
 	$(BIN)/python -m benchmarks.faults --trials 500
-# Ten thousand random ecologies for each property of the search, against every oracle; about twenty minutes.
-nightly: $(VENV)/with-dev fuzz
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py
 
 # Mistakes made on purpose in good files: how many `validate` finds, where, and what it complains of for nothing.
 fuzz: $(VENV)/with-dev

@@ -31,6 +31,7 @@ an older epoch, or the result of an older search, changes nothing; no component 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from selfconf.configurator import deploying
@@ -366,21 +367,26 @@ def _free(state: State, component: IRI) -> Reaction:
 
 
 def _appeared(state: State, event: Appeared) -> Reaction:
-    """A component that lives a new life is not the one that was lost, and one that seemed dead was only cut off."""
+    """A component that lives a new life is not the one that was lost, and one that seemed dead was only cut off.
+
+    A site that comes may bring those with it that could not be reached.
+    """
     if state.phase is Phase.IDLE or state.ended:
         return state, ()
-    lost = {
-        component: loss
-        for component, loss in state.lost.items()
-        if component not in event.lives
-        or (loss.cause is not Cause.CRASH and loss.answered and event.lives[component] == loss.life)
-    }
+    lost = {component: loss for component, loss in state.lost.items() if _stays_lost(component, loss, event.lives)}
     owed = event.lives.keys() & state.owed.keys() - set(state.unreleased)  # those come to rest in their turn
     effects = [ReleaseFrom(component, state.owed[component]) for component in sorted(owed)]
     known = replace(state, lost=lost, news=True)
     if state.phase is Phase.REFUSED:
         return then(effects, _discover(known))
     return known, tuple(effects)
+
+
+def _stays_lost(component: IRI, loss: Loss, lives: Mapping[IRI, str]) -> bool:
+    """Whether a loss is not disproved by what has appeared: lives by component, or, without any, a site."""
+    if component not in lives:
+        return loss.answered or bool(lives)
+    return loss.cause is not Cause.CRASH and loss.answered and lives[component] == loss.life
 
 
 def _improve(state: State) -> Reaction:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
@@ -58,6 +59,8 @@ PAUSE = 0.1
 """Seconds after which a component that has not answered a question for its state is asked again."""
 CALL_ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
+GONE = 2.5
+"""Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
 WAKING = 15.0
 """Seconds that a component that a site starts may take to live."""
 RESERVE_AGAIN = 0.5
@@ -216,14 +219,21 @@ class Calls:
             self._lives.pop(component, None)
             off = Answered(component, Call.RELEASE, effect.epoch, None)
             self.bus.wake_up(lambda: self._step(off))
+            self.bus.later(GONE, partial(self._is_gone, effect))
             return
 
         def again() -> None:
-            if self._state().owed.get(component) == effect.epoch and self._lives_on(component):
+            if self._state().owed.get(component) == effect.epoch:
                 self.release(effect)
 
         self.bus.later(2 * CALL, again)
         self._call(component, Call.RELEASE, Release(**self._claim(component, effect.epoch)))
+
+    def _is_gone(self, effect: ReleaseFrom) -> None:
+        """A life that has been gone for longer than its grace acts for nobody: no release is owed to it."""
+        owed = self._state().owed.get(effect.component) == effect.epoch
+        if owed and self.bus.link and not self._lives_on(effect.component):
+            self._step(Answered(effect.component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE))
 
     def _end(self, component: IRI) -> None:
         """Have the site end a component that does not obey its release: it may act on for nobody."""

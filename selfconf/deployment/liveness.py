@@ -37,6 +37,8 @@ AUDIT = 1.0
 """Seconds between two looks at what runs: a component may have let go of its task, or have failed, unnoticed."""
 AUDITED = 20
 """How many components are looked at in one of them; they take turns."""
+SILENT_AUDITS = 3
+"""How many audits in a row a component may leave unanswered; each waits for as long as a call."""
 SETTLING = 1.0
 """Seconds that other nodes may take to be connected again after this one.
 
@@ -72,6 +74,8 @@ class Liveness:
         self._link, self._cut_off = self.bus.link, False
         self._ask_again: Undo = lambda: None
         self._audited = 0
+        self._silences: dict[IRI, int] = {}
+        """How often in a row each component has not answered an audit."""
 
     def discovered(self, discovery: Discovery) -> None:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
@@ -176,7 +180,15 @@ class Liveness:
     def _audit(self, component: IRI, epoch: int, answer: CallAnswer | None) -> None:
         """Judge a component that should act: one that has failed is lost, one that has let go is applied to anew."""
         held = self._state().held.get(component)
-        if answer is None or held is None or answer.life != held.life or not self._runs_undisturbed(epoch):
+        if held is None or not self._runs_undisturbed(epoch):
+            return
+        if answer is None:
+            self._silences[component] = self._silences.get(component, 0) + 1
+            if self._silences[component] >= SILENT_AUDITS:
+                self._step(Failed(component, held.life, Cause.HUNG, "it lives, but answers no question"))
+            return
+        self._silences.pop(component, None)
+        if answer.life != held.life:
             return
         if answer.task != self._calls.identity.task:
             self._calls.forget_connections()

@@ -180,6 +180,8 @@ class TaskRunner:
 
     def _take(self, event: Event) -> None:
         before, known = self.state.phase, self.state.lost
+        if isinstance(event, Appeared):
+            self._pause = TRY_AGAIN
         self.state, effects = machine.step(self.state, event)
         if self.state.lost is not known:
             self._notice(known)
@@ -256,7 +258,9 @@ class TaskRunner:
             return
         again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
         if again or self.state.lost:
+            pause = self._pause
             self._step(Appeared(again))
+            self._pause = pause  # what has not come from outside is no reason to try again sooner
         else:
             self._await_another_chance()
 

@@ -49,7 +49,7 @@ class ComponentCode:
         """Whether the code was told to stop, and is not at rest yet."""
         self.turn = 0
         """Counts starts and stops: what belongs to an earlier one is not run any more."""
-        self._acting_turn = -1
+        self._acting_turn = self._started_turn = -1
         self._rests = 0
         self._on = self._resting = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
@@ -65,6 +65,11 @@ class ComponentCode:
     def active(self) -> bool:
         """Whether the component acts; ended by a stop or a FAIL at once, in whatever thread that comes from."""
         return self._acting_turn == self.turn
+
+    @property
+    def started(self) -> bool:
+        """Whether the component acts, and `started` has returned."""
+        return self.active and self._started_turn == self.turn
 
     @property
     def stint(self) -> tuple[int, int]:
@@ -174,6 +179,8 @@ class ComponentCode:
         trouble = self._started()
         if trouble is not None:
             self._acting_turn = -1
+        else:
+            self._started_turn = turn
         return trouble
 
     def _started(self) -> str | None:

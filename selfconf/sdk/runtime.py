@@ -306,7 +306,7 @@ class ComponentRuntime:
             self.profile.component,
             self.life,
             self.activation.epoch_of(task),
-            self.active and hold is not None and hold.active,
+            self.code.started and hold is not None and hold.active,
             detail,
             claim.supervisor,
             claim.task,
@@ -327,12 +327,13 @@ class ComponentRuntime:
     # Becoming free for another task.
 
     def _ask_to_yield(self) -> None:
-        """Tell those that hold the component that a task of higher priority asks for it, once."""
-        if self._preemption is not None or not table.outranked(self.activation):
+        """Tell those that hold the component that a task of higher priority asks for it, each time that it does."""
+        if not table.outranked(self.activation):
             return
         claim = self.activation.waiting[0]
         self._put_fail(Cause.YIELD, f"the task {task_name(claim.task)} of priority {claim.priority} asks for it")
-        self._preemption = self.bus.later(YIELDING, self._preempt)
+        if self._preemption is None:
+            self._preemption = self.bus.later(YIELDING, self._preempt)
 
     def _preempt(self) -> None:
         """Take the component from tasks that have not let go of it in time."""
