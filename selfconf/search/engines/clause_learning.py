@@ -55,12 +55,15 @@ class ClauseSolver:
         distinct: bool = True,
         encoding: Encoding | None = None,
         solver: str | None = None,
+        counters: bool = False,
     ) -> None:
         from pysat import solvers
 
         self.reduced = reduced
         self._solver = getattr(solvers, solver or SOLVER)()
         self._model: list[int] = []
+        self._counters = counters
+        """Whether numbers beyond one are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
         self.guards: dict[Constraint, int] = encoding.guards
         self.plays: tuple[tuple[int, ...], ...] = encoding.plays
@@ -96,7 +99,7 @@ class ClauseSolver:
         """Allow no more than a number of the literals to hold, under the guards given."""
         if most >= len(literals):
             return
-        if not force and self._solver.supports_atmost():
+        if not force and not (self._counters and most > 1) and self._solver.supports_atmost():
             self._solver.add_atmost(list(literals), most)
             return
         for clause in as_clauses(literals, most, self._top):

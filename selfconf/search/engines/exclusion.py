@@ -29,7 +29,7 @@ from selfconf.search.reduction import Option, ReducedProblem
 
 SHARE_UNFIT = 2
 """A need says little if at most one in this number of the options that could feed it do not."""
-WORTH_LOOKING = 8
+SHARE_FED_BY_ONE = 8
 """One in this number of the needs at least has to be fed by one role alone, or they are not looked at."""
 CONFLICTS_PER_OPTION = 200
 """How many conflicts are looked at, for each option."""
@@ -66,7 +66,7 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
     """
     needs = _fed_by_one(reduced)
     names = [option.component for options in reduced.options for option in options if option.component]
-    if sum(map(len, needs.values())) * WORTH_LOOKING < len(reduced.needs):
+    if sum(map(len, needs.values())) * SHARE_FED_BY_ONE < len(reduced.needs):
         needs = {}
     if not needs and (not distinct or len(set(names)) == len(names)):
         return ExclusiveGroups()

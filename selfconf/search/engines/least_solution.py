@@ -23,8 +23,10 @@ from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.rival import Rival
 from selfconf.search.reduction import Option, ReducedProblem
 
-ALONE = 3_000
-"""Conflicts of the first solver before another one joins in."""
+UNCOUNTED = 1_000
+"""Conflicts of the first solver before it gets numbers beyond one as clauses."""
+ALONE = 10_000
+"""Conflicts of the first solver after that before another one joins in, some tenths of a second."""
 BESIDE = 1_000
 """Conflicts for a call while another engine works beside."""
 
@@ -99,6 +101,11 @@ class _Descent:
         self.plays = encoding.plays
         with ExitStack() as stack:
             turns = [_Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))]
+            self.advance(turns[0], min(ALONE, UNCOUNTED))
+            if not self.finished and any(bound.most > 1 for bound in encoding.bounds):
+                # Counted by clauses, numbers are something to learn about; until then that would have been a detour.
+                counting = ClauseSolver(self.reduced, encoding=encoding, counters=True)
+                turns[0] = _Turn(stack.enter_context(counting))
             self.advance(turns[0], ALONE)
             if not self.finished and self.budget.steps is None and Rival.available():
                 self.rival = stack.enter_context(Rival(encoding, self.slots, self.least))
