@@ -1,0 +1,70 @@
+"""Who lives in the measured ecology: `python -m benchmarks.live.crowd NAME COUNT`, a process that ends with its stdin.
+
+`crowd` is COUNT components that live and do nothing: a liveliness token each, as the SDK declares it. `first`, `second`
+and `sink` are components of the SDK; a source emits once when it is started, and the sink writes when it hears another.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+
+from benchmarks.live.world import bystander, written_for
+from selfconf import rendezvous
+from selfconf.bus.zenoh_bus import client
+from selfconf.protocol.keys import Keys
+from selfconf.sdk import Component, Signal
+from selfconf.sdk.program import open_host
+
+
+class Source(Component):
+    """Emits one signal when it is started."""
+
+    def started(self) -> None:
+        """A signal at once."""
+        self.emit("pose", {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"})
+
+
+class Sink(Component):
+    """Writes when a new source is first heard."""
+
+    source = ""
+
+    def received(self, port: str, signal: Signal) -> None:
+        """Note the first signal of each new source."""
+        if signal.source != self.source:
+            self.source = signal.source
+            print(time.time(), flush=True)
+
+
+def end_with_stdin(over: threading.Event) -> None:
+    """Set the event when stdin ends."""
+    sys.stdin.read()
+    over.set()
+
+
+def main() -> None:
+    """Live until stdin ends."""
+    name, count = sys.argv[1], int(sys.argv[2])
+    over = threading.Event()
+    threading.Thread(target=end_with_stdin, args=(over,), daemon=True).start()
+    if name == "crowd":
+        ecology, endpoints = rendezvous.find(None, [])
+        bus, keys = client(endpoints), Keys(ecology)
+        for number in range(count):
+            bus.announce(keys.life(bystander(number), "1"))
+        print("ready", flush=True)
+        bus.run(over.is_set)
+        bus.close()
+        return
+    host = open_host()
+    kind: type[Component] = Sink if name == "sink" else Source
+    host.add(type(name, (kind,), {"advertisement": str(written_for(name))})())
+    print("ready", flush=True)
+    host.run(over.is_set)
+    host.close()
+
+
+if __name__ == "__main__":
+    main()
