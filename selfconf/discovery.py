@@ -97,6 +97,8 @@ class EcologyView:
         self.lives: dict[str, tuple[str, ...]] = {}
         """The lives of each living component, sorted, by the component's chunk: more than one where processes clash."""
         self.discovery = Discovery()
+        self.aside: Callable[[Callable[[], None]], None] = lambda work: work()
+        """Reads what the sites have answered; by default at once, where there is only one thread."""
         self.known: dict[SiteLife, KnownSite] = {}
         """What the sites that live have answered before."""
         self._followed = False
@@ -198,7 +200,12 @@ class _Inquiry:
         if incomplete and self._attempt < DISCOVERY_ATTEMPTS and replies.complete:
             self._ask(incomplete[0][0] if len(incomplete) == 1 else "*")
         else:
-            self._done(self._result(incomplete))
+            self.ecology.aside(lambda: self._finish(incomplete))
+
+    def _finish(self, incomplete: list[SiteLife]) -> None:
+        """Read what has come, wherever that is done, and hand it over on the bus's thread."""
+        discovery = self._result(incomplete)
+        self.bus.wake_up(lambda: self._done(discovery))
 
     def _sites(self) -> list[SiteLife]:
         """Every site; one may begin to answer and die, or begin to live after the roll-call: a page is as a token."""

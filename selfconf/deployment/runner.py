@@ -110,6 +110,7 @@ class TaskRunner:
         """`task` and `beginning` are those of a task that another configurator has begun; by default it is new."""
         self.bus, self.request, self.clock = bus, request, clock
         self.ecology = EcologyView(bus, ecology)
+        self.ecology.aside = request.aside
         self.keys = self.ecology.keys
         self.name = name or f"c{secrets.token_hex(4)}"
         task = task or task_identity(request.name or safe_name(request.task.template.iri.short), self.name)
