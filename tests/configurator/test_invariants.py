@@ -291,7 +291,8 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
         calls = list(Call)
         return Answered(component, calls[which % len(calls)], max(0, state.epoch - when % 3), verdict, "1", state.epoch)
     if kind < 46:
-        return Failed(component, ["", "0", "1"][which % 3], list(Cause)[how % len(Cause)])
+        cause = list(Cause)[how % len(Cause)]
+        return Failed(component, ["", "0", "1"][which % 3], cause, startable=bool(when % 2))
     if kind < 50:
         return Appeared({component: str(which % 3)} if how % 2 else {})
     if kind < 57:

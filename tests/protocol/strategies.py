@@ -14,6 +14,7 @@ from selfconf.protocol.messages import (
     End,
     Fail,
     Free,
+    Known,
     Page,
     Release,
     Reserve,
@@ -64,12 +65,12 @@ claim: dict[str, st.SearchStrategy[Any]] = {
     "beginning": seconds,
 }
 """What every call says."""
-messages = st.one_of(
-    st.builds(Reserve, **claim, inputs=inputs, values=values, waits=st.booleans()),
-    st.builds(Apply, **claim, inputs=inputs, standby=inputs, values=values),
-    st.builds(Release, **claim),
-    st.builds(StateOf, texts),
-    st.builds(
+by_kind: dict[type, st.SearchStrategy[Any]] = {
+    Reserve: st.builds(Reserve, **claim, inputs=inputs, values=values, waits=st.booleans()),
+    Apply: st.builds(Apply, **claim, inputs=inputs, standby=inputs, values=values),
+    Release: st.builds(Release, **claim),
+    StateOf: st.builds(StateOf, texts),
+    CallAnswer: st.builds(
         CallAnswer,
         st.sampled_from(Verdict),
         iris,
@@ -83,13 +84,14 @@ messages = st.one_of(
         seconds,
         texts,
     ),
-    st.builds(Fail, iris, texts, numbers, st.sampled_from(Cause), texts),
-    st.builds(Free, iris, texts, texts),
-    st.builds(Wake, iris),
-    st.builds(End, iris, texts),
-    st.builds(Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans()),
-    st.builds(Stamp, iris, texts, numbers, seconds),
-    st.builds(
+    Fail: st.builds(Fail, iris, texts, numbers, st.sampled_from(Cause), texts),
+    Free: st.builds(Free, iris, texts, texts),
+    Known: st.builds(Known, st.dictionaries(names, numbers, max_size=3)),
+    Wake: st.builds(Wake, iris),
+    End: st.builds(End, iris, texts),
+    Page: st.builds(Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans(), texts),
+    Stamp: st.builds(Stamp, iris, texts, numbers, seconds),
+    Status: st.builds(
         Status,
         texts,
         texts,
@@ -105,7 +107,7 @@ messages = st.one_of(
         seconds,
         st.lists(iris, max_size=3).map(tuple),
     ),
-    st.builds(
+    TaskRecord: st.builds(
         TaskRecord,
         texts,
         numbers,
@@ -121,4 +123,6 @@ messages = st.one_of(
         numbers,
         st.dictionaries(texts, plain, max_size=2),
     ),
-)
+}
+"""For each kind of message, any one of it."""
+messages = st.one_of(*by_kind.values())
