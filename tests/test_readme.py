@@ -102,9 +102,9 @@ def running(folder: Path, word: bytes) -> list[int]:
     return found
 
 
-def test_with_wait_a_crashed_component_gets_another_chance(folder: Path) -> None:
+def test_a_crashed_component_is_started_again_by_its_site(folder: Path) -> None:
     arguments = next(arguments for arguments in commands() if arguments[0] == "run")
-    process = start([*arguments, "--wait"], folder)
+    process = start(arguments, folder)
     assert process.stdout is not None
     said, killed = [], False
     for line in process.stdout:
@@ -117,7 +117,7 @@ def test_with_wait_a_crashed_component_gets_another_chance(folder: Path) -> None
                 os.kill(number, signal.SIGKILL)
     process.send_signal(signal.SIGINT)
     rest, _ = process.communicate(timeout=PATIENCE)
-    assert "waiting for the ecology to change" in "".join(said)
+    assert "LOST   :display: crash" in "".join(said)
     assert process.returncode == 0, "".join(said) + rest
 
 
@@ -134,4 +134,4 @@ def test_a_run_whose_words_cannot_be_written_ends(folder: Path) -> None:
             timeout=PATIENCE,
             check=False,
         )
-    assert done.returncode == 0
+    assert done.returncode == 2
