@@ -27,9 +27,8 @@ class ThinkingCap(Component):
         self._source = ""
 
     def started(self) -> None:
-        """A new configuration: no goal yet, and nothing known."""
+        """A new configuration, with a goal of its own: nothing is known yet."""
         self._newest.clear()
-        self._navigator = None
         self._source = ""
 
     def parameter_set(self, name: str, value: Any) -> None:
