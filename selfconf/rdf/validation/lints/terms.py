@@ -48,6 +48,7 @@ def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
 
 def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
     """Terms of a known namespace that no ontology declares."""
+    meant: dict[str, str | None] = {}  # a term that is misspelt once is often misspelt everywhere
     for (_, predicate, value), offsets in file.positions.triples.items():
         used: list[tuple[Node | None, int]] = [(predicate, offsets.predicate)]
         if isinstance(value, Literal):
@@ -56,7 +57,10 @@ def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
             used.append((value, offsets.object))
         for term, offset in used:
             if isinstance(term, URIRef) and not _known(str(term), file.index):
-                yield _unknown(file, str(term), offset)
+                iri = str(term)
+                if iri not in meant:
+                    meant[iri] = _meant(file, iri)
+                yield _unknown(file, iri, offset, meant[iri])
 
 
 def _known(iri: str, index: TermIndex) -> bool:
@@ -66,11 +70,16 @@ def _known(iri: str, index: TermIndex) -> bool:
     return words is not None and (URIRef(iri) in words or bool(_MEMBERSHIP.fullmatch(iri)))
 
 
-def _unknown(file: LintedFile, iri: str, offset: int) -> Diagnostic:
+def _meant(file: LintedFile, iri: str) -> str | None:
+    """The known term for which an unknown one probably stands."""
     home = namespace(iri)
     words = _STANDARD.get(home)
     known = [str(term) for term in dir(words)] if words else sorted(file.index.terms)
-    meant = _elsewhere(iri, file) or _closest(iri[len(home) :], [term for term in known if term.startswith(home)])
+    return _elsewhere(iri, file) or _closest(iri[len(home) :], [term for term in known if term.startswith(home)])
+
+
+def _unknown(file: LintedFile, iri: str, offset: int, meant: str | None) -> Diagnostic:
+    home = namespace(iri)
     hint = f"Did you mean {file.short(meant)}?" if meant else None
     short = file.short(iri)
     fixed = home in _STANDARD or home == _SC.base
