@@ -28,6 +28,13 @@ OUTPUTS = {
     "drive": "",
 }
 """The actors, each with its output."""
+SIGNALS: dict[str, dict[str, object]] = {
+    "ranges": {"angles": [0.0], "ranges": [1.0], "max_range": 5.0},
+    "odometry": {"x": 1.0, "y": 2.0, "theta": 0.5, "linear": 0.1, "angular": 0.0},
+    "pose": {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"},
+    "set.velocity": {"linear": 0.1, "angular": 0.0},
+}
+"""What each output emits: a signal of its type."""
 BEAT = 0.02
 """Seconds between two signs of an actor that acts."""
 
@@ -52,7 +59,7 @@ class Actor(Component):
         """Act once."""
         self.witness.note(self.name, "acts")
         if self.output:
-            self.emit(self.output, {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"})
+            self.emit(self.output, SIGNALS[self.output])
 
     def received(self, port: str, signal: Signal) -> None:
         """Pass over what is heard."""
