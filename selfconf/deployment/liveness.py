@@ -220,6 +220,11 @@ class Liveness:
             self._site_ended = self.bus.now()
             self._sites.discard(key)
 
+    def suspended(self) -> None:
+        """This program stood still for a while, as if it had been cut off: so it was, or nearly."""
+        if self.ecology.followed:
+            self._await_link()
+
     def _await_link(self) -> None:
         """Believe no end while this node is cut off; what has become of the components is asked afterwards."""
 

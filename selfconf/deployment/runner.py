@@ -41,7 +41,6 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
-    Reconnected,
     Stopped,
     WaitedLong,
 )
@@ -216,8 +215,7 @@ class TaskRunner:
             self.bus.later(PULSE, self._pulse)
         if late > SUSPENDED:
             log.warning("this program was suspended for %.1f s; looking at what has become of the ecology", late)
-            self._calls.forget_connections()
-            self._step(Reconnected())
+            self._liveness.suspended()
 
     def _stand_by(self, configuration: Configuration) -> None:
         lost, epoch = frozenset(self.state.lost), self.state.epoch

@@ -24,4 +24,4 @@ class Holder:
         return self.task.partition("~")[0]
 
     def __str__(self) -> str:
-        return f"the task {self.name} (priority {self.priority}) holds it"
+        return f"the task {self.name} (priority {self.priority}, configurator {self.configurator}) holds it"

@@ -21,7 +21,7 @@ def test_run_with_wait_goes_on_when_another_run_lets_go_of_a_component(inhabited
     first.act("running")
     second = inhabited.run("--wait")
     lost = second.act("waiting")["lost"]
-    assert all("the configurator c" in why and why.endswith(" holds it") for why in lost.values())
+    assert all("configurator c" in why and why.endswith(" holds it") for why in lost.values())
     third = inhabited.run()
     assert third.ended() == 1
     assert first.end(signal.SIGINT) == 0
@@ -36,7 +36,7 @@ def test_people_are_told_which_configurator_holds_what_they_need(inhabited: Home
     arguments = ("navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x", "--ecology", inhabited.ecology)
     refused = inhabited.selfconf("run", *arguments)
     assert refused.ended() == 1
-    assert "was lost: refused, the configurator c" in refused.complaints
+    assert "was lost: refused, the task navigate (priority 0, configurator c" in refused.complaints
     assert "start it again" not in refused.complaints
     assert "run again when it is free" in refused.complaints
     assert holder.end(signal.SIGINT) == 0
@@ -54,7 +54,7 @@ def test_a_run_that_was_suspended_goes_on_with_those_that_turned_themselves_off_
     assert run.end(signal.SIGINT) == 0
 
 
-def test_a_component_that_dies_while_it_is_activated_is_given_another_chance(home: Home) -> None:
+def test_a_component_that_dies_while_it_is_activated_is_started_again_by_its_site(home: Home) -> None:
     dormant(home, "tracker")
     home.site("peis-home", "ads")
     home.components("sonar", "encoder", "control", "drive")
@@ -62,7 +62,6 @@ def test_a_component_that_dies_while_it_is_activated_is_given_another_chance(hom
     run = home.run("--wait")
     lost = run.act("lost")
     assert (lost["component"], lost["cause"]) == (component_of("tracker"), "crash")
-    run.act("waiting")
     run.act("running")
     assert home.active(*EVERYBODY) == TASK | {"tracker"}
     assert run.end(signal.SIGINT) == 0

@@ -356,7 +356,7 @@ def test_a_refusal_for_lack_of_what_others_hold_names_it() -> None:
     assert history.composed(navigation()) == [Finish(REFUSAL)]
     assert history.state.lost.keys() == {TRACKER}
     assert history.state.lost[TRACKER].busy
-    assert history.state.lost[TRACKER].detail == "the task tidy (priority 0) holds it"
+    assert history.state.lost[TRACKER].detail == str(OTHERS)
 
 
 def test_a_refusal_that_nobody_else_is_to_blame_for_names_nobody() -> None:

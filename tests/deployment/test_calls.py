@@ -119,7 +119,8 @@ def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) 
     lab.let_pass(1.0)
     assert lab.acts("declined") == []  # it has asked the other configurators before
     lost = {event.component: event.detail for event in lab.acts("lost")}
-    assert lost == dict.fromkeys([iri("thinking-cap"), iri("astrid-drive")], "the task navigate (priority 0) holds it")
+    holder = f"the task navigate (priority 0, configurator {first.name}) holds it"
+    assert lost == dict.fromkeys([iri("thinking-cap"), iri("astrid-drive")], holder)
 
 
 def test_a_component_that_another_task_takes_at_the_same_moment_is_declined_by_the_component_itself(lab: Lab) -> None:

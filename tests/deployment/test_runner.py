@@ -305,7 +305,7 @@ def test_patience_goes_on_when_a_component_that_another_configurator_held_is_fre
     lab.let_pass(3 * TRY_AGAIN)
     assert second.state.phase is Phase.REFUSED
     assert {detail for waiting in lab.acts("waiting") for detail in waiting.lost.values()} == {
-        "refused, the task navigate (priority 0) holds it"
+        f"refused, the task navigate (priority 0, configurator {first.name}) holds it"
     }
     first.stop()
     assert lab.running(second)
