@@ -367,7 +367,7 @@ def changed(body: Any, path: str) -> Iterator[tuple[str, Any]]:
 
 OPEN = frozenset(("bindings", "lost", "eligible"))
 """Members whose own members have names that an author gives: any may be missing."""
-OPTIONAL = frozenset(("cost", "what_if", "place", "role", "datatype"))
+OPTIONAL = frozenset(("additions", "cost", "what_if", "place", "role", "datatype"))
 """Members that some answers do not have."""
 
 
