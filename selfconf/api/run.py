@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import TracebackType
@@ -11,6 +9,7 @@ from types import TracebackType
 from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.places import Places
 from selfconf.api.task import TaskSpecification
+from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.zenoh_bus import client
 from selfconf.composition import TimeLimit, composed
 from selfconf.configurator.state import Loss, Policy
@@ -182,44 +181,3 @@ class Run:
             self._bus.later(CHECK, self._check)
         else:
             self._runner.stop()
-
-
-class WorkQueue:
-    """What a run hands from the thread of its bus to the thread that reads its events: work first, then events."""
-
-    def __init__(self) -> None:
-        self._works: deque[Callable[[], None]] = deque()
-        self._events: deque[RunEvent] = deque()
-        self._more = threading.Condition()
-        self._woken = False
-
-    def work(self, work: Callable[[], None]) -> None:
-        """Have something done that takes long."""
-        with self._more:
-            self._works.append(work)
-            self._more.notify()
-
-    def report(self, event: RunEvent) -> None:
-        """Hand an event over."""
-        with self._more:
-            self._events.append(event)
-            self._more.notify()
-
-    def wake_up(self) -> None:
-        """Let `next` return at once."""
-        with self._more:
-            self._woken = True
-            self._more.notify()
-
-    def next(self, seconds: float) -> RunEvent | None:
-        """Do all the work there is, and return the next event; None if none has come after that long."""
-        with self._more:
-            if not (self._works or self._events or self._woken) and seconds > 0:
-                self._more.wait(seconds)
-            self._woken = False
-            works = list(self._works)
-            self._works.clear()
-        for work in works:
-            work()
-        with self._more:
-            return self._events.popleft() if self._events else None

@@ -11,13 +11,13 @@ from functools import partial
 from pathlib import Path
 
 from selfconf import rendezvous
-from selfconf.api.detached import request_of
 from selfconf.api.joining import Joining
 from selfconf.api.reading import existing
-from selfconf.api.run import WorkQueue
-from selfconf.deployment import Keeper, TaskFolder
+from selfconf.api.work_queue import WorkQueue
+from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.keys import checked_name, life_of
+from selfconf.protocol.messages import TaskRecord
 from selfconf.render import count
 from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
@@ -62,7 +62,7 @@ def serve(
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints))
         site = Site(bus, ecology, name, shelf, environment, _log_path(log, ecology, name), life)
-        keeper = Keeper(bus, ecology, name, records, partial(request_of, aside=work.work))
+        keeper = Keeper(bus, ecology, name, records, partial(_request_of, work))
         joining.announce()
         bus.watch(site.keys.site_life(name, "*"), partial(_met, complain, site))
     served = count(len(site.shelf.advertisements), "advertisement")
@@ -113,3 +113,10 @@ def _log_path(folder: Path | None, ecology: str, name: str) -> Path:
         folder = rendezvous.runtime_folder() / "log"
         forget_oldest(folder, {f"{site.ecology}@{site.site}.log" for site in rendezvous.local_sites()})
     return folder / f"{ecology}@{name}.log"
+
+
+def _request_of(work: WorkQueue, record: TaskRecord) -> RunRequest:
+    """The request to run a task that the site keeps; what reads it is loaded with the first one."""
+    from selfconf.api.detached import request_of
+
+    return request_of(record, work.work)
