@@ -14,8 +14,9 @@ SEEDS  ?= 20
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
 
-# As many processes as processors; which tests share one is said in tests/schedule.py.
-PARALLEL := --numprocesses auto
+# Twice as many processes as processors, for many tests wait for programs that they have started; which tests share one
+# is said in tests/schedule.py.
+PARALLEL := --numprocesses $(shell echo $$((2 * $$(nproc 2>/dev/null || echo 2))))
 
 test: $(VENV)/with-dev
 	$(BIN)/python -m pytest $(PARALLEL)
