@@ -46,6 +46,9 @@ LEASE = 1.0
 """Seconds after which a node that is paused counts as gone: its lives seem to have ended."""
 REJOINING = 0.1
 """Seconds that a node whose lease has run out needs to be connected again, once it goes on."""
+_LEAST_TIMER = 1e-6
+"""Seconds that a timer takes at least, unless it takes none: rounding may make less than that no time at all, and a
+timer that is renewed until a time has come would never end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,6 +308,7 @@ class MemoryBus:
             nonlocal undone
             undone = True
 
+        seconds = seconds and max(seconds, _LEAST_TIMER)
         self.network.at(max(self.network.time, self.busy_until) + seconds, self, act)
         return undo
 

@@ -348,3 +348,21 @@ def test_whoever_wants_to_looks_at_every_step() -> None:
         node.later(seconds, lambda: None)
     network.run(lambda: False, 5.0)
     assert times == [1.0, 2.0]
+
+
+def test_a_timer_that_is_renewed_until_a_time_has_passed_ends() -> None:
+    network = Network(1)
+    node = network.node()
+    looks = 0
+
+    def look(since: float) -> None:
+        nonlocal looks
+        looks += 1
+        if (passed := node.now() - since) < 1.0 and looks < 1_000:  # 1.0554851481309644 - 0.0554851481309644 < 1.0
+            node.later(1.0 - passed, partial(look, since))
+
+    for begun in (number / 7 for number in range(1, 100)):
+        network.run(lambda: False, 0.3)
+        node.later(begun, partial(look, network.time))
+    network.run(lambda: False, 20.0)
+    assert looks < 400

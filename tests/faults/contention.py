@@ -124,7 +124,11 @@ class Contention:
                 self.wrong.append(f"{self.network.time:.4f} {name} is started before {wire.component.short}")
 
     def _look(self) -> None:
-        """No actuator acts while a part of its configuration is not held for the same task."""
+        """No component is held for two tasks, no actuator acts while a part of its configuration is not held."""
+        for name, runtime in self.lab.runtimes.items():
+            if len(holds := runtime.activation.holds) > 1:
+                tasks = " and ".join(hold.claim.task for hold in holds)
+                self.wrong.append(f"{self.network.time:.4f} {name} is held for {tasks}")
         for agent in self.agents:
             configuration = agent.configuration
             if configuration is None:

@@ -84,7 +84,7 @@ def test_tasks_that_wait_run_one_after_the_other_as_others_end(seed: int, priori
     ("name", "value", "wrong"),
     [
         ("selfconf.sdk.runtime.YIELDING", 0.0, "acts for"),
-        ("selfconf.protocol.activation._blocked", lambda *_: False, "acts for"),
+        ("selfconf.protocol.activation._blocked", lambda *_: False, "is held for"),
         ("selfconf.configurator.machine.resting_next", lambda wires, left: tuple(left), "acts for"),
         ("selfconf.configurator.deploying._may_begin", lambda *_: True, "is started before"),
     ],
