@@ -25,10 +25,11 @@ test: $(VENV)/with-dev
 quick: $(VENV)/with-dev
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow'
 
-# Ten thousand random ecologies for each property of the search, against every oracle, and ten thousand histories with
-# faults; about half an hour.
+# Ten thousand random ecologies for each property of the search, against every oracle, ten thousand histories with
+# faults, all that is recorded, and drives of ten seeds; about half an hour.
 nightly: $(VENV)/with-dev fuzz
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults \
+		tests/recorded tests/sim/test_rehearsal.py
 
 # Five hundred real faults: processes that are killed, stopped and ended at random moments; about an hour.
 faults: $(VENV)/with-dev

@@ -17,6 +17,15 @@ INHABITED = {
     "tests/cli/test_stop.py",
 }
 """Modules with tests that use the fixture `inhabited`, which starts a site and seven components: once is enough."""
+WHOLE = {
+    "tests/api/test_ecology.py",
+    "tests/api/test_living.py",
+    "tests/api/test_run.py",
+    "tests/cli/test_untrusted.py",
+    "tests/query/test_endpoint.py",
+    "tests/sim/test_pictures.py",
+}
+"""Modules whose tests share something that takes seconds to make: a living ecology, an endpoint, an album."""
 BAD_FILES = ("test_a_bad_file_", "test_the_log_of_every_bad_file_")
 """How the names of tests begin that share the reports about all files of `tests/bad`."""
 RECORDED = "tests/recorded/test_recorded.py"
@@ -28,6 +37,8 @@ def group_of(test: str) -> str:
     module, _, name = test.partition("::")
     if module in INHABITED:
         return "inhabited"
+    if module in WHOLE:
+        return module
     if name.startswith(BAD_FILES):
         return "bad files"
     if module == RECORDED and "_as_recorded[" in name:

@@ -22,10 +22,9 @@ in_git = pytest.mark.skipif(not (ROOT / ".git").exists(), reason="there is no gi
 @pytest.mark.process
 @in_git
 def test_the_short_run_runs() -> None:
-    command = [sys.executable, "-m", "benchmarks.compare", "HEAD", "--smoke", "--only", "search", "--only", "validate"]
+    command = [sys.executable, "-m", "benchmarks.compare", "HEAD", "--smoke", "--only", "validate"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert done.returncode in (0, 1), done.stderr  # 1 where work in progress changes an answer
-    assert "| navigation, 10 per role | search |" in done.stdout
     assert "20 files, one in ten with a mistake" in done.stdout
 
 

@@ -152,9 +152,13 @@ def _mesh(material: Material, solids: Sequence[Solid]) -> Any:
     with tempfile.TemporaryDirectory() as folder:
         path = str(Path(folder) / "mesh.ply")
         mesh.write_ply(path)
-        return mitsuba.load_dict(
-            {"type": "ply", "filename": path, "bsdf": {"type": "twosided", "one": _bsdf(material)}}
-        )
+        return mitsuba.load_dict({"type": "ply", "filename": path, "bsdf": _surface(material)})
+
+
+@lru_cache(maxsize=256)
+def _surface(material: Material) -> Any:
+    """Return how a material scatters light; Mitsuba tabulates a glossy one for 30 ms, so scenes share it."""
+    return mitsuba.load_dict({"type": "twosided", "one": _bsdf(material)})
 
 
 def _bsdf(material: Material) -> dict[str, Any]:

@@ -17,9 +17,9 @@ ECOLOGIES = 1_000
 _TEMPLATE = ("template.ttl", "--ads", "ads")
 
 
-def ecologies(here: Path, count: int = ECOLOGIES) -> Iterator[tuple[str, Answer]]:
+def ecologies(here: Path) -> Iterator[tuple[str, Answer]]:
     """What is answered about random ecologies, which are written into folders of a folder."""
-    for seed in range(count):
+    for seed in range(ECOLOGIES):
         ecology = generated(seed)
         place = write(ecology.files, here / f"{seed:04}")
         with folder(place):

@@ -12,6 +12,7 @@ import sys
 
 import pytest
 
+from tests.effort import examples
 from tests.recorded import cases
 from tests.recorded.answers import Answer, differences, taken_apart
 from tests.recorded.record import GROUPS, answers, compared, load
@@ -24,6 +25,7 @@ pytest.importorskip("pysat", reason="with fewer solvers, fewer searches are deci
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, Answer]]:
     """A group, and what is answered to its cases now."""
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cases, "ECOLOGIES", min(cases.ECOLOGIES, examples(500)))
         patch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path_factory.mktemp("runtime")))
         for name in ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT", "SELFCONF_PARENT"):
             patch.delenv(name, raising=False)

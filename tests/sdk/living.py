@@ -41,6 +41,8 @@ class LivingStage:
         self.caller.subscribe(
             self.keys.any_fail(), lambda sample: self.fails.append((time.monotonic(), decode(sample.payload, Fail)))
         )
+        self._lives: set[str] = set()
+        self.caller.watch(self.keys.any_life(), lambda key, here: self._lives.add(key) if here else None)
         self.hangs: list[str] = []
         self._hosts: list[Callable[[], None]] = []
         self.release_code = threading.Event()
@@ -81,10 +83,12 @@ class LivingStage:
         self._hosts.append(end)
 
     def component(self, component: Kind) -> Kind:
-        """A component that lives on a host of its own."""
+        """A component that lives on a host of its own, and can be called."""
+        known = len(self._lives)
         host = self.host()
         host.add(component)
         self.run(host)
+        assert until(lambda: len(self._lives) > known)
         return component
 
     def call(self, component: str, call: str, message: Reserve | Apply | Release | None = None) -> list[CallAnswer]:

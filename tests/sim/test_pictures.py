@@ -85,8 +85,17 @@ def run() -> RunRecord:
 
 
 @pytest.fixture(scope="module")
-def album(run: RunRecord, apartment: Apartment, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    return draw(run, apartment, tmp_path_factory.mktemp("album") / "new", TINY)
+def heard() -> list[float]:
+    """The progress of the album, as it was told."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def album(
+    run: RunRecord, apartment: Apartment, heard: list[float], tmp_path_factory: pytest.TempPathFactory
+) -> list[Path]:
+    folder = tmp_path_factory.mktemp("album") / "new"
+    return draw(run, apartment, folder, TINY, lambda what, share: heard.append(share))
 
 
 def test_an_album_holds_every_picture_and_returns_their_paths(album: list[Path]) -> None:
@@ -184,9 +193,7 @@ def test_a_run_that_leaves_the_apartment_is_drawn_as_well(apartment: Apartment, 
     assert len(draw(RunRecord(samples, failures=(failure,), goal=(-9.0, 9.0)), apartment, tmp_path, TINY)) == 3
 
 
-def test_progress_rises_from_nothing_to_all(apartment: Apartment, tmp_path: Path) -> None:
-    heard: list[float] = []
-    draw(RunRecord((Sample(0.0, 1.0, 1.4),)), apartment, tmp_path, TINY, lambda what, share: heard.append(share))
+def test_progress_rises_from_nothing_to_all(album: list[Path], heard: list[float]) -> None:
     assert heard[0] == 0.0
     assert heard[-1] == 1.0
     assert heard == sorted(heard)

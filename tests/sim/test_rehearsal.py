@@ -11,6 +11,7 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed: install the e
 from sim.apartment import Apartment
 from sim.floor_plan import Block
 from sim.rehearsal import Log, rehearse
+from tests.effort import NIGHTLY
 
 pytestmark = [pytest.mark.sim, pytest.mark.slow]
 
@@ -23,7 +24,7 @@ def bedroom_error(log: Log, apartment: Apartment) -> float:
     return log.error(standing)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", range(1, 11 if NIGHTLY else 2))
 def test_the_tracker_loses_her_before_the_door_and_odometry_brings_her_to_the_bedroom(
     apartment: Apartment, seed: int
 ) -> None:
