@@ -258,8 +258,10 @@ def _failed(state: State, event: Failed) -> Reaction:
         return state, ()
     if event.cause is Cause.SILENCE and not held.confirmed:
         return state, ()  # it may not have begun
-    if event.cause is Cause.YIELD and not held.reserved:
+    if event.cause in (Cause.YIELD, Cause.LET_GO) and not held.reserved:
         return state, ()  # another task is asked to let go of it, perhaps for this one
+    if event.cause is Cause.LET_GO:  # nothing may act on a part; the component can be had again
+        return _dismantle(replace(state, news=True), Phase.COMPOSING)
     loss = Loss(event.cause, event.detail, event.life or held.life, busy=event.cause is Cause.YIELD)
     return _lose(state, event.component, replace(loss, startable=event.startable and event.cause in PROCESS_ENDS))
 

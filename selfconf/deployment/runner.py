@@ -413,8 +413,12 @@ class TaskRunner:
         own = sample.key == self.keys.fail(fail.component)
         reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
         held = self.state.held.get(fail.component)
+        if fail.task not in ("", self.identity.task):
+            return
         if fail.cause is Cause.YIELD and (held is None or not held.reserved):
-            return  # that is for the tasks that hold it; this one may be the one that asks
+            return  # an older component names no task, and this one may be the one that asks
+        if fail.cause is Cause.LET_GO and held is not None:
+            log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
         if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
 

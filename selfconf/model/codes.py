@@ -450,7 +450,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-C11", "A failure has one component, one cause, and at most one detail and time.",
-        'The causes are "fail", "crash", "silence", "refused", "hung", "malformed" and "yield".',
+        'The causes are "fail", "crash", "silence", "refused", "hung", "malformed", "yield" and "let go".',
         '[] a sc:Failure ; sc:component :tuner ; sc:cause "tired" .',
         '[] a sc:Failure ; sc:component :tuner ; sc:cause "crash" .',
         ("FailureComponent", "FailureCause", "FailureDetail", "FailureTime"),

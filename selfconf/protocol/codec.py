@@ -238,7 +238,9 @@ def _texts(value: object) -> tuple[str, ...]:
 _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "epoch"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Fail, Status, TaskRecord)},
     **{(kind, "supervisor"): _text for kind in (Reserve, Apply, Release, CallAnswer)},
-    **{(kind, "task"): _text for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Free, Status, TaskRecord)},
+    **{
+        (kind, "task"): _text for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Fail, Free, Status, TaskRecord)
+    },
     **{(kind, "priority"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "beginning"): _moment for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Free, Wake, End, Stamp)},

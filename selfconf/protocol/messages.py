@@ -31,6 +31,8 @@ class Cause(str, Enum):
     """It emitted what is not a signal of the type that its output promises."""
     YIELD = "yield"
     """A task of higher priority asks for it; it is not broken, and free for that task once it is released."""
+    LET_GO = "let go"
+    """It is not broken, but acts no more for a task whose configurator seemed gone, or has not yielded in time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +144,8 @@ class Fail:
     epoch: int
     cause: Cause = Cause.FAIL
     detail: str = ""
+    task: str = ""
+    """The identity of the task that it is put for; empty: every task that the component acts for."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -309,7 +309,7 @@ class InputSubscription:
             fail = decode(sample.payload, Fail)
         except PeerError:
             return
-        if fail.component == self._wire.component and fail.life and fail.cause is not Cause.YIELD:
+        if fail.component == self._wire.component and fail.life and fail.cause not in (Cause.YIELD, Cause.LET_GO):
             self._lose(self._heard_at)
 
     def _lose(self, heard: float) -> None:

@@ -13,7 +13,7 @@ import logging
 import os
 import secrets
 import socket
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -189,8 +189,8 @@ class ComponentRuntime:
         """What `fail` leaves for the bus's thread."""
         self._become(*table.fail(self.activation))
 
-    def _put_fail(self, cause: Cause, detail: str) -> None:
-        self._fail.put(encode(Fail(self.profile.component, self.life, self.activation.epoch, cause, detail)))
+    def _put_fail(self, cause: Cause, detail: str, task: str = "") -> None:
+        self._fail.put(encode(Fail(self.profile.component, self.life, self.activation.epoch, cause, detail, task)))
 
     # Control calls.
 
@@ -328,10 +328,13 @@ class ComponentRuntime:
 
     def _ask_to_yield(self) -> None:
         """Tell those that hold the component that a task of higher priority asks for it, each time that it does."""
-        if not table.outranked(self.activation):
+        outranked = table.outranked(self.activation)
+        if not outranked:
             return
         claim = self.activation.waiting[0]
-        self._put_fail(Cause.YIELD, f"the task {task_name(claim.task)} of priority {claim.priority} asks for it")
+        for task in outranked:
+            detail = f"the task {task_name(claim.task)} of priority {claim.priority} asks for it"
+            self._put_fail(Cause.YIELD, detail, task)
         if self._preemption is None:
             self._preemption = self.bus.later(YIELDING, self._preempt)
 
@@ -340,9 +343,7 @@ class ComponentRuntime:
         self._preemption = None
         outranked = table.outranked(self.activation)
         if outranked:
-            log.warning("%s: taken from %s", self.profile.component.short, ", ".join(map(task_name, outranked)))
-            self._drop(outranked)
-            self._when_at_rest(self._offer)
+            self._let_go(outranked, "a task of higher priority asked for it, and this one has not yielded in time")
 
     def _offer(self) -> None:
         """Keep the component, if it is free, for the first task that waits, and tell it."""
@@ -375,7 +376,7 @@ class ComponentRuntime:
             self._preemption()
             self._preemption = None
 
-    def _drop(self, tasks: list[str] | tuple[str, ...], epoch: int = 0) -> None:
+    def _drop(self, tasks: Sequence[str], epoch: int = 0) -> None:
         self._become(*table.drop(self.activation, tasks, epoch))
 
     def _stop(self) -> None:
@@ -400,7 +401,14 @@ class ComponentRuntime:
 
     def _orphaned(self, supervisor: str) -> None:
         tasks = [hold.claim.task for hold in self.activation.holds if hold.claim.supervisor == supervisor]
-        log.warning("%s: its configurator is gone; letting go of %s", self.profile.component.short, ", ".join(tasks))
+        self._let_go(tasks, "the configurator of the task seemed to be gone")
+
+    def _let_go(self, tasks: Sequence[str], why: str) -> None:
+        """Hold the component for some tasks no more, and tell those that still count on it."""
+        names = ", ".join(map(task_name, tasks))
+        log.warning("%s: letting go of %s: %s", self.profile.component.short, names, why)
+        for task in tasks:
+            self._put_fail(Cause.LET_GO, why, task)
         self._drop(tasks)
         self._when_at_rest(self._offer)
 

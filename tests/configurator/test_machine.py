@@ -434,6 +434,17 @@ def test_a_task_that_is_asked_to_yield_comes_to_rest_sinks_first_and_is_configur
     assert kinds(history.all_answer()) == [Running]
 
 
+def test_a_component_that_has_let_go_brings_the_rest_to_rest_and_may_be_had_again() -> None:
+    history = History(TASK).running()
+    effects = history.hear(Failed(TRACKER, "1", Cause.LET_GO))
+    assert released(effects) == [DRIVE]
+    assert released(history.answer(DRIVE, Call.RELEASE)) == [CONTROL]
+    assert released(history.answer(CONTROL, Call.RELEASE)) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Compose(2, frozenset(), None)]
+    history.composed(navigation())
+    assert kinds(history.all_answer()) == [Running]
+
+
 def test_the_task_that_a_component_is_asked_to_yield_for_does_not_yield_itself() -> None:
     """It watches what it waits for, and hears that the component asks its holder to let go of it."""
     history = History(TASK).accepted()

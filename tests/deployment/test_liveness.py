@@ -85,10 +85,10 @@ def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_
     """It sees all lives end and begin at one moment; meanwhile the components have not seen their supervisor."""
     agent = lab.agent(policy=Policy.DISMANTLE)
     lab.running(agent)
-    for name in TASK | {"tracker"}:
-        lab.runtimes[name]._orphaned(agent.supervisor)
     epoch = agent.state.epoch
     lab.isolate(agent)
+    for name in TASK | {"tracker"}:
+        lab.runtimes[name]._orphaned(agent.supervisor)
     lab.rejoin(agent)
     lab.let_pass(1.0)
     assert agent.state.phase is Phase.RUNNING

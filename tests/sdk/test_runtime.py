@@ -491,7 +491,7 @@ def test_a_task_of_lower_priority_yields_when_it_is_asked_to() -> None:
     stage.call(apply(1, US))
     assert stage.call(reserve(1, THEM, priority=1)).verdict is Verdict.BUSY
     stage.let_pass(0.1)
-    assert [(fail.component, fail.cause) for fail in stage.fails] == [(CAP, Cause.YIELD)]
+    assert [(fail.component, fail.cause, fail.task) for fail in stage.fails] == [(CAP, Cause.YIELD, TASKS[US])]
     assert stage.component.active
     stage.call(release(2, US))
     stage.let_pass(0.1)
@@ -511,6 +511,7 @@ def test_a_task_of_lower_priority_that_does_not_yield_is_preempted() -> None:
     assert stage.component.active
     stage.let_pass(0.2)
     assert stage.recorder.said == [("started",), ("stopped",)]
+    assert [(fail.cause, fail.task) for fail in stage.fails][1:] == [(Cause.LET_GO, TASKS[US])]
     assert stage.freed == [TASKS[THEM]]
     assert stage.call(reserve(1, THEM, priority=1)).verdict is Verdict.DONE
 
