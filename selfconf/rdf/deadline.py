@@ -3,7 +3,8 @@
 SHACL and SPARQL on rdflib are Python, and Python's regular expressions look for signals as they go, so an alarm
 (`setitimer`, POSIX) ends both without a process or a thread of its own. An alarm reaches only the main thread, in which
 every program of selfconf does its work; elsewhere there is no limit. What is raised inside a destructor or a callback
-of the garbage collector is lost, so the alarm goes on ringing until the block is left.
+of the garbage collector is lost, so the alarm goes on ringing until the block is left, and Python's report of lost
+exceptions (`sys.unraisablehook`) leaves it out.
 
 A verdict must not depend on what else the machine is doing. So what decides about files and shapes is limited in
 processor time (`processor_limit`); the time of the clock (`deadline`) is for what a user waits for.
@@ -12,10 +13,12 @@ processor time (`processor_limit`); the time of the clock (`deadline`) is for wh
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from functools import partial
 from types import FrameType
 from typing import NamedTuple
 
@@ -57,18 +60,30 @@ def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    began = timer.clock()
-    handler = signal.signal(timer.signal, _raise)
+    began, entered, report = timer.clock(), True, sys.unraisablehook
+
+    def ring(number: int, frame: FrameType | None) -> None:
+        if entered:
+            raise ProcessorTimeUp if number == signal.SIGPROF else TimeUp
+
+    handler = signal.signal(timer.signal, ring)
     outside, _ = signal.getitimer(timer.number)
-    signal.setitimer(timer.number, min(seconds, outside or seconds), RINGING)
     try:
-        yield
+        sys.unraisablehook = partial(_report_unless_ringing, report)
+        signal.setitimer(timer.number, min(seconds, outside or seconds), RINGING)
+        try:
+            yield
+        finally:
+            entered = False  # an alarm that rings just now must not keep what follows from being done
     finally:
         signal.setitimer(timer.number, 0)
         signal.signal(timer.signal, handler)
+        sys.unraisablehook = report
         if outside:
             signal.setitimer(timer.number, max(outside - (timer.clock() - began), 1e-6), RINGING)
 
 
-def _raise(number: int, frame: FrameType | None) -> None:
-    raise ProcessorTimeUp if number == signal.SIGPROF else TimeUp
+def _report_unless_ringing(report: Callable[[sys.UnraisableHookArgs], object], lost: sys.UnraisableHookArgs) -> None:
+    """Report a lost exception, unless it is an alarm, which rings again."""
+    if not isinstance(lost.exc_value, TimeUp):
+        report(lost)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import subprocess
 import sys
 import threading
@@ -45,6 +46,54 @@ def test_a_limit_of_each_kind_may_be_set_within_the_other(outer: Limit, inner: L
         endless()
     with pytest.raises(TimeUp), outer(30), inner(0.1):
         endless()
+
+
+class _Slow:
+    """Its destructor takes longer than any limit of these tests."""
+
+    def __del__(self) -> None:
+        endless()
+
+
+@LIMITS
+def test_an_alarm_that_is_lost_in_a_destructor_rings_again_and_is_not_reported(limit: Limit) -> None:
+    def work() -> None:
+        _Slow()
+        endless()
+
+    with pytest.raises(TimeUp), limit(0.05):
+        work()
+
+
+@LIMITS
+def test_an_alarm_that_is_lost_in_a_callback_of_the_collector_rings_again_and_is_not_reported(limit: Limit) -> None:
+    def collecting(phase: str, facts: dict[str, int]) -> None:
+        gc.callbacks.remove(collecting)
+        endless()
+
+    def work() -> None:
+        gc.callbacks.append(collecting)
+        gc.collect()
+        endless()
+
+    with pytest.raises(TimeUp), limit(0.05):
+        work()
+
+
+def test_what_else_is_lost_within_a_limit_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    reported: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda lost: reported.append(lost.exc_type))
+    with processor_limit(30), deadline(30):
+        _Broken()
+    _Broken()
+    assert reported == [ZeroDivisionError] * 2
+
+
+class _Broken:
+    """Its destructor fails."""
+
+    def __del__(self) -> None:
+        raise ZeroDivisionError
 
 
 def test_waiting_uses_up_no_processor_time() -> None:

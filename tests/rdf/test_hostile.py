@@ -32,9 +32,6 @@ from selfconf.rdf.validation.checking import SourceText, validate_texts
 from tests.hostile_words import HONEST, KINDS, stranger
 from tests.hostile_words import TEMPLATE as TEMPLATE_FOR_STRANGERS
 
-# An alarm that rings while the garbage collector calls back is lost there, and rings again.
-pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-
 SHAPES = [SourceText(path.name, path.read_bytes()) for path in library.shapes()]
 ONTOLOGIES = [SourceText(path.name, path.read_bytes()) for path in library.ontologies()]
 TUNER = ":tuner a sc:Component, rob:Tuner .\n"
