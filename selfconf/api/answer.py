@@ -218,7 +218,7 @@ class Inquiry:
 
     def _source(self, component: IRI) -> str:
         """The name of what a component is described in."""
-        place = self.ecology[component].profile.place
+        place = self.ecology[component].place
         return place.source if place else "the ecology"
 
     def answer(self, what_if: bool = False) -> Answer | Refusal | Undecided:

@@ -11,7 +11,7 @@ import re
 import time
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -40,7 +40,7 @@ from selfconf.rdf.sparql import fault
 
 SHAPE_SECONDS = 120.0
 """Processor time that judging by one shape may take."""
-EXTRA_SECONDS = 0.4
+EXTRA_SECONDS = 0.2
 """Processor time that components may take in all beyond what is usual for the shape: what they say is untrusted."""
 USUAL_SECONDS = 0.002
 """Processor time that is usual for a component, as long as none has been judged."""
@@ -83,13 +83,15 @@ def violations(
     source: str,
     called: str | None = None,
     detailed: bool = True,
+    sizes: Mapping[IRI, int] | None = None,
 ) -> dict[IRI, list[ShapeViolated | NotJudged]]:
     """The nodes of `focus` that do not conform to `shape`, each with its violations, one for each property shape.
 
     Conformance is that of SHACL, section 3.4: a result of any severity counts. So does a value that cannot be compared
     with another (4.3, 4.5.3). A node whose statements take too long to judge, or that pySHACL cannot judge, is
-    `NotJudged`; the others do not suffer from it. Without details the first violation will do. Raises TemplateError,
-    blaming `source` and the shape as it is `called`, where the shape itself is not well-formed.
+    `NotJudged`; the others do not suffer from it. Without details the first violation will do. `sizes` bounds how many
+    values a node has of one property, which is counted where it is not given. Raises TemplateError, blaming `source`
+    and the shape as it is `called`, where the shape itself is not well-formed.
     """
     if not focus:
         return {}
@@ -100,7 +102,8 @@ def violations(
         with processor_limit(SHAPE_SECONDS), linear_patterns(), _silent():
             judge = _Judge(subjects, shapes, shape, detailed)
             found: dict[IRI, list[ShapeViolated | NotJudged]] = {}
-            for size, node in sorted((judge.size(node), node) for node in focus):
+            sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
+            for size, node in sorted(sized):
                 wrong = judge.wrong(node, size)
                 if wrong:
                     found[node] = wrong

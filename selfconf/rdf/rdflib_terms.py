@@ -14,9 +14,16 @@ from selfconf.rdf.turtle import Triple
 def to_rdflib(triples: Iterable[Triple]) -> rdflib.Graph:
     """The triples as an rdflib graph in memory, which is what pySHACL and owlrl are fastest on."""
     graph = rdflib.Graph()
-    for subject, predicate, value in triples:
-        graph.add((rdflib_term(subject), rdflib.URIRef(predicate), rdflib_term(value)))
+    for triple in triples:
+        graph.add(rdflib_triple(triple))
     return graph
+
+
+def rdflib_triple(triple: Triple) -> tuple[rdflib.URIRef | rdflib.BNode, rdflib.URIRef, rdflib.term.Identifier]:
+    """One of the model's triples as rdflib's."""
+    subject, predicate, value = triple
+    about = rdflib.URIRef(subject) if isinstance(subject, IRI) else rdflib.BNode(subject[2:])
+    return about, rdflib.URIRef(predicate), rdflib_term(value)
 
 
 def rdflib_term(value: Term) -> rdflib.URIRef | rdflib.BNode | rdflib.Literal:

@@ -9,6 +9,7 @@ alone, and statements that would change what shapes or classes mean are left out
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -42,6 +43,21 @@ class Advertisement(ABC):
     def triples(self) -> tuple[Triple, ...]:
         """What it says, in RDF."""
 
+    @property
+    @abstractmethod
+    def place(self) -> Place | None:
+        """Where it is written."""
+
+    @property
+    @abstractmethod
+    def self_contained(self) -> bool:
+        """Whether it is known to say nothing of things with names of their own besides its component."""
+
+    @property
+    @abstractmethod
+    def breadth(self) -> int:
+        """A bound on how many values it gives of one property."""
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Advertisement):
             return NotImplemented
@@ -72,6 +88,22 @@ class ParsedAdvertisement(Advertisement):
     def triples(self) -> tuple[Triple, ...]:
         """What it says, in RDF."""
         return self._triples
+
+    @property
+    def place(self) -> Place | None:
+        """Where it is written."""
+        return self._profile.place
+
+    @property
+    def self_contained(self) -> bool:
+        """Whether all that it says is about its component, or about blank nodes."""
+        return all(isinstance(subject, BlankNode) or subject == self.component for subject, _, _ in self._triples)
+
+    @property
+    def breadth(self) -> int:
+        """How many values it gives of the property of which it gives most."""
+        counts = Counter(predicate for subject, predicate, _ in self._triples if subject == self.component)
+        return max(counts.values(), default=0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ components have in common. In the triples it keeps its name.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Container, Iterable, Mapping
 from hashlib import blake2s
 from operator import attrgetter
@@ -67,6 +68,24 @@ class LoadedAdvertisement(Advertisement):
     def triples(self) -> tuple[Triple, ...]:
         """What it says, in RDF; made anew, with blank nodes of its own, each time."""
         return self._origin.triples(self.component, self._statements)
+
+    @property
+    def place(self) -> Place:
+        """Where it is written: only the document is known."""
+        return self._origin.place
+
+    @property
+    def self_contained(self) -> bool:
+        """Whether its document says nothing of things with names of their own that are no components."""
+        return not self._origin.things
+
+    @property
+    def breadth(self) -> int:
+        """A bound on how many values it gives of one property: a comma in a string counts as well."""
+        counts = Counter[str]()
+        for statement in self._statements:
+            counts[statement.predicate] += 1 + statement.text.count(" , ")
+        return max(counts.values(), default=0)
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, LoadedAdvertisement) and self._origin is other._origin:

@@ -252,35 +252,52 @@ class Partitioner:
 
         shapes = to_rdflib(bound_shape(self.document, {**self.task.bindings, **values}))
         seen = self.subjects(role, focus, everything) if subjects is None else subjects
-        components = [advertisement.component for advertisement in focus]
-        return violations(seen, shapes, role.iri, components, self.document.source, detailed=detailed)
+        sizes = {advertisement.component: advertisement.breadth for advertisement in focus}
+        return violations(seen, shapes, role.iri, list(sizes), self.document.source, detailed=detailed, sizes=sizes)
 
     def subjects(
         self, role: CompiledRole, focus: Sequence[Advertisement], everything: Sequence[Advertisement]
     ) -> rdflib.Graph:
         """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
-        from selfconf.rdf.rdflib_terms import to_rdflib
+        from selfconf.rdf.eligibility.lazy_graph import LazyStore
+        from selfconf.rdf.rdflib_terms import rdflib_triple
 
-        seen = self.visible(focus if role.local else everything)
+        shown = focus if role.local else everything
+        components = frozenset(advertisement.component for advertisement in shown)
         named = free_values.looked_at(self.document, role.iri)
-        return to_rdflib(seen if named is None else (triple for triple in seen if triple[1] in named))
+
+        def said(advertisement: Advertisement) -> Iterator[Triple]:
+            seen = self._visible_of(advertisement, components)
+            return seen if named is None else (triple for triple in seen if triple[1] in named)
+
+        store = LazyStore()
+        for advertisement in shown:
+            if advertisement.self_contained:
+                store.defer(advertisement.component, partial(said, advertisement))
+            else:
+                for triple in said(advertisement):
+                    store.graph.add(rdflib_triple(triple))
+        return store.graph
 
     def visible(self, advertisements: Sequence[Advertisement]) -> Iterator[Triple]:
         """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.
 
         Each speaks for its own component: what it says about another is not seen.
         """
-        components = {advertisement.component for advertisement in advertisements}
+        components = frozenset(advertisement.component for advertisement in advertisements)
         for advertisement in advertisements:
-            for subject, predicate, value in advertisement.triples:
-                if subject != advertisement.component and subject in components:
-                    continue
-                yield subject, predicate, value
-                for above in self.hierarchy.superproperties(predicate):
-                    yield subject, above, value
-                if predicate == TYPE and isinstance(value, IRI):
-                    for kind in self.hierarchy.superclasses(value):
-                        yield subject, TYPE, kind
+            yield from self._visible_of(advertisement, components)
+
+    def _visible_of(self, advertisement: Advertisement, components: frozenset[IRI]) -> Iterator[Triple]:
+        """What the shape sees of one advertisement beside those of other components."""
+        for subject, predicate, value in advertisement.triples:
+            if subject != advertisement.component and subject in components:
+                continue
+            for above in self.hierarchy.superproperties(predicate):
+                yield subject, above, value  # the property itself is one of them
+            if predicate == TYPE and isinstance(value, IRI):
+                for kind in self.hierarchy.superclasses(value) - {value}:
+                    yield subject, TYPE, kind
 
     def _variables(self, eligible: list[list[EligibleComponent]]) -> Iterator[Variable]:
         for parameter in sorted(self.free):

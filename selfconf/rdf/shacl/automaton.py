@@ -28,6 +28,10 @@ MOST_STATES = 1_000
 """States of an automaton; `(a{0,100}){0,100}` would have ten thousand."""
 MOST_SETS = 4_000
 """Sets of states that are kept; with more of them they are forgotten, and made anew."""
+STRETCH = 256
+"""Characters after which a set of states that is still the same is taken to stay for long."""
+MOST_COMPILED = 16
+"""How often it may be worked out anew which characters do not lead away from a set."""
 _REPEATS = frozenset((_parser.MAX_REPEAT, _parser.MIN_REPEAT))
 _CHARACTERS = frozenset((_parser.LITERAL, _parser.NOT_LITERAL, _parser.ANY, _parser.IN))
 _IN_LINE = {_parser.AT_BEGINNING: _parser.AT_BEGINNING_LINE, _parser.AT_END: _parser.AT_END_LINE}
@@ -122,9 +126,23 @@ class _Set:
 
     waiting: tuple[int, ...]
     before: str
-    """The character before, or nothing at the beginning."""
+    """The character before, or one that is as good for positions; nothing at the beginning."""
     then: dict[str, _Set | None] = field(default_factory=dict)
     """What follows, by character; None where the expression is found."""
+    _staying: re.Pattern[str] | None = None
+    _known: int = 0
+    _compiled: int = 0
+
+    def after_run(self, text: str, position: int, end: int) -> int:
+        """The position behind what leads from here to here, as far as that is known; `re` is quick at finding it."""
+        if len(self.then) != self._known and self._compiled < MOST_COMPILED:
+            self._known, self._compiled = len(self.then), self._compiled + 1
+            staying = "".join(
+                re.escape(symbol) for symbol, there in self.then.items() if there is self and len(symbol) == 1
+            )
+            self._staying = re.compile(f"[{staying}]*") if staying else None
+        found = self._staying.match(text, position, end) if self._staying else None
+        return found.end() if found else position
 
 
 _UNKNOWN = _Set((), "")
@@ -147,13 +165,19 @@ class Automaton:
         """Whether there is a match anywhere in a text."""
         here, there = self._set((self._start,), ""), None
         end = len(text) - 1 if text.endswith("\n") else len(text)
-        for character in text[:end]:
-            there = here.then.get(character, _UNKNOWN)
-            if there is _UNKNOWN:
-                there = self._follow(here, character)
-            if there is None:
-                return True
-            here = there
+        position = 0
+        while position < end:
+            before = here
+            for character in text[position : min(position + STRETCH, end)]:
+                there = here.then.get(character, _UNKNOWN)
+                if there is _UNKNOWN:
+                    there = self._follow(here, character)
+                if there is None:
+                    return True
+                here = there
+            position += STRETCH
+            if here is before:
+                position = here.after_run(text, position, end)
         for symbol in (_LAST, "") if end < len(text) else ("",):
             there = self._follow(here, symbol)
             if there is None:
@@ -181,14 +205,9 @@ class Automaton:
                 state = self._states[number]
                 if symbol and state.reads is not None and state.reads(symbol[0]):
                     after.update(state.after)
-            there = self._set(tuple(sorted(after)), symbol[:1] if self._positional(symbol) else "x")
+            there = self._set(tuple(sorted(after)), _kind(symbol[:1]))
         here.then[symbol] = there
         return there
-
-    @staticmethod
-    def _positional(symbol: str) -> bool:
-        """Whether a character counts for positions by itself, and not as any letter does."""
-        return not ("a" <= symbol <= "z")
 
     def _closure(self, here: _Set, symbol: str) -> set[int]:
         """The states that can be reached before the next character is read."""
@@ -223,6 +242,15 @@ def _stands(state: _State, before: str, symbol: str) -> bool:
         differ = bool(words.match(before)) != bool(words.match(symbol[:1]))
         return differ == (place is _parser.AT_BOUNDARY)
     raise NotRegular
+
+
+def _kind(character: str) -> str:
+    """A character after which the same positions are as after another: so there are few sets, whatever a text says."""
+    if character in ("", "\n"):
+        return character
+    if not _WORD.match(character):
+        return " "
+    return "a" if _ASCII_WORD.match(character) else "\N{GREEK SMALL LETTER ALPHA}"
 
 
 _WORD, _ASCII_WORD = re.compile(r"\w"), re.compile(r"\w", re.ASCII)

@@ -23,9 +23,9 @@ CHEAP_ENOUGH = 1_000_000
 """The same where there is no automaton."""
 LONGEST_TEXT = 100_000
 """Characters that an automaton reads."""
-PATTERN_SECONDS = 0.2
+PATTERN_SECONDS = 0.1
 """Processor time that `re` may try one expression in vain where nothing is known of the cost."""
-LONGEST_TRY = 0.05
+LONGEST_TRY = 0.03
 """How much of it may go into one text."""
 
 

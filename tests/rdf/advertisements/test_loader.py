@@ -122,7 +122,12 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
 @example(PREFIXES + f":c1 {GOOD} ; :place :kitchen . :c2 {GOOD} ; :place :kitchen . :kitchen :size [ :value 3 ] .")
 def test_the_fast_loader_reads_what_the_careful_reader_reads(text: str) -> None:
     careful = advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl"))
-    assert told(loader.read_advertisements(text.encode(), "a.ttl", "file:///a.ttl")) == told(careful)
+    fast = loader.read_advertisements(text.encode(), "a.ttl", "file:///a.ttl")
+    assert told(fast) == told(careful)
+    for one, other in zip(fast[0], careful[0], strict=True):
+        assert one.breadth >= other.breadth
+        assert other.self_contained or not one.self_contained
+        assert (str(one.place), str(other.place)) == ("a.ttl", "a.ttl")
 
 
 def test_a_document_longer_than_a_window_is_read_as_one() -> None:

@@ -55,6 +55,22 @@ def test_it_finds_what_re_finds(expression: str, flags: int, text: str) -> None:
     assert automaton.finds(text) == wanted
 
 
+@given(EXPRESSIONS, FLAGS, st.lists(st.text("ab A_\n1é!]^-", min_size=1, max_size=2), min_size=1, max_size=4))
+def test_it_finds_the_same_where_it_runs_over_what_keeps_its_state(
+    expression: str, flags: int, parts: list[str]
+) -> None:
+    text = "".join(part * 4 for part in parts)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("selfconf.rdf.shacl.automaton.STRETCH", 1)
+        test_it_finds_what_re_finds.hypothesis.inner_test(expression, flags, text)  # type: ignore[attr-defined]  # Hypothesis adds it
+
+
+def test_there_are_few_sets_of_states_however_many_characters_there_are() -> None:
+    automaton = Automaton(r"^(\w+\s?)*\b$", 0)
+    assert not automaton.finds("".join(map(chr, range(0x4E00, 0x5E00))) + "!")
+    assert len(automaton._sets) < 10
+
+
 @pytest.mark.parametrize("expression", [r"(a)\1", "(?=a)", "(?!a)", "(?<=a)b", "(a{0,100}){0,100}"])
 def test_what_is_not_regular_or_too_large_has_no_automaton(expression: str) -> None:
     with pytest.raises(NotRegular):
