@@ -243,7 +243,7 @@ class _Inquiry:
         for site, known in read.items():
             self._complaints += known.complaints
             for one in known.found:
-                component = one.advertisement.profile.component
+                component = one.advertisement.component
                 if component in found:
                     other = names.of((found[component].site, found[component].site_life))
                     text = f"left out {component} of site {names.of(site)}: site {other} advertises it too"
@@ -287,7 +287,7 @@ class _Inquiry:
             return None
         for malformed in bad:
             self._complaints.append(f"left out {malformed.component} of {name}: {malformed.problems[0]}")
-        mine = [a for a in good if a.profile.component == page.component]
+        mine = [a for a in good if a.component == page.component]
         if len(mine) != 1 and not bad:
             self._complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
         return mine[0] if len(mine) == 1 else None

@@ -182,6 +182,7 @@ class Lab:
             task=task.task,
             compose=composer.compose,
             standby=composer.standby,
+            not_judged=composer.not_judged,
             passed_over=composer.passed_over,
             policy=policy,
             patient=patient,

@@ -212,7 +212,7 @@ class Inquiry:
         """How many components are eligible for each role."""
         self.left_out = tuple(
             LeftOut(self._source(component), component, why.reason)
-            for component, why in sorted(partitioner.not_judged.items())
+            for component, why in sorted(self.composer.not_judged().items())
         )
         """The components that play no role as what they say cannot be judged, or would take too long."""
 

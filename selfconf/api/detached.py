@@ -93,6 +93,7 @@ def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
         task=task.document.task,
         compose=compose,
         standby=composer.standby,
+        not_judged=composer.not_judged,
         passed_over=composer.passed_over,
         policy=Policy(options.get("policy") or "repair"),
         patient=True,

@@ -76,6 +76,7 @@ class Run:
                 task=self.task.document.task,
                 compose=self._compose,
                 standby=self._composer.standby,
+                not_judged=self._composer.not_judged,
                 passed_over=self._composer.passed_over,
                 policy=policy,
                 patient=wait,

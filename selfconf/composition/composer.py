@@ -15,6 +15,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.obstacle import NotJudged
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
 from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
@@ -170,6 +171,10 @@ class Composer:
             for miss in refusal.near_misses[:NEAR]
         ]
         return with_relaxations(problem, refusal, near, self.steps)
+
+    def not_judged(self) -> Mapping[IRI, NotJudged]:
+        """The components of the ecology that play no role, as what they say cannot be judged, or not in time."""
+        return self.partitioner.not_judged
 
     def passed_over(self, configuration: Configuration) -> dict[IRI, list[IRI]]:
         """For each role of a configuration, the eligible components that come before the last one it chose."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from selfconf.configurator.state import Policy
 from selfconf.model.configuration import Configuration
+from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import RunEvent
 from selfconf.model.template import Task
@@ -30,6 +31,8 @@ class RunRequest:
 
     task: Task
     compose: ComposeFunction
+    not_judged: Callable[[], Mapping[IRI, NotJudged]] = dict
+    """The components that the last `compose` left out because they cannot be judged; called where that was."""
     policy: Policy = Policy.REPAIR
     name: str = ""
     """The name of the task in the ecology; by default that of its template."""

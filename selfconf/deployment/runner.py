@@ -55,9 +55,11 @@ from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import PeerError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.run_event import (
     AnswerRejected,
+    ComponentLeftOut,
     ComponentLost,
     EcologyAsked,
     EcologyDiscovered,
@@ -123,6 +125,7 @@ class TaskRunner:
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
         self._record = DeploymentRecord(bus, self.keys, self.name, request, self.status, self.stop)
         self._watched: set[IRI] = set()
+        self._left_out: set[IRI] = set()
         self._events: deque[Event] = deque()
         self._stepping = False
         self._unreported: list[RunEvent] = []
@@ -388,8 +391,8 @@ class TaskRunner:
                 trouble = error
                 self.bus.wake_up(lambda: self._give_up(trouble))
                 return
-            seconds = time.monotonic() - began
-            self.bus.wake_up(lambda: self._composed(effect, outcome, seconds))
+            seconds, not_judged = time.monotonic() - began, dict(self.request.not_judged())
+            self.bus.wake_up(lambda: self._composed(effect, outcome, seconds, not_judged))
 
         self.request.aside(work)
 
@@ -397,7 +400,10 @@ class TaskRunner:
         self.trouble = trouble
         self._step(Stopped())
 
-    def _composed(self, effect: Compose, outcome: Outcome, seconds: float) -> None:
+    def _composed(self, effect: Compose, outcome: Outcome, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
+        for component in sorted(not_judged.keys() - self._left_out):
+            self._report(ComponentLeftOut(component, not_judged[component].reason))
+        self._left_out |= not_judged.keys()
         if isinstance(outcome, Refusal):
             outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
         if effect.attempt == self.state.attempt and not self.state.despite and self.state.phase is Phase.COMPOSING:

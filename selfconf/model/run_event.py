@@ -49,6 +49,15 @@ class AnswerRejected(RunEvent):
 
 
 @dataclass(frozen=True, slots=True)
+class ComponentLeftOut(RunEvent):
+    """Act 3: what a component says cannot be judged, or not in time, so it plays no role; reported once."""
+
+    act: ClassVar[str] = "left out"
+    component: IRI
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class SearchEnded(RunEvent):
     """Act 3: the search has ended, after so many seconds."""
 

@@ -39,6 +39,7 @@ SENTENCES: Mapping[str, str] = {
     "cut off": "       cut off from the ecology; waiting to be connected again",
     "connected": "       connected again; looking at what has become of it",
     "complaint": "       {detail}",
+    "left out": "       left out {component}: {reason}",
 }
 """For each act a sentence with the facts of the event; an act with an empty one is not worth a line."""
 

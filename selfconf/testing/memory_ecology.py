@@ -65,6 +65,7 @@ class MemoryRun:
             task=task.document.task,
             compose=composer.compose,
             standby=composer.standby,
+            not_judged=composer.not_judged,
             passed_over=composer.passed_over,
             policy=policy,
             patient=wait,

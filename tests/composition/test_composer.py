@@ -10,6 +10,7 @@ import pytest
 from selfconf.composition import composer as compose
 from selfconf.composition.composer import STANDBY, Composer, Strategy
 from selfconf.configurator.state import Phase
+from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.optimum import Optimum
@@ -22,7 +23,7 @@ from selfconf.rdf.tasks import templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
 from tests import hostile_words
-from tests.lab import NAVIGATE, PREFIXES, Lab, iri
+from tests.lab import PREFIXES, Lab, iri
 
 NOBODY: frozenset[IRI] = frozenset()
 CONTROL = """
@@ -223,28 +224,29 @@ def test_what_strangers_say_keeps_them_out_and_no_one_else() -> None:
     first = composer.compose(found, NOBODY, None)
     assert isinstance(first, Configuration)
     assert first.components == tuple(map(iri, ("cam-1", "ear-1", "arm-1", "screen")))
-    assert sorted(composer.partitioner.not_judged) == [iri("stranger-beyond-1"), iri("stranger-crowd-1")]
+    assert sorted(composer.not_judged()) == [iri("stranger-beyond-1"), iri("stranger-crowd-1")]
     second = composer.compose(found, frozenset({iri("cam-1"), iri("ear-1")}), first)
     assert isinstance(second, Configuration)
     assert second.components == tuple(map(iri, ("cam-2", "ear-2", "arm-1", "screen")))
 
 
 def test_a_running_task_survives_what_strangers_advertise_and_the_failure_of_a_component(tmp_path: Path) -> None:
-    folder = tmp_path / "living-room"
-    folder.mkdir()
-    for number in range(40):
-        said = f'sc:preference 99 ; :model "{"ab" * 40}!"'
-        text = f"{PREFIXES}:stranger{number} a sc:Component, rob:PositionSensor ; {said} ."
-        (folder / f"stranger{number}.ttl").write_text(text)
-    harmless = (
-        ':position sh:property [ sh:path :model ; sh:pattern "^(\\\\w+\\\\s?)*$" ; sh:pattern "^(?=(\\\\w+)+$)" ] .'
-    )
-    lab = Lab(tmp_path)
-    lab.navigation()
-    agent = lab.agent(NAVIGATE + harmless)
+    honest = {line.split()[0][1:]: line for line in hostile_words.HONEST.splitlines() if line.startswith(":")}
+    (tmp_path / "home").mkdir()
+    for number, kind in enumerate(kind for kind in hostile_words.KINDS for _ in range(4)):
+        (tmp_path / "home" / f"stranger{number}.ttl").write_text(hostile_words.stranger(kind, number))
+    lab = Lab(tmp_path, advertised=honest)
+    lab.site("home")
+    for name in honest:
+        lab.component(name)
+    agent = lab.agent(hostile_words.TEMPLATE, bound=())
     assert lab.running(agent)
     assert agent.configuration is not None
-    assert iri("person-tracker") in agent.configuration.components
-    lab.crash("tracker")
-    assert lab.until(lambda: "odometry" in lab.active() and agent.state.phase is Phase.RUNNING)
+    assert agent.configuration.components == tuple(map(iri, ("cam-1", "ear-1", "arm-1", "screen")))
+    lab.crash("cam-1")
+    assert lab.until(lambda: "cam-2" in lab.active() and agent.state.phase is Phase.RUNNING)
+    lab.let_pass(2 * AT_LEISURE)
     assert lab.ended == []
+    named = [event.component.short.rpartition("-")[0] for event in lab.acts("left out")]
+    assert sorted(named) == ["stranger-beyond"] * 4 + ["stranger-crowd"] * 4  # each once, though composed twice
+    assert agent.configuration.components == tuple(map(iri, ("cam-2", "ear-1", "arm-1", "screen")))
