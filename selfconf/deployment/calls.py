@@ -63,6 +63,8 @@ GONE = 2.5
 """Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
 WAKING = 15.0
 """Seconds that a component that a site starts may take to live."""
+SITE_BACK = 3.0
+"""Seconds that a site may be away before what it was starting is given up."""
 RESERVE_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
 
@@ -128,26 +130,40 @@ class Calls:
         if waiting is not None:
             waiting[1]()
 
+    def site_began(self, site: str) -> None:
+        """A site lives a new life: what it was starting in another one it is asked to start again."""
+        for effect, _ in list(self._waking.values()):
+            found = self.ecology.discovery.found.get(effect.component)
+            if found is not None and found.site == site:
+                self._start_by_site(effect, found)
+
+    def site_ended(self, site: str) -> None:
+        """The life of a site has ended: what it was starting is given up, unless the site is back in time."""
+        for effect, _ in list(self._waking.values()):
+            found = self.ecology.discovery.found.get(effect.component)
+            if found is not None and found.site == site:
+                self.bus.later(SITE_BACK, partial(self._give_up, self._waking[effect.component], "its site has ended"))
+
     def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
         """Have the site start the process; that is done when the component lives."""
         self._report(ComponentWoken(effect.component, found.site))
-
-        def give_up(detail: str) -> None:
-            waiting = self._waking.get(effect.component)
-            if waiting is not None and waiting[0] is effect:
-                del self._waking[effect.component]
-                waiting[1]()
-                self._unreachable(effect.component, Call.WAKE, effect.epoch, detail)
+        self.abandon(effect.component)
+        too_late = f"it was started, but does not live after {WAKING:.0f} s"
+        waking = effect, self.bus.later(WAKING, lambda: self._give_up(waking, too_late))
+        self._waking[effect.component] = waking
 
         def answered(replies: Replies) -> None:
             if not replies.samples:
-                give_up(replies.errors[0] if replies.errors else "its site does not answer")
+                self._give_up(waking, replies.errors[0] if replies.errors else "its site does not answer")
 
-        if effect.component in self._waking:
-            self._waking.pop(effect.component)[1]()
-        too_late = f"it was started, but does not live after {WAKING:.0f} s"
-        self._waking[effect.component] = effect, self.bus.later(WAKING, lambda: give_up(too_late))
         self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component)), CALL, answered)
+
+    def _give_up(self, waking: tuple[WakeUp, Undo], detail: str) -> None:
+        """Do without a component that was to be started, unless it lives by now or is being started anew."""
+        component = waking[0].component
+        if self._waking.get(component) is waking:
+            self.abandon(component)
+            self._unreachable(component, Call.WAKE, waking[0].epoch, detail)
 
     def reserve(self, effect: ReserveOf) -> None:
         """Have a component held for this task."""

@@ -215,10 +215,13 @@ class Liveness:
     def _site_changed(self, key: str, alive: bool) -> None:
         if alive and key not in self._sites:
             self._sites.add(key)
+            self._calls.site_began(owner_of(key))
             self._step(Appeared({}))
         elif not alive:
             self._site_ended = self.bus.now()
             self._sites.discard(key)
+            if owner_of(key) not in map(owner_of, self._sites):
+                self._calls.site_ended(owner_of(key))
 
     def suspended(self) -> None:
         """This program stood still for a while, as if it had been cut off: so it was, or nearly."""

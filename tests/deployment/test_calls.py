@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
-from selfconf.deployment.calls import CALL, STARTING, WAKING
+from selfconf.deployment.calls import CALL, SITE_BACK, STARTING, WAKING
 from selfconf.deployment.liveness import SETTLING
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Reserve, Verdict
@@ -80,11 +82,8 @@ def test_a_component_that_is_advertised_but_does_not_run_is_passed_over(tmp_path
     assert lab.active() == TASK | {"odometry"}
 
 
-def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
-    lab = Lab(tmp_path)
-    lab.site("astrid", *TASK, "odometry")
-    for name in (*TASK, "odometry"):
-        lab.component(name)
+def living_room(lab: Lab, life: str, wake: Callable[[MemoryBus], object]) -> MemoryBus:
+    """A site that can start the tracker, as `wake` does; its node."""
     tracker, node = iri("person-tracker"), lab.network.node()
     page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
 
@@ -93,19 +92,62 @@ def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second
         request.reply(lab.keys.advertisement("living-room", tracker), payload, page)
         request.finish()
 
-    def wake(request: Request) -> None:
+    def asked(request: Request) -> None:
         request.reply(lab.keys.wake("living-room"), b"started")
         request.finish()
-        node.publisher(lab.keys.fail(tracker), Urgency.EVENT).put(encode(Fail(tracker, "", 0, Cause.CRASH, "code 1")))
+        wake(node)
 
-    node.announce(lab.keys.site_life("living-room", "1"))
+    node.announce(lab.keys.site_life("living-room", life))
     node.serve(lab.keys.advertisements("living-room"), advertise)
-    node.serve(lab.keys.wake("living-room"), wake)
+    node.serve(lab.keys.wake("living-room"), asked)
+    return node
+
+
+def home_without_a_tracker(folder: Path) -> Lab:
+    """Everybody lives but the tracker."""
+    lab = Lab(folder)
+    lab.site("astrid", *TASK, "odometry")
+    for name in (*TASK, "odometry"):
+        lab.component(name)
+    return lab
+
+
+def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
+    lab = home_without_a_tracker(tmp_path)
+    tracker = iri("person-tracker")
+    crash = encode(Fail(tracker, "", 0, Cause.CRASH, "code 1"))
+    living_room(lab, "1", lambda node: node.publisher(lab.keys.fail(tracker), Urgency.EVENT).put(crash))
     agent = lab.agent()
     assert lab.running(agent)
     assert agent.state.lost[tracker].detail == "code 1"
     lab.let_pass(2 * WAKING)
     assert lab.acts("unreachable") == []
+
+
+def test_what_a_site_was_starting_it_is_asked_to_start_again_in_its_next_life(tmp_path: Path) -> None:
+    lab = home_without_a_tracker(tmp_path)
+    asked: list[MemoryBus] = []
+    first = living_room(lab, "1", asked.append)
+    agent = lab.agent()
+    assert lab.until(lambda: asked)
+    first.close()
+    lab.let_pass(SITE_BACK / 2)
+    living_room(lab, "2", lambda _: lab.component("tracker"))
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK)
+    lab.let_pass(2 * SITE_BACK)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_what_a_site_was_starting_is_given_up_if_the_site_does_not_come_back(tmp_path: Path) -> None:
+    lab = home_without_a_tracker(tmp_path)
+    asked: list[MemoryBus] = []
+    first = living_room(lab, "1", asked.append)
+    agent = lab.agent()
+    assert lab.until(lambda: asked)
+    first.close()
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK + 1.0)
+    assert lab.active() == TASK | {"odometry"}
+    assert [event.detail for event in lab.acts("unreachable")] == ["its site has ended"]
 
 
 def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) -> None:
