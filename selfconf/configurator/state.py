@@ -110,3 +110,8 @@ class State:
     def ended(self) -> bool:
         """Whether the task has ended, so that nothing is done about it any more."""
         return self.phase is Phase.STOPPED or (self.phase is Phase.REFUSED and not self.patient)
+
+    @property
+    def searches_again(self) -> bool:
+        """Whether a search that finds nothing does not count yet: the next one has more to choose from."""
+        return self.news or any(loss.startable for loss in self.lost.values())

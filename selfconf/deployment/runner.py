@@ -406,7 +406,8 @@ class TaskRunner:
         self._left_out |= not_judged.keys()
         if isinstance(outcome, Refusal):
             outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
-        if effect.attempt == self.state.attempt and not self.state.despite and self.state.phase is Phase.COMPOSING:
+        counts = effect.attempt == self.state.attempt and not self.state.despite and self.state.phase is Phase.COMPOSING
+        if counts and (isinstance(outcome, Configuration) or not self.state.searches_again):
             self._report(SearchEnded(outcome, seconds))
         self._step(Composed(effect.attempt, outcome))
 

@@ -11,6 +11,7 @@ from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
 from selfconf.deployment.calls import CALL, SITE_BACK, STARTING, WAKING
 from selfconf.deployment.liveness import SETTLING
+from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Reserve, Verdict
 from selfconf.rdf.turtle import document as turtle
@@ -148,6 +149,22 @@ def test_what_a_site_was_starting_is_given_up_if_the_site_does_not_come_back(tmp
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK + 1.0)
     assert lab.active() == TASK | {"odometry"}
     assert [event.detail for event in lab.acts("unreachable")] == ["its site has ended"]
+
+
+def test_that_nothing_is_found_without_what_a_site_starts_again_is_not_reported(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    for name in TASK:
+        lab.component(name)
+    living_room(lab, "1", lambda _: lab.component("tracker"))
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.crash("tracker")
+    assert lab.until(lambda: agent.state.phase is not Phase.RUNNING)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING)
+    lab.let_pass(0.1)
+    assert len(lab.acts("running")) == 2
+    assert all(isinstance(event.outcome, Configuration) for event in lab.acts("composed"))
 
 
 def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) -> None:
