@@ -16,7 +16,7 @@ EVENTS = [one for one in vars(run_event).values() if isinstance(one, type) and i
 
 def test_an_act_is_of_one_class() -> None:
     assert max(Counter(kind.act for kind in EVENTS).values()) == 1
-    assert len(EVENTS) == 22
+    assert len(EVENTS) == 23
 
 
 def test_only_what_says_more_than_its_subclasses_has_no_act() -> None:

@@ -45,6 +45,7 @@ FACTS: dict[str, Any] = {
     "missing": ("cellar",),
     "detail": "it burns",
     "cause": "fail",
+    "reason": "what it says takes too long to be judged by the shape",
     "call": "apply",
     "site": "home",
     "outcome": CONFIGURATION,

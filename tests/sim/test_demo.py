@@ -105,7 +105,7 @@ def test_astrid_arrives_and_pictures_are_drawn(tmp_path: Path, demo: list[Demo])
 
 
 def test_the_living_ecology_can_be_asked_while_the_demo_runs(tmp_path: Path, demo: list[Demo]) -> None:
-    demo.append(Demo(tmp_path, "--speed", "0.4", "--pictures", "none"))
+    demo.append(Demo(tmp_path, "--speed", "0.2", "--pictures", "none"))
     running = demo[0]
     running.until("         running")
     count = running.selfconf("query", "SELECT (COUNT(?c) AS ?n) { ?c a rob:PositionSensor }", "--format", "csv")
