@@ -19,6 +19,10 @@ from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SH, TYPE
 
 AXIOMS = frozenset((RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range))
+_SHAPES_AND_AXIOMS = (OWL.base, SH.base)
+LANGUAGES = (*_SHAPES_AND_AXIOMS, RDFS.base)
+"""The namespaces of the types that mean something to shapes and reasoners, but for one of RDF itself."""
+RDF_PROPERTY = RDF.Property
 
 
 class Advertisement(ABC):
@@ -133,9 +137,9 @@ def about(document: Document, component: Node, components: frozenset[Node]) -> I
 
 def allowed(predicate: IRI, value: Term) -> bool:
     """Whether an advertisement may make a statement: no axioms, no shapes, no ontology terms of its own."""
-    if predicate in AXIOMS or predicate in OWL or predicate in SH:
-        return False
-    return predicate != TYPE or not (value in OWL or value in SH or value in RDFS or value == RDF.Property)
+    if predicate == TYPE:
+        return isinstance(value, Literal) or not (value.startswith(LANGUAGES) or value == RDF_PROPERTY)
+    return predicate not in AXIOMS and not predicate.startswith(_SHAPES_AND_AXIOMS)
 
 
 def property_order(pair: tuple[IRI, Term]) -> tuple[str, tuple[int, str, str, str]]:

@@ -13,7 +13,7 @@ list, and of those with labels, where no other statement has the label (`labelle
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 
 import pyoxigraph as ox
@@ -129,23 +129,24 @@ def _afterwards(text: bytes, base: str | None, statements: StatementTable) -> di
     """Inline once all is read, with lists, and each blank node of several objects in a statement of its own."""
     triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
     lines: dict[str, list[str]] = {}
+    get = lines.get
     while segment := ox.serialize(islice(triples, CHUNK_TRIPLES), format=ox.RdfFormat.TURTLE):
         for block in segment[: -len(END)].decode().split(END):
             subject, _, rest = block.partition(" ")
-            said = lines.get(subject)
+            said = get(subject)
             if said is None:
-                lines[subject] = rest.split(NEXT)
+                lines[subject] = [rest]
             else:
-                said += rest.split(NEXT)
+                said.append(rest)
     names = [subject for subject in lines if subject[0] != "_"]
     known, taken = statements.get, set[str]()
     subjects: dict[str, list[Statement]] = {}
     for name in names:
         subjects[name] = found = []
-        for line in lines.pop(name):
+        for line in NEXT.join(lines.pop(name)).split(NEXT):
             if "_:" in line:
                 predicate, _, node = line.partition(" ")
-                inner = NEXT.join(lines.get(node, ()))
+                inner = NEXT.join(get(node, ()))
                 if not inner or "_:" in inner or _CELL[0] in inner:
                     found += [statements[each] for each in _nested([line], lines, taken, 0)]
                     continue
@@ -177,7 +178,7 @@ def _written(found: str, lines: dict[str, list[str]], taken: set[str], depth: in
         return found
     members: list[str] = []
     at = found
-    while len(cell := lines.get(at, ())) == len(_CELL) and [part.partition(" ")[0] for part in sorted(cell)] == _CELL:
+    while [part.partition(" ")[0] for part in sorted(_said_of(at, lines))] == _CELL:
         first, rest = sorted(_take(at, lines, taken))
         (member,) = _nested([first], lines, taken, depth + 1)
         members.append(member.partition(" ")[2])
@@ -194,4 +195,12 @@ def _take(node: str, lines: dict[str, list[str]], taken: set[str]) -> list[str]:
     if node in taken:
         raise NotInlinableError
     taken.add(node)
-    return lines.pop(node, [])
+    said = _said_of(node, lines)
+    lines.pop(node, None)
+    return said
+
+
+def _said_of(node: str, lines: Mapping[str, list[str]]) -> list[str]:
+    """The lines about a blank node, of which several may be together."""
+    said = lines.get(node)
+    return [] if said is None else NEXT.join(said).split(NEXT)

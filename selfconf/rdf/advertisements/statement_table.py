@@ -15,7 +15,7 @@ from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.advertisements.advertisement import allowed
+from selfconf.rdf.advertisements.advertisement import LANGUAGES, RDF_PROPERTY, allowed
 from selfconf.rdf.advertisements.recognition import SUBJECT, port_of, ported, property_of, setting_of
 from selfconf.rdf.permitted_fields import COMPONENT, LINKS, NEXT, STRUCTURE
 from selfconf.rdf.vocabulary import SC, TYPE
@@ -34,6 +34,8 @@ _SILENT = {f"<{predicate}>" for predicate in STRUCTURE - COMPONENT.predicates}
 _LINK = {f"<{predicate}>" for predicate in LINKS}
 _LINKS = re.compile(r"<[^<>]*>(?: , <[^<>]*>)*")
 _TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
+_UNUSUAL_TYPES = (*LANGUAGES, RDF_PROPERTY, turtle.SKOLEM)
+"""What stands in a statement of types of which not all may be good."""
 
 
 class Statement(ABC):
@@ -118,6 +120,7 @@ class StatementTable(dict[str, Statement]):
         self.suspects: set[Statement] = set()
         """Statements that only the careful reader can judge."""
         self._slots: dict[object, object] = {}
+        self._typed: dict[tuple[Statement, ...], Statement | None] = {}
         self._predicates: dict[str, str] = {}
         self._allowed: dict[str, bool] = {}
 
@@ -139,23 +142,29 @@ class StatementTable(dict[str, Statement]):
 
     def typed(self, said: list[Statement]) -> None:
         """Make one statement of all that give types to a subject, unless one of them has brackets."""
-        kinds = dict.fromkeys(statement for statement in said if statement.slot is TYPE)
-        repeated = sum(statement.slot is TYPE for statement in said) > 1
-        if repeated and not any("[" in statement.text for statement in kinds):
-            first = next(iter(kinds))
-            whole = self["a " + " , ".join(statement.text[len("a ") :] for statement in kinds)]
-            place = said.index(first)
-            said[place:] = [whole, *(statement for statement in said[place:] if statement not in kinds)]
+        kinds = [statement for statement in said if statement.slot is TYPE]
+        if len(kinds) < 2:
+            return
+        key = tuple(kinds)
+        if key not in self._typed:
+            texts = [statement.text for statement in dict.fromkeys(kinds)]
+            in_brackets = any("[" in text for text in texts)
+            self._typed[key] = None if in_brackets else self["a " + " , ".join(text[len("a ") :] for text in texts)]
+        whole = self._typed[key]
+        if whole is not None:
+            place = said.index(kinds[0])
+            said[place:] = [whole, *[statement for statement in said[place:] if statement.slot is not TYPE]]
 
     def _types(self, statement: WrittenStatement) -> None:
-        if _TYPES.fullmatch(statement.text) and turtle.SKOLEM not in statement.text:
-            types: set[Term] = {IRI(type_) for type_ in statement.text[len("a <") : -1].split("> , <")}
+        text = statement.text
+        if not _TYPES.fullmatch(text) or any(part in text for part in _UNUSUAL_TYPES):
+            types = set(turtle.parse(f"<{SUBJECT}> {text}{END}", "").values(SUBJECT, TYPE))
+            good = frozenset([type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_)])
+            if len(good) < len(types):
+                self.suspects.add(statement)
         else:
-            types = set(turtle.parse(f"<{SUBJECT}> {statement.text}{END}", "").values(SUBJECT, TYPE))
-        statement.slot, statement.part = TYPE, _NOTHING
-        statement.types = frozenset([type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_)])
-        if len(statement.types) < len(types):
-            self.suspects.add(statement)
+            good = frozenset(map(IRI, text[len("a <") : -1].split("> , <")))
+        statement.slot, statement.part, statement.types = TYPE, _NOTHING, good
 
     def _structure(self, statement: Statement, predicate: str) -> None:
         port = port_of(predicate, statement.text)

@@ -20,7 +20,7 @@ from selfconf.rdf.permitted_fields import SETTINGS
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle.document import Triple
 from selfconf.rdf.turtle.serialization import ntriples
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import SC, TYPE
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 VALUES = st.sampled_from(
@@ -211,8 +211,28 @@ def _seconds(text: str) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("block", [":c a sc:Component, :C ; :p {} .\n", ":c a sc:Component, :C{0} ; :p {0} .\n"])
 def test_a_block_repeated_for_one_subject_costs_as_much_each_time(block: str) -> None:
-    few, many = ("".join([PREFIXES, *(block.format(number) for number in range(size))]) for size in (4_000, 32_000))
+    few, many = ("".join([PREFIXES, *(block.format(number) for number in range(size))]) for size in (1_000, 8_000))
     assert _seconds(many) < 30 * _seconds(few) + 0.1  # 8 times, or 64 if it were quadratic
+
+
+def test_a_subject_of_many_types_makes_one_statement_of_them_each_time_it_is_read() -> None:
+    text = PREFIXES + ":c a sc:Component . " + "".join(f":c a :C{number} ; :p {number} . " for number in range(3_000))
+    segments = SegmentCache()
+    for _ in range(3):
+        (one,), _ = loader.read_advertisements(text.encode(), "a.ttl", segments=segments)
+        assert len(one.types) == 3_001
+    assert sum(statement.slot is TYPE for statement in segments.values()) <= 3_003
+
+
+@pytest.mark.parametrize("kind", ["owl:Class", "sh:NodeShape", "rdfs:Class", "rdf:Property", "rdf:Bag", ":owl"])
+def test_types_that_an_advertisement_may_not_give_are_left_out(kind: str) -> None:
+    text = PREFIXES + "@prefix owl: <http://www.w3.org/2002/07/owl#> . "
+    text += "@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> . "
+    text += f":c a sc:Component, {kind}, :C ; :p [ a {kind} ] ."
+    good, _ = loader.read_advertisements(text.encode(), "a.ttl")
+    careful, _ = advertisements.read_document(turtle.parse(text, "a.ttl"))
+    assert [one.types for one in good] == [one.types for one in careful]
+    assert len(good[0].types) == (3 if kind in ("rdf:Bag", ":owl") else 2)
 
 
 def test_labels_of_blank_nodes_are_read_as_brackets_wherever_they_are_described() -> None:
