@@ -32,6 +32,7 @@ from pyshacl.validator import Validator
 from selfconf.errors import TemplateError
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
+from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
 from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED
@@ -120,6 +121,7 @@ class _Judge:
     """pySHACL, asked about one node after another, so that each answers for its own statements alone."""
 
     def __init__(self, subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, detailed: bool) -> None:
+        index_constraints()
         dataset = load_from_source(subjects, multigraph=True)
         dataset.default_union = True  # pySHACL looks at all of its graphs
         data = DataGraph.from_rdflib(dataset)
@@ -219,6 +221,7 @@ def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, 
 
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
     """The report of pySHACL and its text."""
+    index_constraints()
     with _silent():
         _, report, text = validate(
             subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST

@@ -24,6 +24,7 @@ from rdflib.term import Node
 
 from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.permitted_fields import COMPONENT
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.validation.diagnostics import at
@@ -163,6 +164,7 @@ def _prepared(text: str, prefixes: tuple[tuple[str, str], ...]) -> Query:
 
 def reported_violations(graph: Graph, shapes: Graph) -> Iterator[ReportedViolation]:
     """What pySHACL finds in a graph."""
+    index_constraints()
     asked = _PreparingGraph(graph.store, graph.identifier, graph.namespace_manager)
     _, report, text = pyshacl.validate(asked, shacl_graph=shapes, inference="none")
     if isinstance(report, ValidationFailure) or not isinstance(report, Graph):
