@@ -168,7 +168,12 @@ def _need(reached: bool, what: str) -> None:
 def report(found: list[Adoption], replaces: bool, back: float | None) -> str:
     """The table."""
     rows = [
-        [name, f"{1000 * quantile(values, 0.5):.0f}", f"{1000 * quantile(values, 0.95):.0f}", f"{1000 * max(values):.0f}"]
+        [
+            name,
+            f"{1000 * quantile(values, 0.5):.0f}",
+            f"{1000 * quantile(values, 0.95):.0f}",
+            f"{1000 * max(values):.0f}",
+        ]
         for name, values in (("adopted", [one.adopted for one in found]), ("pause", [one.pause for one in found]))
     ]
     said = [

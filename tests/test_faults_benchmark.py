@@ -17,6 +17,14 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 @pytest.mark.process
+def test_the_short_run_of_the_adoption_runs() -> None:
+    command = [sys.executable, "-m", "benchmarks.adoption", "--smoke"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "1 trials; 0 components were stopped or started." in done.stdout
+
+
+@pytest.mark.process
 def test_the_short_run_runs() -> None:
     command = [sys.executable, "-m", "benchmarks.faults", "--smoke"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)

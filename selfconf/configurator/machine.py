@@ -111,12 +111,15 @@ def step(state: State, event: Event) -> Reaction:
 
 
 def _adopted(state: State, event: Adopted) -> Reaction:
-    """Go on with what runs: every component keeps what it does, and hears for whom it does that from now on."""
+    """Go on with what runs: every component keeps what it does, and hears for whom it does that from now on.
+
+    It is applied to with the epoch that it acts in: one whose FAIL nobody has heard refuses that.
+    """
     if state.phase is not Phase.IDLE:
         return state, ()
     wires, values = wiring(event.configuration), parameter_values(event.configuration)
     held = {c: Held(inputs, values[c], reserved=True, active=True, acts=True) for c, inputs in wires.items()}
-    adopted = replace(state, epoch=event.epoch, target=event.configuration, held=held, watched=frozenset(wires))
+    adopted = replace(state, epoch=event.epoch - 1, target=event.configuration, held=held, watched=frozenset(wires))
     return then([Watch(component) for component in wires], _discover(adopted))
 
 

@@ -240,7 +240,9 @@ class ComponentRuntime:
         )
         if verdict is not Verdict.DONE:
             self.activation = after
-            reply(self._busy(message.task) if verdict is Verdict.BUSY else self._verdict(verdict, message.task))
+            detail = "it has failed" if verdict is Verdict.REFUSED else ""
+            busy = verdict is Verdict.BUSY
+            reply(self._busy(message.task) if busy else self._verdict(verdict, message.task, detail))
             self._ask_to_yield()
             self._offer()
             return

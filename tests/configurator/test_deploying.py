@@ -290,7 +290,7 @@ def test_a_task_that_is_adopted_goes_on_and_every_component_hears_for_whom() -> 
     assert history.hear(Discovered()) == [Compose(1, frozenset(), navigation())]
     effects = history.composed(navigation())
     assert kinds(effects) == [ApplyTo] * 3
-    assert {effect.epoch for effect in effects if isinstance(effect, ApplyTo)} == {501}
+    assert {effect.epoch for effect in effects if isinstance(effect, ApplyTo)} == {500}
     assert history.all_answer() == [Running(navigation())]
     assert history.hear(Adopted(900, navigation())) == []
 

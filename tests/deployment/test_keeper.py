@@ -102,6 +102,19 @@ def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> No
     assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"odometry"})
 
 
+def test_a_failure_that_nobody_heard_is_found_by_the_next_site(keepers: Keepers) -> None:
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    (keeper,) = keepers.running()
+    keepers.lab.isolate(keepers.keepers[keeper].runners[RECORD.task])
+    keepers.lab.components["tracker"].fail("lost")
+    keepers.lab.let_pass(0.01)
+    keepers.end(keeper)
+    assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"odometry"}, 5.0)
+    assert [said for said in keepers.lab.components["tracker"].said if said == ("started",)] == [("started",)]
+
+
 def test_a_site_that_comes_and_is_to_run_the_task_gets_it_from_the_one_that_has_it(keepers: Keepers) -> None:
     first = keeper_of(RECORD.task, "abc")
     keepers.end(first)
