@@ -25,6 +25,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -156,7 +157,7 @@ def _longest_pause(signs: list[Sign]) -> float:
     for sign in signs:
         if sign.what == "acts":
             moments.setdefault(sign.process, []).append(sign.time)
-    pauses = (later - sooner for times in moments.values() for sooner, later in zip(times, times[1:], strict=False))
+    pauses = (later - sooner for times in moments.values() for sooner, later in pairwise(times))
     return max(pauses, default=0.0)
 
 
