@@ -6,6 +6,9 @@ else on its host, the site's own bus included, is a *client* of a relay. How ses
 
 * Callbacks of Zenoh only put into the loop's queues (`indirect=False`): work in one would hold up every other message,
   and by default each would have a thread. The callback of a direct subscription puts into a queue of its owner.
+* What comes by the thousand, the answers and the lives of all, is read from a channel of Zenoh by a thread of its
+  own, many at a time: each callback takes Python's lock, for which Zenoh's thread would wait so long while Python works
+  that it misses the signs of life of its router.
 * Questions go to all queryables and are not consolidated, for that keeps one reply per key and waits for the slowest.
   They end when every queryable has finished, not at the time-out.
 * All control calls of one component have the same priority and are express, or they would overtake each other.
@@ -13,14 +16,17 @@ else on its host, the site's own bus included, is a *client* of a relay. How ses
 
 from __future__ import annotations
 
+import atexit
+import itertools
 import logging
 import threading
 import time
+import weakref
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import zenoh
-from zenoh.handlers import Callback
+from zenoh.handlers import Callback, FifoChannel
 
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Replies, Sample, Urgency
@@ -30,6 +36,10 @@ from selfconf.errors import NetworkError
 
 log = logging.getLogger(__name__)
 
+_CHANNEL = 1 << 17
+"""How much a channel holds that Python has not read yet, before Zenoh's thread waits."""
+_TOGETHER = 200
+"""How many of them are handed over together: what is urgent waits for as many lives at most."""
 _QUALITY: dict[Urgency, dict[str, Any]] = {
     Urgency.SIGNAL: {
         "congestion_control": zenoh.CongestionControl.DROP,
@@ -47,6 +57,18 @@ _QUALITY: dict[Urgency, dict[str, Any]] = {
         "express": True,
     },
 }
+
+
+_LAST_WORDS = 1.0
+"""Seconds that a thread that reads a channel may take to end when its session has been closed."""
+_OPEN: weakref.WeakSet[ZenohBus] = weakref.WeakSet()
+
+
+@atexit.register
+def _close_all() -> None:
+    """Close what was left open."""
+    for bus in list(_OPEN):
+        bus.close()
 
 
 def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = (), otherwise: Sequence[str] = ()) -> ZenohBus:
@@ -194,7 +216,13 @@ class ZenohBus(Loop):
         self._relay: Relay | None = None
         self._declared: set[Any] = set()
         self._direct: set[_DirectReceiver] = set()
+        self._readers: set[threading.Thread] = set()
+        """The threads that read channels; none may be left when Python ends, or it ends with a crash."""
         self._open = True
+        self._turns = itertools.count()
+        self._turn = 0
+        self._declared.add(session.info.declare_transport_events_listener(Callback(self._turned, indirect=False)))
+        _OPEN.add(self)
 
     def relay(self, hub: Hub, connect: Sequence[str]) -> None:
         """Keep a hub, connected to others, until this bus is closed or relays no more."""
@@ -215,8 +243,12 @@ class ZenohBus(Loop):
 
     @property
     def link(self) -> str:
-        """The hub that this bus is a client of."""
-        return ",".join(sorted(map(str, self._session.info.routers_zid()))) if self._open else ""
+        """The hub that this bus is a client of, and how often it has gained or lost one."""
+        hubs = ",".join(sorted(map(str, self._session.info.routers_zid()))) if self._open else ""
+        return hubs and f"{hubs} {self._turn}"
+
+    def _turned(self, _: Any) -> None:
+        self._turn = next(self._turns)
 
     def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
         """Declare a key to put on."""
@@ -265,20 +297,22 @@ class ZenohBus(Loop):
         samples: list[Sample] = []
         errors: list[str] = []
 
-        def listen(reply: zenoh.Reply) -> None:
-            if reply.ok is not None:
-                samples.append(_sample(reply.ok))
-            elif reply.err is not None:
-                errors.append(bytes(reply.err.payload).decode(errors="replace"))
+        def listen(replies: Sequence[zenoh.Reply]) -> None:
+            for reply in replies:
+                if reply.ok is not None:
+                    samples.append(_sample(reply.ok))
+                elif reply.err is not None:
+                    errors.append(bytes(reply.err.payload).decode(errors="replace"))
 
         def end() -> None:
             late = "Timeout" in errors
             replies = Replies(tuple(samples), tuple(e for e in errors if e != "Timeout"), not late)
             self.wake_up(lambda: done(replies))
 
-        self._session.get(
+        bulk = "*" in key
+        channel = self._session.get(
             key,
-            Callback(listen, end, indirect=False),
+            FifoChannel(_CHANNEL) if bulk else Callback(lambda reply: listen((reply,)), end, indirect=False),
             payload=payload,
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
@@ -287,6 +321,8 @@ class ZenohBus(Loop):
             priority=zenoh.Priority.INTERACTIVE_HIGH,
             express=True,
         )
+        if bulk:
+            self._read_aside(channel, listen, end)
 
     def announce(self, key: str) -> Callable[[], None]:
         """Be alive under a key."""
@@ -295,28 +331,53 @@ class ZenohBus(Loop):
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
         """Follow every life under a key, those that are there already first."""
 
-        receiver = _Receiver(self, changed)
+        def change(*lives: tuple[str, bool]) -> None:
+            for life in lives:
+                changed(*life)
 
-        def listen(sample: zenoh.Sample) -> None:
-            receiver.received(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+        receiver = _Receiver(self, change)
 
-        return receiver.open(
-            self._session.liveliness().declare_subscriber(key, Callback(listen, indirect=False), history=True)
-        )
+        def listen(samples: Sequence[zenoh.Sample]) -> None:
+            receiver.received(*((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT) for sample in samples))
+
+        bulk = "*" in key.removesuffix("/*")  # of one component there are few lives
+        handler: Any = FifoChannel(_CHANNEL) if bulk else Callback(lambda sample: listen((sample,)), indirect=False)
+        declared = self._session.liveliness().declare_subscriber(key, handler, history=True)
+        if bulk:
+            self._read_aside(declared.handler, listen)
+        return receiver.open(declared)
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
         """The keys that are alive right now."""
         alive: list[str] = []
 
-        def listen(reply: zenoh.Reply) -> None:
-            if reply.ok is not None:
-                alive.append(str(reply.ok.key_expr))
+        def listen(replies: Sequence[zenoh.Reply]) -> None:
+            alive.extend(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
 
         def end() -> None:
             keys = tuple(sorted(alive))
             self.wake_up(lambda: done(keys))
 
-        self._session.liveliness().get(key, Callback(listen, end, indirect=False), timeout=seconds)
+        bulk = "*" in key.removesuffix("/*")
+        handler: Any = FifoChannel(_CHANNEL) if bulk else Callback(lambda reply: listen((reply,)), end, indirect=False)
+        channel = self._session.liveliness().get(key, handler, timeout=seconds)
+        if bulk:
+            self._read_aside(channel, listen, end)
+
+    def _read_aside(
+        self, channel: Any, take: Callable[[Sequence[Any]], object], end: Callable[[], None] = lambda: None
+    ) -> None:
+        """Read what a channel of Zenoh receives, on a thread of its own, until the channel ends."""
+
+        def read() -> None:
+            while some := _received(channel):
+                take(some)
+            self._readers.discard(threading.current_thread())
+            end()
+
+        reader = threading.Thread(target=read, daemon=True, name="bulk")
+        self._readers.add(reader)
+        reader.start()
 
     def close(self) -> None:
         """Leave the network."""
@@ -328,6 +389,8 @@ class ZenohBus(Loop):
             self._direct.clear()
             self._declared.clear()
             self._session.close()
+            for reader in list(self._readers):
+                reader.join(_LAST_WORDS)
             if self._relay is not None:
                 self._relay.close()
 
@@ -341,6 +404,18 @@ class ZenohBus(Loop):
                 declared.undeclare()
 
         return undo
+
+
+def _received(channel: Any) -> list[Any]:
+    """Wait for what a channel receives, and return it with what else is there; nothing if the channel has ended."""
+    some: list[Any] = []
+    try:
+        some.append(channel.recv())
+        while len(some) < _TOGETHER and (one := channel.try_recv()) is not None:
+            some.append(one)
+    except zenoh.ZError:
+        pass
+    return some
 
 
 def _sample(sample: zenoh.Sample) -> Sample:

@@ -177,3 +177,39 @@ def test_a_flood_of_signals_delays_no_call(zenoh_router: ZenohBus, top: str) -> 
     assert behind == [1]
     for bus in (busy, caller):
         bus.close()
+
+
+def test_a_roll_call_of_hundreds_and_a_watch_of_them_miss_nobody(zenoh_router: ZenohBus, top: str) -> None:
+    crowd, bus = client([zenoh_router.endpoint]), client([zenoh_router.endpoint])
+    names = {f"{top}/{number}/live" for number in range(450)}
+    for name in names:
+        crowd.announce(name)
+    called: list[set[str]] = []
+    for _ in range(10):
+        number = len(called)
+        bus.roll_call(f"{top}/*/live", 5.0, lambda keys: called.append(set(keys)))
+        assert until(lambda: len(called) > number, bus)  # noqa: B023  # called in its own turn
+    assert all(alive == names for alive in called)
+    changes: list[tuple[str, bool]] = []
+    undo = bus.watch(f"{top}/*/live", lambda key, alive: changes.append((key, alive)))
+    assert until(lambda: len(changes) == len(names), bus)
+    crowd.close()
+    assert until(lambda: len(changes) == 2 * len(names), bus)
+    assert {key for key, alive in changes if not alive} == names
+    undo()
+    bus.close()
+
+
+def test_a_router_that_was_lost_and_found_again_is_another_link() -> None:
+    endpoint = free_endpoint()
+    first = router(endpoint)
+    bus = client([endpoint])
+    before = bus.link
+    first.close()
+    assert until(lambda: not bus.link, bus)
+    second = router(endpoint)
+    assert until(lambda: bool(bus.link), bus)
+    assert bus.link != before
+    assert until(lambda: bus.link.split()[0] == second.link.split()[0], bus)
+    bus.close()
+    second.close()
