@@ -1,0 +1,104 @@
+"""The router of a site: its hub tells where it listens, and its uplink is replaced when a link is back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from selfconf.bus import zenoh_relay
+from selfconf.bus.loop import Loop
+from selfconf.bus.zenoh_relay import Hub, Relay
+from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, with_port
+from selfconf.errors import NetworkError
+
+NOBODY = with_port(ANYWHERE_ON_LOOPBACK)
+"""An endpoint on which nothing listens: an uplink does not wait for it."""
+
+
+class CountedRelay(Relay):
+    """A relay that counts its uplinks."""
+
+    opened = 0
+
+    def open_uplink(self) -> Any:
+        self.opened += 1
+        return super().open_uplink()
+
+
+@pytest.fixture
+def hub() -> Hub:
+    """A hub, which its relay closes."""
+    return Hub(ANYWHERE_ON_LOOPBACK)
+
+
+@pytest.fixture
+def relay(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> Iterator[CountedRelay]:
+    """A relay without others, which replaces its uplink without delay where there is need."""
+    monkeypatch.setattr(zenoh_relay, "QUIET", 0.0)
+    monkeypatch.setattr(zenoh_relay, "RETRY_SPREAD", 0.0)
+    relay = CountedRelay(hub, Loop(), [])
+    yield relay
+    relay.close()
+
+
+def notice(relay: CountedRelay, *changes: bool) -> None:
+    """Let the present uplink see its link to one hub change, and let the loop do what follows."""
+    assert relay._uplink is not None
+    for up in changes:
+        relay.link_changed(relay._uplink, "another hub", up)
+    relay._loop.poll()
+
+
+def test_a_hub_says_which_free_port_it_has_taken(relay: CountedRelay, hub: Hub) -> None:
+    assert not hub.endpoint.endswith(":0")
+    with pytest.raises(NetworkError, match=f"cannot listen on {hub.endpoint}: the port is in use"):
+        Hub(hub.endpoint)
+
+
+def test_a_hub_on_all_addresses_is_reached_from_its_own_host_by_loopback() -> None:
+    hub = Hub("tcp/0.0.0.0:0")
+    assert hub.from_here == hub.endpoint.replace("0.0.0.0", "127.0.0.1")
+    hub.close()
+
+
+def test_a_relay_without_other_hubs_needs_no_uplink(relay: CountedRelay, hub: Hub) -> None:
+    relay.connect([hub.endpoint])
+    assert relay.opened == 0
+
+
+def test_a_further_hub_is_reached_by_a_new_uplink(relay: CountedRelay) -> None:
+    relay.connect([NOBODY])
+    relay.connect([with_port(ANYWHERE_ON_LOOPBACK)])
+    assert relay.opened == 2
+    assert len(relay._others) == 2
+
+
+def test_an_uplink_that_has_lost_a_hub_and_has_it_back_is_replaced(relay: CountedRelay) -> None:
+    relay.connect([NOBODY])
+    notice(relay, False, True)
+    assert relay.opened == 2
+
+
+def test_an_uplink_that_has_lost_a_hub_for_good_stays(relay: CountedRelay) -> None:
+    relay.connect([NOBODY])
+    notice(relay, True, False)
+    assert relay.opened == 1
+
+
+def test_an_uplink_that_was_replaced_is_listened_to_no_more(relay: CountedRelay) -> None:
+    relay.connect([NOBODY])
+    old = relay._uplink
+    assert old is not None
+    relay.connect([NOBODY])
+    relay.link_changed(old, "another hub", False)
+    relay.link_changed(old, "another hub", True)
+    relay._loop.poll()
+    assert relay.opened == 2
+
+
+def test_few_replaced_uplinks_stay_however_fast_links_change(relay: CountedRelay) -> None:
+    for _ in range(zenoh_relay.MOST_LINGERING + 3):
+        relay.connect([NOBODY])
+    assert len(relay._lingering) == zenoh_relay.MOST_LINGERING

@@ -1,0 +1,46 @@
+"""Sessions of Zenoh: the endpoint that is meant, and one sentence where there is none."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, open_session, with_port
+from selfconf.errors import NetworkError
+
+
+def test_port_zero_becomes_a_free_port() -> None:
+    head, _, port = with_port(ANYWHERE_ON_LOOPBACK).rpartition(":")
+    assert head == "tcp/127.0.0.1"
+    assert int(port) > 0
+
+
+def test_an_endpoint_with_a_port_stays_as_it_is() -> None:
+    assert with_port("tcp/192.0.2.1:7447") == "tcp/192.0.2.1:7447"
+
+
+def test_an_address_of_another_host_has_no_free_port_here() -> None:
+    with pytest.raises(NetworkError, match=r"^cannot listen on tcp/192\.0\.2\.1:0: "):
+        with_port("tcp/192.0.2.1:0")
+
+
+@pytest.mark.parametrize("endpoint", ["127.0.0.1:7447", "home"])
+def test_what_is_no_endpoint_is_told_how_one_is_written(endpoint: str) -> None:
+    with pytest.raises(NetworkError, match=r"is no endpoint; write it like tcp/127\.0\.0\.1:7447$"):
+        open_session("router", listen=[endpoint])
+
+
+def test_a_client_without_a_router_names_every_endpoint_that_it_has_asked() -> None:
+    asked = [with_port(ANYWHERE_ON_LOOPBACK) for _ in range(2)]
+    with pytest.raises(NetworkError) as error:
+        open_session("client", connect=asked)
+    assert str(error.value).startswith(f"nobody answers at {asked[0]}, {asked[1]}; is the endpoint right?")
+
+
+def test_two_routers_cannot_listen_on_one_endpoint() -> None:
+    endpoint = with_port(ANYWHERE_ON_LOOPBACK)
+    first = open_session("router", listen=[endpoint])
+    try:
+        with pytest.raises(NetworkError, match=f"^cannot listen on {endpoint}: the port is in use; port 0"):
+            open_session("router", listen=[endpoint])
+    finally:
+        first.close()
