@@ -1,0 +1,35 @@
+"""What a configurator knows: whether its task has ended, and whether a search in vain counts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from selfconf.configurator.state import Loss, Phase, State
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Cause
+
+EYE = IRI("urn:test:eye")
+
+
+@pytest.mark.parametrize("phase", Phase)
+def test_of_all_phases_only_refused_and_stopped_end_a_task(phase: Phase) -> None:
+    assert State(phase=phase).ended == (phase in (Phase.REFUSED, Phase.STOPPED))
+
+
+def test_a_patient_task_does_not_end_with_a_refusal_but_when_it_is_stopped() -> None:
+    refused = State(phase=Phase.REFUSED, patient=True)
+    assert not refused.ended
+    assert replace(refused, phase=Phase.STOPPED).ended
+
+
+def test_a_search_that_finds_nothing_counts_as_long_as_nothing_has_changed() -> None:
+    assert not State().searches_again
+    assert State(news=True).searches_again
+
+
+def test_a_lost_component_that_its_site_can_start_is_worth_another_search() -> None:
+    crashed = Loss(Cause.CRASH, startable=True)
+    assert State(lost={EYE: crashed}).searches_again
+    assert not State(lost={EYE: replace(crashed, startable=False)}).searches_again
