@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-ROOMS = ("api", "bus", "cli", "composition", "configurator", "model", "query", "render", "testing")
+ROOMS = ("api", "bus", "cli", "composition", "configurator", "deployment", "model", "query", "render", "testing")
 FILES = ("certificate", "entailment", "files", "library", "rendezvous", "termination")
 LEFT_OUT = {
     "bus/port.py": "a protocol and its values; the contract of the bus tests both buses by it",
     "configurator/effects.py": "a list of values; the tests of the machine look at each",
     "configurator/events.py": "a list of values; the tests of the machine send each",
+    "deployment/run_request.py": "a list of values with defaults; the tests of the runner give each",
 }
 """Modules without a file of tests, and why."""
 MODULES = [
