@@ -18,6 +18,8 @@ ROOMS = (
     "protocol",
     "query",
     "render",
+    "sdk",
+    "site",
     "testing",
 )
 FILES = ("certificate", "discovery", "entailment", "errors", "files", "library", "rendezvous", "termination")
