@@ -1,0 +1,119 @@
+"""A reduced problem as clauses and bounds: their models, found by trying all, are the solutions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+import pytest
+
+from selfconf.search.engines.encoding import Encoding
+from selfconf.search.problem import Problem
+from selfconf.search.reduction import Constraint, Distinct, Fed, Played, reduced
+from tests.search.oracle import World
+from tests.search.worlds import component, problem
+
+EYES = [component(name, outputs="o:Image") for name in ("left", "right")]
+MIND = component("mind", "i:Image")
+BOTH = component("both", outputs="o:Image")
+SEEING = problem({"eye": [*EYES, component("deaf")], "mind": [MIND]}, "eye>mind")
+SHARED = problem({"eye": [BOTH, EYES[0]], "mind": [BOTH, MIND]}, "eye>mind")
+TWINS = problem({"one": EYES, "other": EYES, "third": [*EYES, component("third")]})
+PROBLEMS = {
+    "a need": SEEING,
+    "two slots of one role": problem({"eye": [*EYES, component("third")]}, counts={"eye": (2, 2)}),
+    "too few candidates": problem({"eye": EYES}, counts={"eye": (3, 3)}),
+    "no candidates": problem({"eye": EYES, "mind": []}),
+    "one component in two roles": SHARED,
+    "a common value": problem(
+        {"eye": EYES, "mind": [MIND]},
+        "eye>mind",
+        values={"eye": {"left": 0b01, "right": 0b10}, "mind": {"mind": 0b10}},
+        domain=("kitchen", "hall"),
+    ),
+    "more roles than components": TWINS,
+}
+
+
+def models(encoding: Encoding, assumed: Sequence[int] = ()) -> Iterator[set[int]]:
+    """Every assignment of some literals that keeps to the clauses and the bounds, by trying all."""
+    for signs in product((1, -1), repeat=encoding.top):
+        model = {sign * literal for literal, sign in enumerate(signs, 1)}
+        if not model.issuperset(assumed) or not all(model.intersection(clause) for clause in encoding.clauses):
+            continue
+        if all(model.intersection(b.force) or len(model.intersection(b.literals)) <= b.most for b in encoding.bounds):
+            yield model
+
+
+def played(encoding: Encoding, assumed: Sequence[int] = ()) -> set[tuple[tuple[str, ...], ...]]:
+    """For each model, the components that play each role."""
+    return {
+        tuple(
+            tuple(
+                option.component.rpartition(":")[2] for option, literal in zip(*role, strict=True) if literal in model
+            )
+            for role in zip(encoding.reduced.options, encoding.plays, strict=True)
+        )
+        for model in models(encoding, assumed)
+    }
+
+
+def solutions(problem: Problem) -> set[tuple[tuple[str, ...], ...]]:
+    """For each solution by enumeration, the components that play each role; none with a dominated candidate."""
+    world = World(problem.task, problem.partition, problem.hierarchy)
+    kept = [set(components) for components in reduced(problem).components()]
+    found = [[[c.profile.component for c in some] for some in players] for players in world.solutions()]
+    return {
+        tuple(tuple(component.rpartition(":")[2] for component in some) for some in players)
+        for players in found
+        if all(options.issuperset(some) for options, some in zip(kept, players, strict=True))
+    }
+
+
+def guarded(problem: Problem, *dropped: Constraint) -> set[tuple[tuple[str, ...], ...]]:
+    """What plays if all constraints but some are in force."""
+    encoding = Encoding(reduced(problem), guarded=True)
+    return played(encoding, [guard for constraint, guard in encoding.guards.items() if constraint not in dropped])
+
+
+@pytest.mark.parametrize("given", PROBLEMS.values(), ids=PROBLEMS)
+def test_the_models_are_the_solutions(given: Problem) -> None:
+    assert played(Encoding(reduced(given))) == solutions(given)
+
+
+@pytest.mark.parametrize("given", PROBLEMS.values(), ids=PROBLEMS)
+def test_with_all_guards_assumed_the_models_are_the_solutions(given: Problem) -> None:
+    assert guarded(given) == solutions(given)
+
+
+def test_without_the_guard_of_a_role_it_may_be_left_unplayed() -> None:
+    assert ((), ("both",)) not in guarded(SHARED)
+    assert ((), ("both",)) in guarded(SHARED, Played(0))
+    assert (("left",), ()) in guarded(SHARED, Played(1))
+
+
+def test_without_the_guard_of_a_need_nothing_has_to_feed_it() -> None:
+    assert (("deaf",), ("mind",)) not in guarded(SEEING)
+    assert (("deaf",), ("mind",)) in guarded(SEEING, Fed(0))
+
+
+def test_without_the_guard_of_distinctness_a_component_may_play_two_roles() -> None:
+    assert (("both",), ("both",)) not in guarded(SHARED)
+    assert (("both",), ("both",)) in guarded(SHARED, Distinct())
+
+
+def test_where_order_is_asked_for_interchangeable_roles_are_played_in_it() -> None:
+    ordered = played(Encoding(reduced(TWINS), ordered=True))
+    assert ordered == {(("left",), ("right",), ("third",))}
+    assert len(solutions(TWINS)) == 2
+
+
+def test_of_two_options_for_one_slot_one_is_the_negation_of_the_other() -> None:
+    (first, second), _ = Encoding(reduced(SHARED)).plays
+    assert first == -second
+
+
+def test_each_new_literal_is_one_higher_than_all_before() -> None:
+    encoding = Encoding(reduced(SEEING))
+    before = encoding.top
+    assert [encoding.literal(), encoding.literal(), encoding.top] == [before + 1, before + 2, before + 2]
