@@ -14,7 +14,7 @@ from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle.document import Document
 from selfconf.rdf.vocabulary import LABEL, OWL, RDF, ROB, SC, TYPE, Namespace
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 NOT_IN_CODE = {
     "Port": "what inputs and outputs have in common, for ontologists",
 }
