@@ -1,0 +1,82 @@
+"""Literals compared as pySHACL compares them: what is well-typed, what has a value, what is greater."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.literal_comparison import has_value, order, well_typed
+from selfconf.rdf.vocabulary import RDF, XSD
+
+
+def typed(text: str, datatype: str) -> Literal:
+    """A literal of a datatype of XML Schema."""
+    return Literal(text, XSD[datatype])
+
+
+NAN = typed("NaN", "double")
+
+
+@pytest.mark.parametrize(
+    "literal",
+    [
+        Literal("lamp"),
+        typed("007", "integer"),
+        typed("INF", "double"),
+        typed("2024-02-29", "date"),
+        Literal("x", IRI("urn:x:own")),
+        Literal("hall", RDF.langString, "en"),
+    ],
+)
+def test_a_lexical_form_of_its_datatype_is_well_typed(literal: Literal) -> None:
+    assert well_typed(literal)
+
+
+@pytest.mark.parametrize("literal", [typed("seven", "integer"), typed("2023-02-29", "date"), typed("", "decimal")])
+def test_a_lexical_form_of_another_datatype_is_not_well_typed_and_has_no_value(literal: Literal) -> None:
+    assert not well_typed(literal)
+    assert not has_value(literal)
+
+
+def test_a_literal_of_an_unknown_datatype_is_well_typed_but_has_no_value() -> None:
+    unknown = Literal("x", IRI("urn:x:own"))
+    assert well_typed(unknown)
+    assert not has_value(unknown)
+    assert has_value(typed("7", "integer"))
+
+
+@pytest.mark.parametrize(
+    ("less", "greater"),
+    [
+        (typed("9", "integer"), typed("10", "integer")),
+        (typed("1", "integer"), typed("1.5", "decimal")),
+        (typed("-INF", "double"), typed("0", "integer")),
+        (Literal("Lamp"), Literal("lamp")),
+        (typed("2024-02-28", "date"), typed("2024-02-29", "date")),
+        (typed("2024-01-01T00:00:00Z", "dateTime"), typed("2024-01-01T00:00:00-01:00", "dateTime")),
+    ],
+)
+def test_of_two_literals_with_an_order_one_is_greater(less: Literal, greater: Literal) -> None:
+    below, above = order(less, greater), order(greater, less)
+    assert below is not None
+    assert above is not None
+    assert below < 0 < above
+
+
+def test_one_number_in_two_forms_is_equal() -> None:
+    assert order(typed("1", "integer"), typed("01.0", "decimal")) == 0
+
+
+@pytest.mark.parametrize(
+    ("value", "limit"),
+    [
+        *product([Literal("5"), IRI("urn:x:a"), BlankNode("_:a")], [typed("5", "integer")]),
+        (typed("5", "integer"), IRI("urn:x:a")),
+        (typed("2024-01-01T00:00:00Z", "dateTime"), typed("2024-01-01T00:00:00", "dateTime")),
+        (typed("1.0", "decimal"), NAN),
+    ],
+)
+def test_what_has_no_order_is_told_so_and_raises_nothing(value: Term, limit: Term) -> None:
+    assert order(value, limit) is None
