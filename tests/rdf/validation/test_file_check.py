@@ -1,0 +1,82 @@
+"""The check of one file: every problem with its place, also of what cannot be read or takes too long."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf import library
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.validation import file_check
+from selfconf.rdf.validation.file_check import FileCheck, shapes_of
+from selfconf.rdf.validation.prefilter import prefilter
+from selfconf.rdf.validation.term_index import index_of
+from tests.lab import PREFIXES
+
+TEXTS = tuple(path.read_text("utf-8") for path in library.shapes())
+HEAD = PREFIXES.count("\n")
+CHECK = FileCheck(shapes_of(*TEXTS), index_of([prefilter(path.read_bytes()) for path in library.ontologies()]))
+LAMP = ":lamp a sc:Component, :Lamp .\n"
+
+
+def found(text: str, prefixes: str = PREFIXES) -> list[Diagnostic]:
+    """The problems of a file, which stands alone."""
+    return CHECK.of(prefixes + text, "a.ttl", "file:///a.ttl", {})
+
+
+def told(text: str) -> list[tuple[str, int, int]]:
+    """Code, line below the prefixes and column of each problem of a file."""
+    return sorted((each.code, each.line - HEAD, each.column) for each in found(text))
+
+
+def test_a_file_that_is_right_has_no_problems() -> None:
+    assert found(LAMP) == []
+
+
+def test_an_empty_file_has_no_problems() -> None:
+    assert found("", prefixes="") == []
+
+
+def test_a_violation_of_a_shape_is_at_the_value_that_breaks_it() -> None:
+    assert told(f'{LAMP}:lamp sc:preference "high" .') == [("SC-A04", 2, 21)]
+
+
+def test_violations_of_shapes_and_of_words_are_both_told() -> None:
+    assert [code for code, _, _ in told(f'{LAMP}:lamp sc:preference "high" ; sc:preferense 1 .')] == [
+        "SC-A04",
+        "SC-L01",
+    ]
+
+
+def test_what_is_not_turtle_is_one_problem_where_reading_ends() -> None:
+    (only,) = found(f"{LAMP}:lamp :p ;; . :bell\n")
+    assert (only.code, only.file) == ("SC-S01", "a.ttl")
+    assert only.message.startswith("This is not Turtle 1.1: ")
+
+
+def test_a_list_without_an_end_is_not_given_to_the_shapes() -> None:
+    text = ":t a sc:Template ; sc:roles _:a . _:a rdf:first :r ; rdf:rest _:a ."
+    prefixes = PREFIXES + "@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .\n"
+    assert [each.code for each in found(text, prefixes) if each.code.startswith("SC-S")] == ["SC-S06"]
+
+
+def test_what_nests_too_deeply_is_told_instead_of_checked() -> None:
+    depth = 2_000
+    (only,) = found(":a :p " + "[ :p " * depth + "1" + " ]" * depth + " .")
+    assert only.code == "SC-S05"
+
+
+def test_a_check_that_takes_too_long_ends_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(file_check, "FILE_SECONDS", 0.01)
+    (only,) = found("\n".join(f":lamp{number} a sc:Component, :Lamp ." for number in range(500)))
+    assert only.code == "SC-S05"
+    assert only.message.startswith("This file takes more than 0.01 seconds of processor time")
+
+
+def test_a_component_that_another_file_describes_as_well_is_told_with_that_file() -> None:
+    elsewhere = {"https://example.org/peis-home#lamp": "b.ttl"}
+    (only,) = CHECK.of(PREFIXES + LAMP, "a.ttl", "file:///a.ttl", elsewhere)
+    assert "b.ttl" in only.message
+
+
+def test_shapes_are_read_once_for_the_same_texts() -> None:
+    assert shapes_of(*TEXTS) is shapes_of(*TEXTS)
