@@ -1,0 +1,103 @@
+"""Violations of the shapes: as few shapes as may find something, and each violation where its author looks for it."""
+
+from __future__ import annotations
+
+import pytest
+from rdflib import SH, Graph, URIRef
+
+from selfconf import library
+from selfconf.model.diagnostic import Severity
+from selfconf.rdf.positions import parse_with_positions
+from selfconf.rdf.validation.shape_violations import Shapes, reported_violations, shape_violations
+from selfconf.rdf.vocabulary import SHAPES as NAMES
+from tests.lab import PREFIXES
+
+ALL = Graph()
+for path in library.shapes():
+    ALL.parse(path)
+SHAPES = Shapes.of(ALL)
+HEAD = PREFIXES.count("\n")
+LAMP = ":lamp a sc:Component, :Lamp .\n"
+PORT = '[ sc:name "{}" ; sc:signalType :S ]'
+
+
+def told(text: str) -> list[tuple[int, int, str]]:
+    """Line below the prefixes, column and shape of each violation of a text, in the order of the text."""
+    graph, positions = parse_with_positions(PREFIXES + text, "a.ttl")
+    found = shape_violations(graph, positions, SHAPES)
+    return sorted((each.line - HEAD, each.column, (each.shape or "").removeprefix(NAMES.base)) for each in found)
+
+
+def needed(text: str) -> set[str]:
+    """The shapes with targets that a text may violate."""
+    part = SHAPES.needed(Graph().parse(data=PREFIXES + text, format="turtle"))
+    return {str(shape).removeprefix(NAMES.base) for shape, _, _ in SHAPES.targets if (shape, None, None) in part}
+
+
+def test_what_conforms_has_no_violations() -> None:
+    assert told(LAMP) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "at"),
+    [
+        (':lamp sc:preference "high" .', (2, 21)),
+        (":lamp sc:preference 1 , 2 .", (2, 25)),
+        (":lamp sc:hasInput [ sc:signalType :S ] .", (2, 19)),
+        (f":lamp sc:hasInput {PORT.format('a')} , {PORT.format('a')} .", (2, 66)),
+        (":bell sc:hasInput 5 .", (2, 19)),
+    ],
+    ids=["the wrong value", "the second of two", "the node that lacks", "the second name", "the literal"],
+)
+def test_a_violation_is_where_its_author_would_look_for_it(text: str, at: tuple[int, int]) -> None:
+    assert at in [(line, column) for line, column, _ in told(LAMP + text)]
+
+
+def test_of_three_equal_names_the_first_is_not_to_blame() -> None:
+    ports = " , ".join(PORT.format("a") for _ in range(3))
+    assert [shape for _, _, shape in told(f"{LAMP}:lamp sc:hasInput {ports} .")] == ["PortNamesDistinct"] * 2
+
+
+def test_a_diagnostic_names_its_code_its_shape_and_how_bad_it_is() -> None:
+    graph, positions = parse_with_positions(f'{PREFIXES}{LAMP}:lamp sc:preference "high" .', "a.ttl")
+    (only,) = shape_violations(graph, positions, SHAPES)
+    assert (only.code, only.severity, only.file) == ("SC-A04", Severity.ERROR, "a.ttl")
+    assert (only.shape or "").startswith(NAMES.base)
+
+
+def test_only_shapes_with_a_target_in_the_file_are_needed() -> None:
+    assert needed(":a :p :b .") == set()
+    lamp, role = needed(LAMP), needed(":r a sc:Role .")
+    assert lamp
+    assert role
+    assert not lamp & role
+    assert needed(LAMP + ":r a sc:Role .") == lamp | role
+
+
+def test_where_classes_have_classes_above_all_shapes_of_classes_are_needed() -> None:
+    classes = {shape for shape, kind, _ in SHAPES.targets if kind == SH.targetClass}
+    assert len(needed(":Lamp rdfs:subClassOf :Light .")) >= len(classes) - 4
+
+
+def test_queries_about_names_are_asked_only_where_a_name_is_there_twice() -> None:
+    two = f"{LAMP}:lamp sc:hasInput {PORT.format('a')} , " + PORT
+    assert "PortNamesDistinct" not in needed(two.replace("{}", "b") + " .")
+    assert "PortNamesDistinct" in needed(two.replace("{}", "a") + " .")
+
+
+def test_the_needed_shapes_of_two_files_alike_are_one_graph() -> None:
+    graphs = [Graph().parse(data=PREFIXES + LAMP.replace("lamp", name), format="turtle") for name in ("a", "b")]
+    assert SHAPES.needed(graphs[0]) is SHAPES.needed(graphs[1])
+
+
+def test_the_needed_shapes_find_what_all_shapes_find() -> None:
+    text = (
+        f'{PREFIXES}{LAMP}:lamp sc:preference "high" ; sc:hasInput 5 . :t a sc:Template . :r a sc:Role ; sc:feeds 1 .'
+    )
+    graph = Graph().parse(data=text, format="turtle")
+    few, every = (
+        {(found.shape, found.focus, found.value) for found in reported_violations(graph, shapes)}
+        for shapes in (SHAPES.needed(graph), ALL)
+    )
+    assert few == every
+    assert URIRef(NAMES.Component) not in {shape for shape, _, _ in few}

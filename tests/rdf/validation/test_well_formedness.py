@@ -1,0 +1,112 @@
+"""Whether the shape of a role can be asked about a component: what keeps it from that, and where it stands."""
+
+from __future__ import annotations
+
+import pytest
+from rdflib import SH, Graph
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.positions import parse_with_positions
+from selfconf.rdf.validation.well_formedness import endless_lists, malformed_roles, shape_of_shapes
+from tests.lab import PREFIXES
+
+HEAD = PREFIXES.count("\n")
+LISTS = "@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> . "
+PARAMETER = ':robot a sc:Parameter ; sc:name "robot" ; {} .\n'
+
+
+def malformed(text: str) -> list[Diagnostic]:
+    """What keeps the roles of a text from being shapes."""
+    return list(malformed_roles(*parse_with_positions(PREFIXES + text, "a.ttl")))
+
+
+def places(text: str) -> list[tuple[int, int]]:
+    """Line below the prefixes and column of each list in a text that has no end."""
+    found = list(endless_lists(*parse_with_positions(PREFIXES + text, "a.ttl")))
+    assert {each.code for each in found} <= {"SC-S06"}
+    return [(each.line - HEAD, each.column) for each in found]
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "sh:class :Lamp",
+        "sh:property [ sh:path :p ; sh:minCount 1 ; sh:in ( 1 2 ) ]",
+        "sh:or ( [ sh:class :A ] [ sh:class :B ] )",
+        "sh:property [ sh:path ( :p :q ) ; sh:pattern '^a+$' ]",
+        "sh:sparql [ sh:select 'SELECT $this WHERE { $this a ?type }' ]",
+    ],
+)
+def test_a_role_that_is_a_shape_has_nothing_wrong(shape: str) -> None:
+    assert malformed(f":r a sc:Role ; {shape} .") == []
+
+
+def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
+    assert malformed(":s sh:class 5 .") == []
+
+
+@pytest.mark.parametrize(
+    ("shape", "column", "sentence"),
+    [
+        ("sh:class 5", 25, "sh:class"),
+        ("sh:property [ sh:minCount 1 ]", 28, "exactly one sh:path"),
+        ("sh:minCount 1", 16, "how many play a role is sc:minCount"),
+        ("sh:hasValue 1 ; sh:lessThan :p", 32, "write sh:property"),
+        ("sh:node 'x'", 24, "sh:node"),
+        ("sh:property [ sh:path :p ; sh:pattern '(' ]", 54, "This is no regular expression"),
+        ("sh:sparql [ sh:select 'SELECT' ]", 38, "This is not SPARQL"),
+    ],
+)
+def test_what_is_wrong_with_a_shape_is_told_where_it_stands(shape: str, column: int, sentence: str) -> None:
+    found = malformed(f":r a sc:Role ; {shape} .")
+    assert {(each.code, each.line - HEAD, each.column) for each in found} == {("SC-T13", 1, column)}
+    assert sentence in found[0].message
+
+
+def test_a_query_that_would_leave_this_machine_is_refused() -> None:
+    query = "SELECT $this WHERE { SERVICE <http://example.org/> { $this a ?type } }"
+    (only,) = malformed(f":r a sc:Role ; sh:sparql [ sh:select '{query}' ] .")
+    assert only.code == "SC-T13"
+
+
+@pytest.mark.parametrize(
+    ("kind", "wrong"),
+    [
+        ("sh:datatype xsd:integer", False),
+        ("sh:datatype xsd:string", True),
+        ("sh:nodeKind sh:IRI", True),
+        ("rdfs:comment 'of any kind'", False),
+    ],
+)
+def test_a_parameter_is_judged_by_a_sample_of_its_datatype(kind: str, wrong: bool) -> None:
+    text = PARAMETER.format(kind) + ":r a sc:Role ; sh:property [ sh:path :p ; sh:minCount :robot ] ."
+    assert bool(malformed(text)) == wrong
+
+
+def test_of_two_roles_only_the_one_that_cannot_be_asked_is_told() -> None:
+    found = malformed(":good a sc:Role ; sh:class :A .\n:bad a sc:Role ; sh:class 5 .")
+    assert [each.line - HEAD for each in found] == [2]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (":a :p ( 1 2 3 ) .", 0),
+        (LISTS + ":a rdf:first 1 ; rdf:rest :a .", 1),
+        (LISTS + ":a rdf:rest :b . :b rdf:rest :c . :c rdf:rest :b .", 1),
+        (LISTS + ":a rdf:rest :a . :b rdf:rest :b .", 2),
+        (LISTS + ":a rdf:rest :b . :b rdf:rest rdf:nil .", 0),
+    ],
+)
+def test_each_list_that_comes_back_to_itself_is_told_once(text: str, found: int) -> None:
+    assert len(places(text)) == found
+
+
+def test_a_list_without_an_end_is_told_where_a_cell_of_it_is_described() -> None:
+    assert places("@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .\n:a rdf:rest :a .") == [(2, 1)]
+
+
+def test_the_shape_of_shapes_is_that_of_shacl_and_is_read_once() -> None:
+    assert isinstance(shape_of_shapes(), Graph)
+    assert (None, SH.path, SH.minCount) in shape_of_shapes()
+    assert shape_of_shapes() is shape_of_shapes()
