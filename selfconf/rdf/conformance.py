@@ -35,7 +35,7 @@ from selfconf.model.term import IRI
 from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
 from selfconf.rdf.linear_patterns import linear_patterns
-from selfconf.rdf.literal_comparison import UNORDERED
+from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
 
@@ -100,7 +100,7 @@ def violations(
     for reason in faults(shapes).values():
         raise TemplateError(f"{called} is not evaluated: {reason}", file=source)
     try:
-        with processor_limit(SHAPE_SECONDS), linear_patterns(), _silent():
+        with processor_limit(SHAPE_SECONDS), linear_patterns(), only_ordered(), _silent():
             judge = _Judge(subjects, shapes, shape, detailed)
             found: dict[IRI, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from itertools import product
 
+import pyshacl
 import pytest
+from rdflib import Graph
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.literal_comparison import has_value, order, well_typed
+from selfconf.rdf.literal_comparison import has_value, only_ordered, order, well_typed
 from selfconf.rdf.vocabulary import RDF, XSD
+from tests.lab import PREFIXES
 
 
 def typed(text: str, datatype: str) -> Literal:
@@ -54,6 +57,9 @@ def test_a_literal_of_an_unknown_datatype_is_well_typed_but_has_no_value() -> No
         (typed("1", "integer"), typed("1.5", "decimal")),
         (typed("-INF", "double"), typed("0", "integer")),
         (Literal("Lamp"), Literal("lamp")),
+        (typed("Lamp", "normalizedString"), Literal("lamp")),
+        (typed("PT1H", "dayTimeDuration"), typed("PT2H", "duration")),
+        (typed("5", "unsignedByte"), typed("6.5", "float")),
         (typed("2024-02-28", "date"), typed("2024-02-29", "date")),
         (typed("2024-01-01T00:00:00Z", "dateTime"), typed("2024-01-01T00:00:00-01:00", "dateTime")),
     ],
@@ -75,8 +81,24 @@ def test_one_number_in_two_forms_is_equal() -> None:
         *product([Literal("5"), IRI("urn:x:a"), BlankNode("_:a")], [typed("5", "integer")]),
         (typed("5", "integer"), IRI("urn:x:a")),
         (typed("2024-01-01T00:00:00Z", "dateTime"), typed("2024-01-01T00:00:00", "dateTime")),
+        (typed("2024-01-01", "date"), typed("5", "integer")),
+        (typed("2024-01-01", "date"), typed("2023-01-01T00:00:00", "dateTime")),
+        (typed("true", "boolean"), typed("0", "integer")),
+        (typed("PT1H", "duration"), typed("5", "decimal")),
+        (Literal("x", IRI("urn:x:own")), typed("5", "integer")),
         (typed("1.0", "decimal"), NAN),
     ],
 )
 def test_what_has_no_order_is_told_so_and_raises_nothing(value: Term, limit: Term) -> None:
     assert order(value, limit) is None
+
+
+def test_in_the_block_pyshacl_lets_no_date_pass_a_limit_that_is_a_number() -> None:
+    shape = ":s a sh:NodeShape ; sh:targetNode :a ; sh:property [ sh:path :p ; sh:minInclusive 5 ] ."
+    shapes = Graph().parse(data=PREFIXES + shape, format="turtle")
+    verdicts = []
+    for value in ('"2024-01-01"^^xsd:date', "5.0", "4"):
+        data = Graph().parse(data=f"{PREFIXES}:a :p {value} .", format="turtle")
+        with only_ordered():
+            verdicts.append(pyshacl.validate(data, shacl_graph=shapes)[0])
+    assert verdicts == [False, True, False]

@@ -17,6 +17,7 @@ from selfconf.rdf import rdflib_terms
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.literal_comparison import only_ordered
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from tests.effort import examples
@@ -229,9 +230,10 @@ def conforming(texts: list[str], role: str, value: str = ":par") -> set[str]:
     found = set()
     for number in range(len(texts)):
         node = iri(f"c{number}")
-        conforms, _, _ = pyshacl.validate(
-            subjects, shacl_graph=shapes, focus_nodes=[str(node)], use_shapes=[str(iri("r"))], inference="none"
-        )
+        with only_ordered():  # pySHACL finds an order between true and 1
+            conforms, _, _ = pyshacl.validate(
+                subjects, shacl_graph=shapes, focus_nodes=[str(node)], use_shapes=[str(iri("r"))], inference="none"
+            )
         if conforms:
             found.add(f"c{number}")
     return found
@@ -261,3 +263,11 @@ def test_a_role_with_a_free_parameter_takes_the_components_that_pyshacl_takes_fo
         if mask == ANY_VALUE or (inside and mask >> domains[PARAMETER].index(term) & 1):
             taken.add(candidate.profile.component.short)
     assert taken == conforming(texts, role, value)
+
+
+@pytest.mark.parametrize("path", [":p", "[ sh:alternativePath ( :p :q ) ]"], ids=["compiled", "judged by pySHACL"])
+def test_a_value_that_has_no_order_with_a_limit_does_not_pass_it(path: str) -> None:
+    text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:property [ sh:path {path} ; sh:minInclusive 5 ] ."
+    values = ('"2024-01-01"^^xsd:date', "true", '"10"^^:own', "10.5")
+    ads = [f":c{number} a sc:Component, :Lamp ; :p {value} ." for number, value in enumerate(values)]
+    assert names(partitioner(text).partition(read(ads))) == [["c3"]]
