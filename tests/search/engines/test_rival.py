@@ -56,7 +56,7 @@ def test_that_there_is_no_solution_is_known_without_any_option() -> None:
 
 @pytest.mark.process
 def test_a_process_that_has_ended_too_soon_leaves_everything_open(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rival.sys, "executable", "/bin/true")
+    monkeypatch.setattr(rival.sys, "executable", "true")
     with asked(SEEING) as other:
         other._process.wait()
         assert list(other.settled()) == []
