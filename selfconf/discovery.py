@@ -283,7 +283,7 @@ class _Inquiry:
         try:
             good, bad = advertisements.read_advertisements(payload, name, segments=self._segments)
         except TurtleError as error:
-            self._complaints.append(f"left out: {error}")
+            self._complaints.append(f"left out {page.component}: {error}")
             return None
         for malformed in bad:
             self._complaints.append(f"left out {malformed.component} of {name}: {malformed.problems[0]}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import time
 from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
@@ -48,8 +47,9 @@ def keep(found: Found, part: str, seconds: float) -> None:
 
 
 def peak() -> float:
-    """The most memory that this process had so far, in octets."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
+    """The most memory that this process had so far, in octets; `ru_maxrss` would begin with that of its parent."""
+    (line,) = (line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("VmHWM"))
+    return float(line.split()[1]) * 1024
 
 
 def bare(path: Path) -> None:
