@@ -44,6 +44,7 @@ FACTS: dict[str, Any] = {
     "sites": ("home",),
     "missing": ("cellar",),
     "detail": "it burns",
+    "reason": "it takes too long",
     "cause": "fail",
     "reason": "what it says takes too long to be judged by the shape",
     "call": "apply",

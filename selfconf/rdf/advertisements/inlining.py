@@ -28,6 +28,8 @@ CHUNK_TRIPLES = 512
 _DEPTH = 30
 """How deep blank nodes may lie in blank nodes, where these are not written one after the other."""
 _CELL = [f"<{FIRST}>", f"<{REST}>"]
+_TAKEN: list[str] = []
+"""In the place of what is said of a blank node, once that is part of a statement."""
 _OBJECT = re.compile(r'<[^<>]*>|"(?:[^"\\]|\\.)*"(?:@[A-Za-z0-9-]+|\^\^<[^<>]*>)?|[^\s",<>]+')
 
 
@@ -139,7 +141,7 @@ def _afterwards(text: bytes, base: str | None, statements: StatementTable) -> di
             else:
                 said.append(rest)
     names = [subject for subject in lines if subject[0] != "_"]
-    known, taken = statements.get, set[str]()
+    known = statements.get
     subjects: dict[str, list[Statement]] = {}
     for name in names:
         subjects[name] = found = []
@@ -148,19 +150,18 @@ def _afterwards(text: bytes, base: str | None, statements: StatementTable) -> di
                 predicate, _, node = line.partition(" ")
                 inner = NEXT.join(get(node, ()))
                 if not inner or "_:" in inner or _CELL[0] in inner:
-                    found += [statements[each] for each in _nested([line], lines, taken, 0)]
+                    found += [statements[each] for each in _nested([line], lines, 0)]
                     continue
-                del lines[node]
-                taken.add(node)
+                lines[node] = _TAKEN
                 line = f"{predicate} [ {inner} ]"
             found.append(known(line) or statements[line])
-    if lines:
+    if any(said is not _TAKEN for said in lines.values()):
         raise NotInlinableError
     return subjects
 
 
-def _nested(said: Iterable[str], lines: dict[str, list[str]], taken: set[str], depth: int) -> Iterator[str]:
-    """Statements with what is said of blank nodes in the place of these, which are taken out of `lines`, once."""
+def _nested(said: Iterable[str], lines: dict[str, list[str]], depth: int) -> Iterator[str]:
+    """Statements with what is said of blank nodes in the place of these, which are taken from `lines`, once."""
     if depth > _DEPTH:
         raise NotInlinableError
     for line in said:
@@ -169,34 +170,33 @@ def _nested(said: Iterable[str], lines: dict[str, list[str]], taken: set[str], d
             yield line
             continue
         for found in _OBJECT.findall(objects):
-            yield f"{predicate} {_written(found, lines, taken, depth)}"
+            yield f"{predicate} {_written(found, lines, depth)}"
 
 
-def _written(found: str, lines: dict[str, list[str]], taken: set[str], depth: int) -> str:
+def _written(found: str, lines: dict[str, list[str]], depth: int) -> str:
     """An object; a blank node as a list, where it is the first cell of one, or in brackets."""
     if not found.startswith("_:"):
         return found
     members: list[str] = []
     at = found
     while [part.partition(" ")[0] for part in sorted(_said_of(at, lines))] == _CELL:
-        first, rest = sorted(_take(at, lines, taken))
-        (member,) = _nested([first], lines, taken, depth + 1)
+        first, rest = sorted(_take(at, lines))
+        (member,) = _nested([first], lines, depth + 1)
         members.append(member.partition(" ")[2])
         at = rest.partition(" ")[2]
     if not members:
-        return bracketed("", _nested(_take(at, lines, taken), lines, taken, depth + 1)).lstrip()
+        return bracketed("", _nested(_take(at, lines), lines, depth + 1)).lstrip()
     if at != f"<{NIL}>":
         raise NotInlinableError
     return f"( {' '.join(members)} )"
 
 
-def _take(node: str, lines: dict[str, list[str]], taken: set[str]) -> list[str]:
+def _take(node: str, lines: dict[str, list[str]]) -> list[str]:
     """What is said of a blank node. Raises NotInlinableError if another statement has led to it already."""
-    if node in taken:
+    if lines.get(node) is _TAKEN:
         raise NotInlinableError
-    taken.add(node)
     said = _said_of(node, lines)
-    lines.pop(node, None)
+    lines[node] = _TAKEN
     return said
 
 
