@@ -33,9 +33,9 @@ _SILENT = {f"<{predicate}>" for predicate in STRUCTURE - COMPONENT.predicates}
 """What says nothing of a component itself."""
 _LINK = {f"<{predicate}>" for predicate in LINKS}
 _LINKS = re.compile(r"<[^<>]*>(?: , <[^<>]*>)*")
-_TYPES = re.compile("a <[^<> ]*>(?: , <[^<> ]*>)*")
-_UNUSUAL_TYPES = (*LANGUAGES, RDF_PROPERTY, turtle.SKOLEM)
-"""What stands in a statement of types of which not all may be good."""
+_GOOD_TYPE = f"<(?!{'|'.join(map(re.escape, (*LANGUAGES, RDF_PROPERTY, turtle.SKOLEM)))})[^<> ]*>"
+_GOOD_TYPES = re.compile(f"a {_GOOD_TYPE}(?: , {_GOOD_TYPE})*")
+"""A statement of types of which an advertisement may give each."""
 
 
 class Statement(ABC):
@@ -157,7 +157,7 @@ class StatementTable(dict[str, Statement]):
 
     def _types(self, statement: WrittenStatement) -> None:
         text = statement.text
-        if not _TYPES.fullmatch(text) or any(part in text for part in _UNUSUAL_TYPES):
+        if not _GOOD_TYPES.fullmatch(text):
             types = set(turtle.parse(f"<{SUBJECT}> {text}{END}", "").values(SUBJECT, TYPE))
             good = frozenset([type_ for type_ in types if isinstance(type_, IRI) and allowed(TYPE, type_)])
             if len(good) < len(types):
