@@ -46,7 +46,6 @@ FACTS: dict[str, Any] = {
     "detail": "it burns",
     "reason": "it takes too long",
     "cause": "fail",
-    "reason": "what it says takes too long to be judged by the shape",
     "call": "apply",
     "site": "home",
     "outcome": CONFIGURATION,
