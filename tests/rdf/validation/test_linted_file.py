@@ -40,7 +40,7 @@ def test_an_iri_is_written_with_the_prefix_that_the_file_has_for_it(term: str, w
         (Literal(2), ":p 2"),
         (Literal("2"), ':p "2"'),
         (Literal(True), ":p true"),
-        (BNode(), ":p"),
+        (BNode("nobody"), ":p"),
         (RDF.nil, ":p"),
     ],
 )
