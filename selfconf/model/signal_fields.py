@@ -6,6 +6,8 @@ truth values and text: numeric datatypes of XML Schema are checked as numbers (w
 JSON Schema 2.0 is a whole number), xsd:boolean as a truth value, every other datatype of XML Schema as text, and a
 datatype that is of none of these kinds is not checked.
 
+A signal that travels as bytes, or as an array, has no fields that could be checked; its kind says whether it may.
+
 The check has to cost less than writing the value as JSON. So a value of the usual Python types is judged by operations
 that run in C for a whole list, and words are looked for only where something is wrong.
 """
@@ -26,6 +28,8 @@ _SHORT.maxstring = _SHORT.maxother = 40
 _MOST_NAMES = 8
 """How many members a problem names."""
 _ABSENT = object()
+_BINARY = frozenset((XSD_NAMESPACE + "base64Binary", XSD_NAMESPACE + "hexBinary"))
+"""The datatypes of bytes; a signal with a field of these, or with repeated ones, may travel as bytes or an array."""
 _LISTS = frozenset((list, tuple))
 
 
@@ -78,12 +82,9 @@ class SignalFields:
 
     # complexity: this runs for every signal; a call for each field would double what most signals cost
     def problem(self, value: object) -> str | None:
-        """What keeps a value from being such a signal, as a sentence without its subject; None if nothing does.
-
-        Bytes travel as they are and have no fields, so nothing is wrong with them.
-        """
+        """What keeps a value from being such a signal, as a sentence without its subject; None if nothing does."""
         if not isinstance(value, dict):
-            return None if isinstance(value, bytes | bytearray | memoryview) else self._no_object(value)
+            return self._no_object(f"is {_SHORT.repr(value)}")
         for check in self._checks:
             _, name, required, repeated, usual, bounded, least, greatest, _ = check
             found = value.get(name, _ABSENT)
@@ -103,6 +104,11 @@ class SignalFields:
                 return said
         return None
 
+    def problem_of_bytes(self) -> str | None:
+        """What keeps bytes from being such a signal; None for a kind with a field of bytes or of many values."""
+        holds_bulk = not self.fields or any(one.repeated or one.datatype in _BINARY for one in self.fields)
+        return None if holds_bulk else self._no_object("is bytes")
+
     def _carefully(self, check: _Check, found: Any, value: dict[Any, Any]) -> str | None:
         """What is wrong with the value of a field that is not plainly right."""
         wanted = f"{'a list of ' if check.repeated else ''}{_short(check.field.datatype)}"
@@ -120,8 +126,8 @@ class SignalFields:
                 return f"has {_SHORT.repr(item)} at {number} in {check.name!r}, which is {wanted}"
         return None
 
-    def _no_object(self, value: object) -> str:
-        return f"is {_SHORT.repr(value)}, where {self.signal.short} is an object with {self._names()}"
+    def _no_object(self, what: str) -> str:
+        return f"{what}, where {self.signal.short} is an object with {self._names()}"
 
     def _names(self) -> str:
         return ", ".join(repr(one.name) for one in self.fields[:_MOST_NAMES])

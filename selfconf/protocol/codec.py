@@ -27,6 +27,7 @@ from selfconf.protocol.messages import (
     Page,
     Release,
     Reserve,
+    SignalEncoding,
     Stamp,
     StateOf,
     Status,
@@ -118,6 +119,8 @@ def _plain(value: object) -> object:
     """A value that JSON has no notation for, as one that it has."""
     if isinstance(value, Wire):
         return value.component, value.output, value.period
+    if isinstance(value, SignalEncoding):
+        return {name: member for name, member in dataclasses.asdict(value).items() if member}
     raise TypeError(f"no message holds a {type(value).__name__}")
 
 
@@ -171,6 +174,14 @@ def _moment(value: object) -> float:
     if not math.isfinite(moment):
         raise PeerError("a finite number was expected")
     return moment
+
+
+def _encoding(value: object) -> SignalEncoding:
+    body = _object(value)
+    shape = tuple(map(_whole, _list(body.get("shape", []))))
+    if any(size < 0 for size in shape):
+        raise PeerError("no dimension of an array is below zero")
+    return SignalEncoding(_text(body.get("media", "")), _text(body.get("datatype", "")), shape)
 
 
 def _truth(value: object) -> bool:
@@ -265,6 +276,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (Known, "revisions"): _revisions,
     (Stamp, "sequence"): _whole,
     (Stamp, "time"): _number,
+    (Stamp, "encoding"): _encoding,
     (Status, "configurator"): _text,
     (Status, "phase"): _text,
     (Status, "template"): _iri,

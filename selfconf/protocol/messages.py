@@ -203,13 +203,26 @@ class Known:
 
 
 @dataclass(frozen=True, slots=True)
+class SignalEncoding:
+    """What the bytes of a signal are; empty for JSON, and for bytes of which nothing is said."""
+
+    media: str = ""
+    """The media type."""
+    datatype: str = ""
+    """The datatype of the elements of an array, such as `uint8`; empty for what is no array."""
+    shape: tuple[int, ...] = ()
+    """How many elements an array has in each of its dimensions."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stamp:
-    """What goes with each signal: its source, in which life, its number there, and its time in seconds."""
+    """What goes with each signal: its source, in which life, its number there, its time in seconds, its encoding."""
 
     component: IRI
     life: str
     sequence: int
     time: float
+    encoding: SignalEncoding = SignalEncoding()
 
 
 @dataclass(frozen=True, slots=True)

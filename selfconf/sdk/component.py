@@ -21,13 +21,19 @@ class Refused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """What an output issued: a JSON value, or bytes as they are, with its source, its time, and its number."""
+    """What an output issued, with its source, its time, and its number.
+
+    The value is what JSON has, or bytes, or an array: one of NumPy, which is not to be written to, or, where NumPy is
+    not installed, a memoryview.
+    """
 
     value: Any
     source: IRI
     time: float
     """Seconds: of the Unix epoch, unless the source keeps a clock of its own, such as a simulation's."""
     sequence: int
+    media: str = ""
+    """The media type of bytes, if the source has said one."""
 
     def __getitem__(self, field: str) -> Any:
         return self.value[field]
@@ -73,12 +79,14 @@ class Component:
         It is called before `started` for every parameter of the task, and later for one that changes.
         """
 
-    def emit(self, port: str, value: Any, time: float | None = None) -> None:
-        """Issue a signal on an output: any value that JSON has, or bytes. Nothing happens while not active.
+    def emit(self, port: str, value: Any, time: float | None = None, media: str = "") -> None:
+        """Issue a signal on an output: any value that JSON has, bytes, or an array. Nothing happens while not active.
 
-        `time` is its time in seconds, now by default. Raises ProgrammerError for an output that is not advertised.
+        `time` is its time in seconds, now by default. Bytes and arrays, those of NumPy and whatever else has a buffer
+        of numbers, travel as they are; `media` is their media type, such as `image/png`. What is emitted may be changed
+        afterwards. Raises ProgrammerError for an output that is not advertised, and for what no signal can carry.
         """
-        self._attached().emit(port, value, time)
+        self._attached().emit(port, value, time, media)
 
     def fail(self, reason: str) -> None:
         """Raise FAIL: the component cannot act in its role any more. The configurator will turn it off."""

@@ -1,8 +1,8 @@
 """The inputs of a component: which outputs they follow, whether these keep their promises, and what waits to be read.
 
 *Queues.* What arrives waits in a queue of its own for each output that an input follows, until the component's code
-has time. The queue is bounded: the newest signal counts of an output that promises a rate, and `EVENTS` signals are
-kept of one that does not; `sc:depth` of the input says otherwise. What is dropped is counted.
+has time. The queue is bounded: the newest signal counts of an output that promises a rate, and of one that does not as
+many are kept as events may need (`signal_queue`); `sc:depth` of the input says otherwise. What is dropped is counted.
 
 *Silence.* An input that follows an output with a promised rate reports when no signal has come for `PATIENCE` of the
 promised periods, and again as long as none comes.
@@ -16,10 +16,7 @@ the first signal that comes.
 
 from __future__ import annotations
 
-import json
 import logging
-import threading
-from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -29,10 +26,13 @@ from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Cause, Fail, Stamp, Wire
+from selfconf.protocol.messages import Apply, Cause, Fail, Wire
+from selfconf.protocol.stamps import StampReader
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
-from selfconf.sdk.outputs import RAW, SIGNALS_FIRST
+from selfconf.sdk.outputs import SIGNALS_FIRST
+from selfconf.sdk.payloads import read_payload
+from selfconf.sdk.signal_queue import SignalQueue
 
 log = logging.getLogger(__name__)
 
@@ -44,8 +44,6 @@ BEGINNING = 20.0
 """Seconds that an output may take to issue its first signal: its component may have to be started by its site."""
 JUST_COME = 0.5
 """Seconds for which the newest signal of an output that stood by counts when the output becomes an input's own."""
-EVENTS = 1000
-"""How many signals of an output that promises no rate wait at most, unless the input says otherwise."""
 HANDOVER = 2.0
 """Seconds for which an input follows an output that is to be let go of, while the new one issues nothing."""
 HANDOVER_CHECK = 0.01
@@ -149,8 +147,8 @@ class Inputs:
         return {key for key, subscription in self._subscriptions.items() if not subscription.muted}
 
     def _subscription(self, port: str, wire: Wire) -> InputSubscription:
-        depth = self._depths.get(port) or (1 if wire.period is not None else EVENTS)
-        return InputSubscription(self._bus, self._keys, self._code, port, wire, depth, self._events, self._lost)
+        queue = SignalQueue(self._depths.get(port) or (1 if wire.period is not None else None))
+        return InputSubscription(self._bus, self._keys, self._code, port, wire, queue, self._events, self._lost)
 
     def _lost(self, port: str) -> None:
         """One output that an input follows is lost; the input is unfed if that was the last one."""
@@ -178,7 +176,7 @@ class InputSubscription:
         code: CodeThread,
         port: str,
         wire: Wire,
-        depth: int,
+        queue: SignalQueue,
         events: InputEvents,
         lost: Callable[[str], None],
     ) -> None:
@@ -187,12 +185,10 @@ class InputSubscription:
         self.muted = True
         self.lost = False
         """Whether the output can issue nothing any more, as far as is known."""
-        self.dropped = 0
-        """How many signals were dropped because the component's code was too slow."""
         self._life, self._sequence = "", 0
         """The newest signal that was delivered, by the life of its source and its number in it."""
-        self._queue: deque[Sample] = deque(maxlen=depth)
-        self._lock = threading.Lock()
+        self._queue = queue
+        self._stamps = StampReader()
         self._heard_at = -JUST_COME
         """When the newest signal came, in seconds of the bus's clock."""
         self._lives: set[str] = set()
@@ -200,6 +196,11 @@ class InputSubscription:
         self._deadline: Undo | None = None
         self._declared = [bus.subscribe(keys.output(wire.component, wire.output), self._received, direct=True)]
         bus.later(SIGNALS_FIRST, self._watch)
+
+    @property
+    def dropped(self) -> int:
+        """How many signals were dropped because the component's code was too slow."""
+        return self._queue.dropped
 
     @property
     def issued(self) -> bool:
@@ -215,21 +216,16 @@ class InputSubscription:
         """Deliver what is received, from the newest signal on if that has only just come."""
         if not self.muted:
             return
-        with self._lock:
-            newest = self._queue.pop() if self.heard else None
-            self._queue.clear()
-            if newest is not None:
-                self._queue.append(newest)
-            self.muted = False
+        self._queue.keep(1 if self.heard else 0)
+        self.muted = False
         self._expect()
-        if newest is not None:
+        if self._queue:
             self._code.signal(self._read)
 
     def mute(self) -> None:
         """Pass over what is received."""
-        with self._lock:
-            self.muted = True
-            self._queue.clear()
+        self.muted = True
+        self._queue.keep(0)
         if self._deadline is not None:
             self._deadline()
             self._deadline = None
@@ -246,30 +242,22 @@ class InputSubscription:
 
     def _received(self, sample: Sample) -> None:
         self._heard_at = self._bus.now()
-        with self._lock:
-            if self.muted:
-                self._queue.clear()
-            full = len(self._queue) == self._queue.maxlen
-            self._queue.append(sample)
         if self.muted:
-            return
-        if full:  # as many reads are due as there are signals
-            self.dropped += 1
-        else:
+            self._queue.keep(0)
+        grown = self._queue.append(sample)
+        if grown and not self.muted:  # as many reads are due as there are signals
             self._code.signal(self._read)
 
     # What the component's code gets, on its thread.
 
     def _read(self) -> None:
         """Deliver the oldest signal that waits; none may be left, as the queue keeps the newest only."""
-        with self._lock:
-            if self.muted or not self._queue:
-                return
-            sample = self._queue.popleft()
-        raw = sample.attachment.startswith(RAW)
+        sample = None if self.muted else self._queue.pop()
+        if sample is None:
+            return
         try:
-            stamp = decode(sample.attachment[len(RAW) :] if raw else sample.attachment, Stamp)
-            value = sample.payload if raw else json.loads(sample.payload)
+            raw, stamp = self._stamps.read(sample.attachment)
+            value = read_payload(sample.payload, raw, stamp.encoding)
         except (PeerError, ValueError, RecursionError) as error:
             log.warning("passed over a signal on %s: %s", sample.key, error)
             return
@@ -278,7 +266,9 @@ class InputSubscription:
         if stamp.life == self._life and stamp.sequence <= self._sequence:
             return  # late, doubled, or a latched signal that was issued again for another input
         self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
-        self._events.deliver(self._port, Signal(value, stamp.component, stamp.time, stamp.sequence))
+        self._events.deliver(
+            self._port, Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
+        )
 
     # What is noticed of the output, on the bus's thread.
 

@@ -8,7 +8,6 @@ not noticed. Inputs pass over what they have had already.
 from __future__ import annotations
 
 import itertools
-import json
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -18,12 +17,10 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Stamp
+from selfconf.protocol.stamps import PLAIN, StampWriter
+from selfconf.sdk.payloads import UnsayableError, as_bytes, as_json
 
-RAW = b"raw"
-"""What stands before the stamp of a signal that is bytes and not JSON."""
 SIGNALS_FIRST = 0.002
 """Seconds by which everything else that an activation asks of the network is delayed.
 
@@ -49,8 +46,9 @@ class Outputs:
 
         `fields` are those of the kinds of signals; `malformed` hears what is wrong with a signal that is not issued.
         """
-        self._profile, self._life, self._active, self._malformed = profile, life, active, malformed
+        self._profile, self._active, self._malformed = profile, active, malformed
         self._fields = {port.name: fields[port.signal] for port in profile.outputs if port.signal in fields}
+        self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.outputs}
         self._sequence = itertools.count(1)
         self._last: dict[str, tuple[bytes, bytes]] = {}
         """The last signal of each output in the present activation, with its attachment."""
@@ -63,8 +61,8 @@ class Outputs:
         self._names = {keys.output(profile.component, port.name): port.name for port in profile.outputs}
         self._served: Undo = bus.serve(keys.outputs(profile.component), self._answer) if self._names else lambda: None
 
-    def emit(self, port: str, value: Any, moment: float | None) -> None:
-        """Issue a signal; may be called from any thread. Raises ProgrammerError for what JSON cannot say.
+    def emit(self, port: str, value: Any, moment: float | None, media: str = "") -> None:
+        """Issue a signal; may be called from any thread. Raises ProgrammerError for what no signal can carry.
 
         A signal that is not of the kind that the output promises is not issued.
         """
@@ -74,17 +72,20 @@ class Outputs:
         if not self._active():
             return
         fields = self._fields.get(port)
-        problem = None if fields is None else fields.problem(value)
-        if problem is not None:
-            self._malformed(f"what it emits on {port!r} {problem}")
-            return
-        stamp = encode(
-            Stamp(self._profile.component, self._life, next(self._sequence), time.time() if moment is None else moment)
-        )
-        raw = isinstance(value, bytes)
-        payload, attachment = (value, RAW + stamp) if raw else (self._json(port, value), stamp)
-        self._last[port] = payload, attachment
-        output.put(payload, attachment)
+        try:
+            packed = as_bytes(value, media)
+            problem = None if fields is None else fields.problem_of_bytes() if packed else fields.problem(value)
+            if problem is not None:
+                self._malformed(f"what it emits on {port!r} {problem}")
+                return
+            payload, encoding = packed or (as_json(value), PLAIN)
+        except UnsayableError as error:
+            name = self._profile.component.short
+            raise ProgrammerError(f"{name} cannot emit that on {port!r}: {error}") from None
+        number, moment = next(self._sequence), time.time() if moment is None else moment
+        stamp = self._stamps[port].write(number, moment, packed is not None, encoding)
+        self._last[port] = payload, stamp
+        output.put(payload, stamp)
 
     def forget(self) -> None:
         """Forget the last signals: a new activation begins."""
@@ -95,14 +96,6 @@ class Outputs:
         self._served()
         for output in self._publishers.values():
             output.undeclare()
-
-    def _json(self, port: str, value: Any) -> bytes:
-        """A signal as JSON, which has neither NaN nor infinity: a component in another language could not read them."""
-        try:
-            return json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
-        except (TypeError, ValueError, RecursionError) as error:
-            name = self._profile.component.short
-            raise ProgrammerError(f"JSON cannot say what {name} emits on {port!r}: {error}") from None
 
     def _answer(self, request: Request) -> None:
         """Answer the question for an output with its last signal of this activation, if there is one."""

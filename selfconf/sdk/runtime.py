@@ -132,9 +132,9 @@ class ComponentRuntime:
 
     # What the component does.
 
-    def emit(self, port: str, value: Any, moment: float | None) -> None:
+    def emit(self, port: str, value: Any, moment: float | None, media: str = "") -> None:
         """Issue a signal; may be called from any thread."""
-        self.outputs.emit(port, value, moment)
+        self.outputs.emit(port, value, moment, media)
 
     def fail(self, reason: str, cause: Cause = Cause.FAIL) -> None:
         """Raise FAIL, at once; may be called from any thread."""

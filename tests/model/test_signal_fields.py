@@ -75,9 +75,20 @@ def test_what_a_stranger_writes_does_not_make_a_problem_long() -> None:
         assert len(SCAN.problem(value) or "") < 600
 
 
-def test_bytes_travel_as_they_are() -> None:
-    for raw in (b"pixels", bytearray(b"pixels"), memoryview(b"pixels")):
-        assert SCAN.problem(raw) is None
+@pytest.mark.parametrize(
+    ("fields", "right"),
+    [
+        (SCAN.fields, True),
+        ((SignalField("pixels", IRI(XSD_NAMESPACE + "base64Binary")),), True),
+        ((), True),
+        ((SignalField("celsius", IRI(XSD_NAMESPACE + "double")),), False),
+    ],
+)
+def test_bytes_are_a_signal_of_a_kind_that_holds_bytes_or_many_values(
+    fields: tuple[SignalField, ...], right: bool
+) -> None:
+    problem = SignalFields(IRI("urn:signals#Kind"), fields).problem_of_bytes()
+    assert problem == (None if right else "is bytes, where Kind is an object with 'celsius'")
 
 
 def test_a_datatype_that_json_cannot_tell_is_not_checked() -> None:

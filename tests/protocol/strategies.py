@@ -18,6 +18,7 @@ from selfconf.protocol.messages import (
     Page,
     Release,
     Reserve,
+    SignalEncoding,
     Stamp,
     StateOf,
     Status,
@@ -90,7 +91,14 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
     Wake: st.builds(Wake, iris),
     End: st.builds(End, iris, texts),
     Page: st.builds(Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans(), texts),
-    Stamp: st.builds(Stamp, iris, texts, numbers, seconds),
+    Stamp: st.builds(
+        Stamp,
+        iris,
+        texts,
+        numbers,
+        seconds,
+        st.builds(SignalEncoding, texts, texts, st.lists(st.integers(0, 1 << 40), max_size=3).map(tuple)),
+    ),
     Status: st.builds(
         Status,
         texts,

@@ -121,6 +121,13 @@ def test_a_number_that_no_float_holds_is_refused() -> None:
         decode(json.dumps({**body, "time": 10**400}).encode(), Stamp)
 
 
+@pytest.mark.parametrize("encoding", [[], {"shape": [-1]}, {"shape": 3}, {"shape": [1.5]}, {"media": 1}])
+def test_what_is_no_encoding_is_refused(encoding: object) -> None:
+    body = json.loads(encode(Stamp(IRI("urn:a"), "l", 1, 0.0)))
+    with pytest.raises(PeerError):
+        decode(json.dumps({**body, "encoding": encoding}).encode(), Stamp)
+
+
 @pytest.mark.parametrize("lonely", ["\ud800", "a\udfff"])
 def test_half_a_surrogate_pair_is_no_text(lonely: str) -> None:
     body = json.loads(encode(Release(1, "s")))

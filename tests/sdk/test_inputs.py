@@ -16,8 +16,9 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Stamp, Wire
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.inputs import BEGINNING, EVENTS, JUST_COME, PATIENCE, InputEvents, Inputs
+from selfconf.sdk.inputs import BEGINNING, JUST_COME, PATIENCE, InputEvents, Inputs
 from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk.signal_queue import EVENTS
 from tests.lab import Recorder
 from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, TRACKER_PROFILE, US, Stage, apply, follow, release
 

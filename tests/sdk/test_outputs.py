@@ -40,6 +40,36 @@ def test_what_is_emitted_arrives_with_its_source_number_and_time() -> None:
     assert arrived[1].time > 1e9
 
 
+def test_an_image_arrives_with_its_encoding_and_is_what_it_was_when_it_was_emitted() -> None:
+    numpy = pytest.importorskip("numpy")
+    arrived: list[Signal] = []
+
+    class Listener(Recorder):
+        def received(self, port: str, signal: Signal) -> None:
+            arrived.append(signal)
+
+    stage = Stage(Listener())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    picture = numpy.arange(6, dtype="uint16").reshape(2, 3)
+    tracker.component.emit("pose", picture, media="image/x-raw")
+    picture[:] = 0
+    tracker.component.emit("pose", b"\x89PNG", media="image/png")
+    tracker.component.emit("pose", {"x": 1})
+    stage.let_pass(0.1)
+    assert [signal.media for signal in arrived] == ["image/x-raw", "image/png", ""]
+    assert arrived[0].value.tolist() == [[0, 1, 2], [3, 4, 5]]
+    assert arrived[0].value.dtype == "uint16"
+
+
+def test_an_array_that_no_signal_can_carry_is_the_authors_mistake() -> None:
+    numpy = pytest.importorskip("numpy")
+    stage = Stage()
+    stage.call(apply(1, US))
+    with pytest.raises(ProgrammerError, match="cannot emit that on 'velocity': an array of '>f'"):
+        stage.component.emit("velocity", numpy.zeros(2, ">f4"))
+
+
 def test_the_signals_that_an_activation_sets_free_go_before_its_answer() -> None:
     class Eager(Recorder):
         def started(self) -> None:

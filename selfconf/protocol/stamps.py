@@ -1,0 +1,68 @@
+"""Stamps as they travel with signals, written and read once for each signal, and therefore quickly.
+
+The stamps of one source differ from each other in their ends alone, the number and the time. So a writer keeps the
+text of what comes before, and a reader what that text says. A stamp of any other form, from a component in another
+language, is read as every message is.
+"""
+
+from __future__ import annotations
+
+import json
+
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import SignalEncoding, Stamp
+
+RAW = b"raw"
+"""What stands before the stamp of a signal that is bytes and not JSON."""
+
+
+_LAST = ("sequence", "time")
+_JSON = json.JSONEncoder(separators=(",", ":"))
+PLAIN = SignalEncoding()
+"""The encoding of JSON, and of bytes of which nothing is said."""
+
+
+class StampWriter:
+    """Writes the stamps of the signals of one output in one life of its component."""
+
+    def __init__(self, component: IRI, life: str) -> None:
+        self._component, self._life = component, life
+        self._of: tuple[bool, SignalEncoding] | None = None
+        self._beginning = ""
+        """The beginning of the stamps of such signals."""
+
+    def write(self, sequence: int, time: float, raw: bool = False, encoding: SignalEncoding = PLAIN) -> bytes:
+        """The stamp of a signal, as an attachment; `raw` if the signal is bytes and not JSON."""
+        if (raw, encoding) != self._of:
+            self._of = raw, encoding
+            stamp = encode(Stamp(self._component, self._life, 0, 0.0, encoding))
+            body = {name: member for name, member in json.loads(stamp).items() if name not in _LAST and member != {}}
+            self._beginning = (RAW if raw else b"").decode() + _JSON.encode(body).removesuffix("}")
+        return f'{self._beginning},"sequence":{sequence},"time":{float(time)!r}}}'.encode()
+
+
+class StampReader:
+    """Reads the stamps of one source."""
+
+    def __init__(self) -> None:
+        self._beginning = b""
+        self._raw, self._said = False, Stamp(IRI(""), "", 0, 0.0)
+        """What stamps with that beginning say, but for number and time."""
+
+    def read(self, attachment: bytes) -> tuple[bool, Stamp]:
+        """Whether a signal is bytes and not JSON, and its stamp. Raises PeerError for what is no stamp."""
+        beginning, _, end = attachment.partition(b',"sequence":')
+        number, _, time = end.partition(b',"time":')
+        try:
+            last = int(number), float(time.removesuffix(b"}"))
+        except ValueError:  # it ends in another way
+            last = None
+        if last is not None and beginning == self._beginning:
+            said = self._said
+            return self._raw, Stamp(said.component, said.life, *last, said.encoding)
+        raw = attachment.startswith(RAW)
+        stamp = decode(attachment[len(RAW) :] if raw else attachment, Stamp)
+        if last is not None:
+            self._beginning, self._raw, self._said = beginning, raw, stamp
+        return raw, stamp

@@ -1,0 +1,112 @@
+"""What signals are on the wire: JSON, bytes as they are, or the elements of an array.
+
+An array is anything with a buffer of numbers: a NumPy array, a memoryview with a shape, an `array.array`. Its elements
+travel little-endian, the last dimension quickest (C order); their datatype and the shape stand in the stamp. What
+arrives is a view of the bytes that came, without a copy: a NumPy array that is not to be written to, or, where NumPy is
+not installed, a memoryview. NumPy is imported by the first array that arrives, and by nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from functools import cache
+from types import ModuleType
+from typing import Any
+
+from selfconf.protocol.messages import SignalEncoding
+from selfconf.protocol.stamps import PLAIN
+
+ELEMENT_FORMATS = {
+    "bool": "?",
+    "int8": "b",
+    "int16": "h",
+    "int32": "i",
+    "int64": "q",
+    "uint8": "B",
+    "uint16": "H",
+    "uint32": "I",
+    "uint64": "Q",
+    "float16": "e",
+    "float32": "f",
+    "float64": "d",
+    "complex64": "Zf",
+    "complex128": "Zd",
+}
+"""The datatypes of elements, with their formats in the buffer protocol."""
+_SAME = {"l": "q", "n": "q", "L": "Q", "N": "Q"}
+"""Formats that are others by another name, where their elements have eight bytes."""
+
+
+class UnsayableError(Exception):
+    """A value that no signal can carry, and why."""
+
+
+def as_bytes(value: Any, media: str = "") -> tuple[bytes, SignalEncoding] | None:
+    """The payload and the encoding of what travels as it is; None for a value of JSON. Raises UnsayableError."""
+    if type(value) is bytes:
+        return value, SignalEncoding(media) if media else PLAIN
+    if isinstance(value, dict | list | str | int | float):
+        return None
+    try:
+        view = memoryview(value)
+    except TypeError:
+        return None
+    except ValueError as error:  # NumPy has datatypes that no buffer has, such as points in time
+        raise UnsayableError(str(error)) from None
+    if isinstance(value, bytes | bytearray) or (type(value) is memoryview and (view.format, view.ndim) == ("B", 1)):
+        return view.tobytes(), SignalEncoding(media)
+    return (view.tobytes(), SignalEncoding(media, _datatype(view), tuple(view.shape or ()))) if view.ndim else None
+
+
+def as_json(value: Any) -> bytes:
+    """A signal as JSON, which has neither NaN nor infinity: a component in another language could not read them.
+
+    Raises UnsayableError.
+    """
+    try:
+        return json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
+    except (TypeError, ValueError, RecursionError) as error:
+        raise UnsayableError(f"JSON cannot say it: {error}") from None
+
+
+def read_payload(payload: bytes, raw: bool, encoding: SignalEncoding) -> Any:
+    """The value of a signal. Raises ValueError for a payload that is not what its encoding says."""
+    if not raw:
+        return json.loads(payload)
+    if not encoding.datatype:
+        return payload
+    if encoding.datatype not in ELEMENT_FORMATS or _size(encoding.datatype) * math.prod(encoding.shape) != len(payload):
+        raise ValueError(f"{len(payload)} bytes are no {encoding.datatype} of shape {list(encoding.shape)}")
+    numpy = _numpy()
+    if numpy is not None:
+        return numpy.frombuffer(payload, numpy.dtype(encoding.datatype).newbyteorder("<")).reshape(encoding.shape)
+    try:
+        return memoryview(payload).cast(ELEMENT_FORMATS[encoding.datatype], encoding.shape)  # type: ignore[call-overload]  # any
+    except (TypeError, ValueError):  # a memoryview knows neither these datatypes nor dimensions without any element
+        return memoryview(payload)
+
+
+def _datatype(view: memoryview) -> str:
+    order, kind = (view.format[0], view.format[1:]) if view.format[0] in "@=<>!" else ("@", view.format)
+    little = view.itemsize == 1 or order == "<" or (order in "@=" and sys.byteorder == "little")
+    kind = _SAME.get(kind, kind)
+    for datatype, one in ELEMENT_FORMATS.items():
+        if one == kind and little and _size(datatype) == view.itemsize:
+            return datatype
+    raise UnsayableError(f"an array of {view.format!r} cannot be said; little-endian numbers and truth values can")
+
+
+def _size(datatype: str) -> int:
+    """The bytes of an element."""
+    return 1 if datatype == "bool" else int(datatype.lstrip("abcdefghijklmnopqrstuvwxyz")) // 8
+
+
+@cache
+def _numpy() -> ModuleType | None:
+    try:
+        import numpy
+    except ImportError:
+        return None
+    return numpy

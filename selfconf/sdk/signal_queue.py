@@ -1,0 +1,61 @@
+"""The signals that wait until the code of a component has time for them: bounded, in order, the newest kept."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections import deque
+
+from selfconf.bus.port import Sample
+
+EVENTS = 1000
+"""How many signals of an output that promises no rate wait at most, unless the input says otherwise."""
+EVENT_BYTES = 64_000_000
+"""How many bytes these have together at most; one signal may always wait."""
+
+
+class SignalQueue:
+    """Filled by the thread that signals arrive on, emptied by that of the component's code."""
+
+    def __init__(self, depth: int | None) -> None:
+        """`depth` is how many signals wait at most; None for what events may need."""
+        self._depth = EVENTS if depth is None else depth
+        self._most_bytes = EVENT_BYTES if depth is None else math.inf
+        self._waiting: deque[Sample] = deque()
+        self._bytes = 0
+        self._lock = threading.Lock()
+        self.dropped = 0
+        """How many signals were driven out by newer ones."""
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def append(self, sample: Sample) -> bool:
+        """Let a signal wait, and drive out the oldest if these are too many; whether none was."""
+        with self._lock:
+            self._waiting.append(sample)
+            self._bytes += len(sample.payload)
+            dropped = 0
+            while len(self._waiting) > self._depth or self._is_too_big():
+                self._bytes -= len(self._waiting.popleft().payload)
+                dropped += 1
+            self.dropped += dropped
+            return not dropped
+
+    def pop(self) -> Sample | None:
+        """The oldest signal, which does not wait any more; None if there is none."""
+        with self._lock:
+            if not self._waiting:
+                return None
+            sample = self._waiting.popleft()
+            self._bytes -= len(sample.payload)
+            return sample
+
+    def keep(self, newest: int) -> None:
+        """Forget all but so many of the newest signals; these do not count as dropped."""
+        with self._lock:
+            while len(self._waiting) > newest:
+                self._bytes -= len(self._waiting.popleft().payload)
+
+    def _is_too_big(self) -> bool:
+        return self._bytes > self._most_bytes and len(self._waiting) > 1
