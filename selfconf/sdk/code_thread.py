@@ -11,17 +11,22 @@ help of that code. On a bus in simulated time all of this happens at once, in th
 
 from __future__ import annotations
 
-import threading
+import queue
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 Action = Callable[[], None]
+RUSH = 0.0001
+"""Seconds between actions below which the thread lets some come together before it goes on.
+
+Else it would be woken for each signal of many, and in turns with the thread that these arrive on take most of its time
+for that: interrupt coalescing. What comes less often is run at once.
+"""
 
 
-@dataclass(frozen=True, slots=True)
-class RunningCode:
+class RunningCode(NamedTuple):
     """The code that runs now: whose, what it does, since when, and how long it may take, in seconds."""
 
     owner: object
@@ -39,7 +44,10 @@ class CodeThread:
         self.running: RunningCode | None = None
         self._calls: deque[Action] = deque()
         self._signals: deque[Action] = deque()
-        self._more = threading.Condition()
+        self._in_rush = False
+        """Whether the last action did not have to be waited for, or not for long."""
+        self._more: queue.SimpleQueue[None] = queue.SimpleQueue()
+        """An entry for each action that waits, put after it, and for each time that the thread is to look around."""
 
     def call(self, action: Action) -> None:
         """Run what a call, a timer or the end of a supervision asks for; before any signal that waits."""
@@ -49,18 +57,16 @@ class CodeThread:
         """Run what a signal asks for. May be called from any thread."""
         self._put(self._signals, action)
 
-    def _put(self, queue: deque[Action], action: Action) -> None:
+    def _put(self, actions: deque[Action], action: Action) -> None:
         if self.inline:
             action()
             return
-        with self._more:
-            queue.append(action)
-            self._more.notify()
+        actions.append(action)
+        self._more.put(None)
 
     def wake_up(self) -> None:
         """Let the thread that polls look whether to go on. May be called from any thread."""
-        with self._more:
-            self._more.notify()
+        self._more.put(None)
 
     def limited(self, owner: object, what: str, limit: float, action: Callable[[], object]) -> None:
         """Run code of a component that may take so many seconds; `watch` sees it meanwhile."""
@@ -78,8 +84,9 @@ class CodeThread:
     def poll(self, seconds: float = 0.0) -> None:
         """Run all that waits; if nothing does, wait up to that long for the first."""
         action = self._next(seconds)
-        while action is not None:
-            action()
+        while action is not None or self._calls or self._signals:
+            if action is not None:
+                action()
             action = self._next(0.0)
 
     def run(self, until: Callable[[], bool]) -> None:
@@ -90,9 +97,14 @@ class CodeThread:
                 action()
 
     def _next(self, seconds: float) -> Action | None:
-        with self._more:
-            if not self._calls and not self._signals and seconds > 0:
-                self._more.wait(seconds)
-            if self._calls:
-                return self._calls.popleft()
-            return self._signals.popleft() if self._signals else None
+        """What is next, waited for so long; None if there is nothing, or the thread was woken."""
+        if self._in_rush and seconds > 0 and not self._calls and not self._signals:
+            time.sleep(RUSH)
+        began = time.monotonic()
+        try:
+            self._more.get(seconds > 0, seconds or None)
+        except queue.Empty:
+            return None
+        self._in_rush = time.monotonic() - began < RUSH
+        actions = self._calls or self._signals
+        return actions.popleft() if actions else None
