@@ -1,0 +1,173 @@
+"""The two ends of a connection, each a process: `python -m benchmarks.signals.ends selfconf|bare source|sink ENDPOINT`.
+
+What they are to do comes as lines of JSON on stdin, what they have measured goes as such lines to stdout; they end with
+their stdin. Times are those of the monotonic clock, which all processes of a machine share.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import zenoh
+
+from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh_session import open_session
+from selfconf.sdk import Component, Host, Signal
+
+ECOLOGY = "signals"
+FOLDER_VARIABLE = "SIGNALS_BENCHMARK_FOLDER"
+KEY = "bare/out"
+OUTPUTS = {"JSON": "scan", "bytes": "picture"}
+"""The output that carries signals of each form."""
+Emit = Callable[[str, Any, int], None]
+"""Issues a value of a form, as the signal of that number."""
+
+
+def value(form: str, size: int) -> Any:
+    """A signal of about that many bytes on the wire: of rob:RangeScan in JSON, or a picture as it is."""
+    if form == "bytes":
+        return b"x" * size
+    beams = max(0, (size - 45) // 20)
+    return {
+        "angles": [round(-1.5 + 0.01 * n, 6) + 1e-7 for n in range(beams)],
+        "ranges": [1.25 + n for n in range(beams)],
+        "max_range": 12.5,
+    }
+
+
+class SourceEnd:
+    """Issues what it is told to, and tells when it has issued each signal."""
+
+    def __init__(self, emit: Emit) -> None:
+        self._emit, self._number = emit, 0
+
+    def told(self, order: dict[str, Any]) -> dict[int, float]:
+        """Issue signals of a form and size: so many at a rate, or for so many seconds as fast as it goes."""
+        form, signal, moments = order["form"], value(order["form"], order["size"]), {}
+        begun = time.monotonic()
+        if "rate" not in order:
+            while time.monotonic() < begun + order["seconds"]:
+                self._number += 1
+                self._emit(form, signal, self._number)
+            return {}
+        for count in range(order["count"]):
+            threading.Event().wait(max(0.0, begun + count / order["rate"] - time.monotonic()))
+            self._number += 1
+            moments[self._number] = time.monotonic()
+            self._emit(form, signal, self._number)
+        return moments
+
+
+class SinkEnd:
+    """Notes when signals arrive, and may take its time with each."""
+
+    def __init__(self) -> None:
+        self._moments: dict[int, float] = {}
+        self._work = 0.0
+
+    def received(self, number: int) -> None:
+        """A signal has arrived and was read."""
+        self._moments[number] = time.monotonic()
+        if self._work:
+            time.sleep(self._work)
+
+    def told(self, order: dict[str, Any]) -> dict[str, Any]:
+        """Tell what has arrived and how much memory is used; then begin `anew`, if so told, with slow or quick work."""
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+        said: dict[str, Any] = {"count": len(self._moments), "megabytes": pages * os.sysconf("SC_PAGE_SIZE") / 1e6}
+        if "anew" in order:
+            said["moments"], self._moments = self._moments, {}
+            self._work = order["anew"]
+        return said
+
+
+class Source(Component):
+    """Has an output for each form."""
+
+
+class Sink(Component):
+    """Hands what it receives to the end."""
+
+    end: SinkEnd
+
+    def received(self, port: str, signal: Signal) -> None:
+        """A signal has arrived."""
+        self.end.received(signal.sequence)
+
+
+def obey(end: SourceEnd | SinkEnd) -> None:
+    """Do what comes on stdin, until that ends."""
+    print(json.dumps("ready"), flush=True)
+    for line in sys.stdin:
+        print(json.dumps(end.told(json.loads(line))), flush=True)
+
+
+def selfconf_end(role: str, endpoint: str) -> None:
+    """A component of the SDK."""
+    over = threading.Event()
+    host = Host(client([endpoint]), ECOLOGY)
+    path = Path(os.environ[FOLDER_VARIABLE]) / f"{role}.ttl"
+    end: SourceEnd | SinkEnd
+    if role == "source":
+        Source.advertisement = path
+        source = host.add(Source())
+        end = SourceEnd(lambda form, signal, _: source.emit(OUTPUTS[form], signal))
+    else:
+        Sink.advertisement, Sink.end = path, SinkEnd()
+        host.add(Sink())
+        end = Sink.end
+
+    def work() -> None:
+        obey(end)
+        over.set()
+        host.code.wake_up()
+
+    threading.Thread(target=work, daemon=True).start()
+    host.run(over.is_set)
+    host.close()
+
+
+def bare_end(role: str, endpoint: str) -> None:
+    """A program that puts, or subscribes: what is sent is numbered, and read when it comes."""
+    session = open_session("client", connect=[endpoint])
+    if role == "source":
+        publishers = {
+            form: session.declare_publisher(
+                f"{KEY}/{form}", congestion_control=zenoh.CongestionControl.DROP, express=True
+            )
+            for form in OUTPUTS
+        }
+
+        def emit(form: str, signal: Any, number: int) -> None:
+            payload = json.dumps(signal, separators=(",", ":")).encode() if form == "JSON" else signal
+            publishers[form].put(payload, attachment=b"%d" % number)
+
+        obey(SourceEnd(emit))
+    else:
+        end = SinkEnd()
+        readers: dict[str, Callable[[bytes], Any]] = {"JSON": json.loads, "bytes": len}
+        held = [session.declare_subscriber(f"{KEY}/{form}", reader(end, read)) for form, read in readers.items()]
+        obey(end)
+        held.clear()
+    session.close()
+
+
+def reader(end: SinkEnd, read: Callable[[bytes], Any]) -> Callable[[zenoh.Sample], None]:
+    """What Zenoh is to call for a signal; it does so on a thread for the subscription."""
+
+    def call(sample: zenoh.Sample) -> None:
+        read(bytes(sample.payload))
+        end.received(int(bytes(sample.attachment)) if sample.attachment is not None else 0)
+
+    return call
+
+
+if __name__ == "__main__":
+    {"selfconf": selfconf_end, "bare": bare_end}[sys.argv[1]](*sys.argv[2:])
