@@ -24,7 +24,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 
 class Urgency(str, Enum):
@@ -41,9 +41,8 @@ class Urgency(str, Enum):
     """
 
 
-@dataclass(frozen=True, slots=True)
-class Sample:
-    """What was put, or replied, on a key."""
+class Sample(NamedTuple):
+    """What was put, or replied, on a key; one is made for each signal, so it is a tuple, which is quickly made."""
 
     key: str
     payload: bytes

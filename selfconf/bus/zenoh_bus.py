@@ -87,20 +87,22 @@ def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = (), othe
     return bus
 
 
-def client(connect: Sequence[str], seconds: float = 4.0) -> ZenohBus:
+def client(connect: Sequence[str], seconds: float = 4.0, shared_memory: bool = False) -> ZenohBus:
     """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers.
 
     Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one. Where nothing
-    listens it is tried again for that long, as a site may be about to; what listens and stays silent is no site.
+    listens it is tried again for that long, as a site may be about to; what listens and stays silent is no site. With
+    `shared_memory` large payloads go through that, unless so many clients have it already that the hub refuses.
     """
     began = time.monotonic()
-    try:
-        return ZenohBus(open_session("client", connect=connect))
-    except NetworkError:
-        if time.monotonic() - began > HANDSHAKE_MS / 1000:
-            where = ", ".join(connect)
-            raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
-        return ZenohBus(open_session("client", connect=connect, connect_seconds=seconds))
+    for shared in (True, False) if shared_memory else (False,):
+        try:
+            return ZenohBus(open_session("client", connect=connect, shared_memory=shared))
+        except NetworkError:
+            if time.monotonic() - began > HANDSHAKE_MS / 1000:
+                where = ", ".join(connect)
+                raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
+    return ZenohBus(open_session("client", connect=connect, connect_seconds=seconds, shared_memory=shared_memory))
 
 
 class _Publisher:

@@ -46,7 +46,7 @@ class Hub:
         for attempt in range(1, attempts + 1):
             self.endpoint = with_port(listen)
             try:
-                self._session = open_session("router", listen=[self.endpoint])
+                self._session = open_session("router", listen=[self.endpoint], shared_memory=True)
                 return
             except NetworkError:
                 if attempt == attempts:

@@ -2,13 +2,20 @@
 
 Multicast is off, endpoints are explicit, and nothing listens anywhere but on loopback unless an endpoint says so. A
 lease of one second: what is stopped or cut off counts as dead after about that time.
+
+Hubs offer shared memory to the clients of their host, and the sessions of components take it: a large payload is then
+copied into it once, and only a reference goes through the sockets (`docs/benchmarks/signals.md`). Where the other end
+cannot see that memory, or all of it is in use, the payload itself goes through the socket, as it always does for small
+ones. A hub has room for 350 such clients; others cost it nothing.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import socket
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import zenoh
@@ -20,6 +27,11 @@ LEASE_MS = 1000
 ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
 HANDSHAKE_MS = 1500
 """How long whoever accepts a connection may take to greet, or to answer: beyond that it is no router, or a hung one."""
+SHARED_FROM = 1 << 15
+"""From how many bytes on a payload goes through shared memory; smaller ones are as fast through a socket."""
+SHARED_MEMORY = Path("/dev/shm")
+ENOUGH_SHARED = 256_000_000
+"""Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
 _RETRY = {
     # A client is cut off as long as it has no router, and its components rest after a second.
     "client": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1.5},
@@ -31,14 +43,18 @@ zenoh.init_log_from_env_or("off")  # it would write to stdout, among the results
 
 
 def open_session(
-    mode: str, listen: Sequence[str] = (), connect: Sequence[str] = (), connect_seconds: float = 0.0
+    mode: str,
+    listen: Sequence[str] = (),
+    connect: Sequence[str] = (),
+    connect_seconds: float = 0.0,
+    shared_memory: bool = False,
 ) -> Any:
     """Open a session. Raises NetworkError for an endpoint that is none or taken, and where no router answers a client.
 
     With `connect_seconds` a client tries for that long, otherwise each endpoint once. A router does not wait for those
-    that it connects to.
+    that it connects to. With `shared_memory` large payloads go through that to others on this machine that have it too.
     """
-    config = _config(mode, listen, connect, connect_seconds)
+    config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory())
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
@@ -64,7 +80,17 @@ def with_port(endpoint: str) -> str:
         return f"{head}:{probe.getsockname()[1]}"
 
 
-def _config(mode: str, listen: Sequence[str], connect: Sequence[str], connect_seconds: float) -> zenoh.Config:
+def _has_shared_memory() -> bool:
+    try:
+        there = os.statvfs(SHARED_MEMORY)
+    except OSError:
+        return False
+    return there.f_bavail * there.f_frsize >= ENOUGH_SHARED
+
+
+def _config(
+    mode: str, listen: Sequence[str], connect: Sequence[str], connect_seconds: float, shared_memory: bool
+) -> zenoh.Config:
     config = zenoh.Config()
     settings: dict[str, Any] = {
         "mode": mode,
@@ -81,7 +107,8 @@ def _config(mode: str, listen: Sequence[str], connect: Sequence[str], connect_se
         "transport/link/tx/keep_alive": 3,
         "transport/unicast/open_timeout": HANDSHAKE_MS,
         "transport/unicast/accept_timeout": HANDSHAKE_MS,
-        "transport/shared_memory/enabled": False,
+        "transport/shared_memory/enabled": shared_memory,
+        "transport/shared_memory/transport_optimization/message_size_threshold": SHARED_FROM,
         "timestamping/enabled": {"router": True, "peer": True, "client": True},
     }
     for key, value in settings.items():

@@ -62,7 +62,7 @@ def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
 def open_host(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
     """A host for components, in the ecology that `selfconf.rendezvous.find` finds. Raises NetworkError."""
     name, endpoints = rendezvous.find(ecology, connect)
-    bus = client(endpoints)
+    bus = client(endpoints, shared_memory=True)
 
     def hung(what: str) -> None:
         print(what, file=sys.stderr, flush=True)

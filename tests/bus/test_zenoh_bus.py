@@ -7,9 +7,12 @@ import socket
 import threading
 import time
 from collections.abc import Callable
+from typing import Any
 
 import pytest
+from zenoh.handlers import Callback
 
+from selfconf.bus import zenoh_session
 from selfconf.bus.port import Replies, Request, Sample, Urgency
 from selfconf.bus.zenoh_bus import ZenohBus, client, router
 from selfconf.errors import NetworkError
@@ -48,6 +51,45 @@ def test_what_listens_and_stays_silent_is_no_site() -> None:
 def test_a_router_on_an_endpoint_that_is_taken_says_which(zenoh_router: ZenohBus) -> None:
     with pytest.raises(NetworkError, match=f"cannot listen on {zenoh_router.endpoint}"):
         router(zenoh_router.endpoint)
+
+
+def shared(source: Any, sink: Any, size: int) -> bool:
+    """Whether a payload of that size comes through shared memory, which is set up with the first ones."""
+    came: list[bool] = []
+    held = sink.declare_subscriber(
+        "test/shared", Callback(lambda s: came.append(bool(s.payload.as_shm())), indirect=False)
+    )
+    publisher = source.declare_publisher("test/shared")
+    deadline = time.monotonic() + 10.0
+    while not any(came) and len(came) < 20 and time.monotonic() < deadline:
+        publisher.put(bytes(size))
+        threading.Event().wait(0.02)
+    held.undeclare()
+    assert came
+    return any(came)
+
+
+def test_large_payloads_of_clients_that_want_it_go_through_shared_memory(
+    zenoh_router: ZenohBus, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wants = [client([zenoh_router.endpoint], shared_memory=True) for _ in range(2)]
+    plain = client([zenoh_router.endpoint])
+    monkeypatch.setattr(zenoh_session, "ENOUGH_SHARED", 1 << 62)
+    in_a_small_container = client([zenoh_router.endpoint], shared_memory=True)
+    source, sink = (bus._session for bus in wants)
+    assert shared(source, sink, 2 * zenoh_session.SHARED_FROM)
+    assert not shared(source, sink, zenoh_session.SHARED_FROM // 2)
+    assert not shared(source, plain._session, 2 * zenoh_session.SHARED_FROM)
+    assert not shared(in_a_small_container._session, sink, 2 * zenoh_session.SHARED_FROM)
+    for bus in (*wants, plain, in_a_small_container):
+        bus.close()
+
+
+def test_a_client_for_which_the_hub_has_no_shared_memory_left_goes_without(zenoh_router: ZenohBus) -> None:
+    many = [client([zenoh_router.endpoint], shared_memory=True) for _ in range(360)]
+    assert all(bus.link for bus in many)
+    for bus in many:
+        bus.close()
 
 
 def test_an_endpoint_that_is_none_is_a_sentence() -> None:
