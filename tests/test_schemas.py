@@ -365,7 +365,7 @@ def changed(body: Any, path: str) -> Iterator[tuple[str, Any]]:
                 yield what, one_wrong
 
 
-OPEN = frozenset(("bindings", "lost", "eligible", "values"))
+OPEN = frozenset(("bindings", "lost", "dropped", "eligible", "values"))
 """Members whose own members have names that an author gives: any may be missing."""
 OPTIONAL = frozenset(("additions", "cost", "what_if", "place", "role", "datatype"))
 """Members that some answers do not have."""

@@ -23,6 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once every configurator has answered, also if nothing is deployed; 2 if one lives and does not answer."""
+    from selfconf.model.term import IRI
     from selfconf.protocol.keys import task_name
     from selfconf.rdf.sparql import QUERY_PREFIXES
     from selfconf.render import Names
@@ -45,6 +46,8 @@ def run(given: argparse.Namespace) -> int:
             print(f"  {names(component)}")
         for lost, cause in status.lost.items():
             print(f"  lost: {lost} ({cause})")
+        for slow, count in status.dropped.items():
+            print(f"  too slow: {names(IRI(slow))} has passed over {count} signals")
         for component in status.owed:
             print(f"  out of control: {names(component)} was turned off and has not obeyed")
     return 2 if ecology.silent else 0
@@ -67,4 +70,5 @@ def _body(status: Status) -> dict[str, object]:
         "priority": status.priority,
         "beginning": status.beginning,
         "owed": list(status.owed),
+        "dropped": dict(status.dropped),
     }

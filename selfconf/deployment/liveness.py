@@ -76,6 +76,8 @@ class Liveness:
         self._audited = 0
         self._silences: dict[IRI, int] = {}
         """How often in a row each component has not answered an audit."""
+        self.dropped: dict[IRI, int] = {}
+        """How many signals each component has passed over because its code was too slow, when it was asked last."""
 
     def discovered(self, discovery: Discovery) -> None:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
@@ -190,6 +192,7 @@ class Liveness:
         self._silences.pop(component, None)
         if answer.life != held.life:
             return
+        self.dropped[component] = answer.dropped
         if answer.task != self._calls.identity.task:
             self._calls.forget_connections()
             self._step(Reconnected())

@@ -458,4 +458,5 @@ class TaskRunner:
             priority=self.identity.priority,
             beginning=self.identity.beginning,
             owed=tuple(self.state.owed),
+            dropped={one: count for one, count in self._liveness.dropped.items() if count and one in self.state.held},
         )

@@ -133,6 +133,8 @@ class CallAnswer:
     beginning: float = 0.0
     place: str = ""
     """The process and the host of the component, for people."""
+    dropped: int = 0
+    """How many signals the component has passed over since it lives, because its code was too slow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,6 +245,8 @@ class Status:
     priority: int = 0
     beginning: float = 0.0
     owed: tuple[IRI, ...] = ()
+    dropped: Mapping[str, Any] = field(default_factory=dict)
+    """How many signals those components have passed over that are too slow."""
     """The components that were turned off and have not obeyed yet."""
 
 

@@ -77,8 +77,8 @@ class Inputs:
         self._handing_over: set[str] = set()
         """The inputs that follow what they followed before as well, until the new output has issued a signal."""
         self._handed_over_by = 0.0
-        self.dropped = 0
-        """How many signals were dropped because the component's code was too slow, of subscriptions that have ended."""
+        self._dropped = 0
+        """How many signals were dropped of subscriptions that have ended."""
 
     def follow(self, message: Apply) -> None:
         """Follow exactly the outputs that a call names, and listen to those that stand by.
@@ -131,15 +131,20 @@ class Inputs:
             if key not in self._spare:
                 del self._subscriptions[key]
                 self._bus.wake_up(subscription.end)
-                self.dropped += subscription.dropped
+                self._dropped += subscription.dropped
 
     def end(self) -> None:
         """Follow nothing."""
         for subscription in self._subscriptions.values():
             subscription.end()
-            self.dropped += subscription.dropped
+            self._dropped += subscription.dropped
         self._subscriptions.clear()
         self._handing_over = set()
+
+    @property
+    def dropped(self) -> int:
+        """How many signals were dropped because the component's code was too slow."""
+        return self._dropped + sum(subscription.dropped for subscription in self._subscriptions.values())
 
     @property
     def followed(self) -> set[tuple[str, Wire]]:

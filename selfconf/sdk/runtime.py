@@ -101,7 +101,13 @@ class ComponentRuntime:
         """What waits for the code to be at rest."""
         component._runtime = self
         self.outputs = Outputs(
-            bus, keys, profile, self.life, lambda: self.active, fields or {}, partial(self.fail, cause=Cause.MALFORMED)
+            bus,
+            keys,
+            profile,
+            self.life,
+            lambda: self.code.active,
+            fields or {},
+            partial(self.fail, cause=Cause.MALFORMED),
         )
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
         self.inputs = Inputs(bus, keys, thread, profile, heard)
@@ -315,6 +321,7 @@ class ComponentRuntime:
             claim.priority,
             claim.beginning,
             f"process {os.getpid()} on {socket.gethostname()}",
+            self.inputs.dropped,
         )
 
     def _busy(self, task: str) -> CallAnswer:

@@ -142,6 +142,14 @@ def test_a_component_that_has_failed_unnoticed_is_replaced(lab: Lab) -> None:
     assert (lost.component, lost.detail) == (iri("person-tracker"), "it does not act any more")
 
 
+def test_the_status_says_how_many_signals_a_slow_component_has_passed_over(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.runtimes["control"].inputs._dropped = 7
+    lab.let_pass(4 * AUDIT)
+    assert agent.status().dropped == {lab.runtimes["control"].profile.component: 7}
+
+
 def test_a_component_that_was_cut_off_for_a_moment_does_not_go_on_in_the_old_configuration(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)

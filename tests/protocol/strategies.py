@@ -84,6 +84,7 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
         claim["priority"],
         seconds,
         texts,
+        numbers,
     ),
     Fail: st.builds(Fail, iris, texts, numbers, st.sampled_from(Cause), texts),
     Free: st.builds(Free, iris, texts, texts),
@@ -114,6 +115,7 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
         claim["priority"],
         seconds,
         st.lists(iris, max_size=3).map(tuple),
+        st.dictionaries(texts, numbers, max_size=2),
     ),
     TaskRecord: st.builds(
         TaskRecord,

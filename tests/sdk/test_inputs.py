@@ -303,6 +303,7 @@ def test_an_input_may_say_itself_how_many_signals_wait(period: float | None) -> 
 def test_what_is_dropped_is_counted() -> None:
     slow = Slow(depth=3)
     slow.issue(10)
+    assert slow.inputs.dropped == 7
     slow.inputs.end()
     assert slow.inputs.dropped == 7
 
