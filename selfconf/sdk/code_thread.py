@@ -18,7 +18,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 Action = Callable[[], None]
-RUSH = 0.0001
+RUSH = 0.0002
 """Seconds between actions below which the thread lets some come together before it goes on.
 
 Else it would be woken for each signal of many, and in turns with the thread that these arrive on take most of its time

@@ -86,7 +86,7 @@ class Component:
         of numbers, travel as they are; `media` is their media type, such as `image/png`. What is emitted may be changed
         afterwards. Raises ProgrammerError for an output that is not advertised, and for what no signal can carry.
         """
-        self._attached().emit(port, value, time, media)
+        self._attached().outputs.emit(port, value, time, media)
 
     def fail(self, reason: str) -> None:
         """Raise FAIL: the component cannot act in its role any more. The configurator will turn it off."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from selfconf.bus.port import Bus
 from selfconf.model.profile import Profile
@@ -142,7 +143,7 @@ class ComponentCode:
                 self._wake()
             self._guarded("fed", lambda: self._component.fed(port))
         if not self._resting:
-            self._guarded("received", lambda: self._component.received(port, signal))
+            self._guarded("received", partial(self._component.received, port, signal))
 
     def _rest(self) -> None:
         """Be stopped until all inputs are fed again: the component is blind for longer than it tolerates."""

@@ -37,6 +37,7 @@ ELEMENT_FORMATS = {
 """The datatypes of elements, with their formats in the buffer protocol."""
 _SAME = {"l": "q", "n": "q", "L": "Q", "N": "Q"}
 """Formats that are others by another name, where their elements have eight bytes."""
+_OF_JSON = (dict, list, str, int, float)
 
 
 class UnsayableError(Exception):
@@ -47,7 +48,7 @@ def as_bytes(value: Any, media: str = "") -> tuple[bytes, SignalEncoding] | None
     """The payload and the encoding of what travels as it is; None for a value of JSON. Raises UnsayableError."""
     if type(value) is bytes:
         return value, SignalEncoding(media) if media else PLAIN
-    if isinstance(value, dict | list | str | int | float):
+    if isinstance(value, _OF_JSON):
         return None
     try:
         view = memoryview(value)
