@@ -18,8 +18,8 @@ def test_the_short_run_runs() -> None:
     command = [sys.executable, "-m", "benchmarks.signals", "--smoke"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert "| JSON | 10,000 |" in done.stdout
-    assert "| bytes | 100 |" in done.stdout
+    assert "| JSON | 1,000 |" in done.stdout
+    assert "A slow consumer" in done.stdout
 
 
 def test_the_page_tells_the_ratios() -> None:

@@ -112,7 +112,7 @@ def obey(end: SourceEnd | SinkEnd) -> None:
 def selfconf_end(role: str, endpoint: str) -> None:
     """A component of the SDK."""
     over = threading.Event()
-    host = Host(client([endpoint]), ECOLOGY)
+    host = Host(client([endpoint], shared_memory=True), ECOLOGY)
     path = Path(os.environ[FOLDER_VARIABLE]) / f"{role}.ttl"
     end: SourceEnd | SinkEnd
     if role == "source":
