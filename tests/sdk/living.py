@@ -92,14 +92,22 @@ class LivingStage:
         return component
 
     def call(self, component: str, call: str, message: Reserve | Apply | Release | None = None) -> list[CallAnswer]:
-        """Make a call; the list receives the answer when it comes."""
+        """Make a call; the list receives the answer when it comes.
+
+        A call may be quicker than the declaration of the component that it is for; then it finds none, and is repeated.
+        """
         answers: list[CallAnswer] = []
+        payload = b"" if message is None else encode(message)
+
+        def ask() -> None:
+            self.caller.ask(self.keys.call(IRI(component), call), payload, PATIENCE, answered)
 
         def answered(replies: Replies) -> None:
             answers.extend(decode(sample.payload, CallAnswer) for sample in replies.samples)
+            if replies == Replies():
+                self.caller.later(0.01, ask)
 
-        payload = b"" if message is None else encode(message)
-        self.caller.ask(self.keys.call(IRI(component), call), payload, PATIENCE, answered)
+        ask()
         return answers
 
     def apply(self, component: str, **more: object) -> list[CallAnswer]:
