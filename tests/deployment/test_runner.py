@@ -411,8 +411,9 @@ def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
 
 
 def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shacl, "SHAPE_SECONDS", 0.0001)
-    broken = NAVIGATE + ':drive sh:sparql [ sh:select "SELECT $this { $this ?p ?o FILTER ( 1 > 2 ) }" ] .\n'
+    monkeypatch.setattr(shacl, "SHAPE_SECONDS", 0.02)
+    pairs = " . ".join(f"$this ?p{number} ?o{number}" for number in range(9))
+    broken = NAVIGATE + f':drive sh:sparql [ sh:select "SELECT $this {{ {pairs} FILTER ( ?o1 > 2 ) }}" ] .\n'
     agent = lab.agent(broken)
     assert lab.until(lambda: bool(lab.ended))
     assert isinstance(agent.trouble, TemplateError)
