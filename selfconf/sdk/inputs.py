@@ -50,6 +50,9 @@ HANDOVER_CHECK = 0.01
 """How often, in seconds, it is looked whether the new one has."""
 LAST_SIGNAL = 1.0
 """Seconds that an output may take to say its last signal; a later one comes by itself."""
+ASK_FOR_LAST = (0.3, 1.0, 3.0)
+"""Seconds after which an output that has issued nothing is asked once more: a question may be there before the output
+has issued anything, and the signal before the subscription."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,10 +284,17 @@ class InputSubscription:
         """Ask for the last signal, and follow the life of the component; not before the signals that wait flow."""
         if self._ended:
             return
-        key = self._keys.output(self._wire.component, self._wire.output)
-        self._bus.ask(key, b"", LAST_SIGNAL, self._latched)
+        self._ask_for_last(ASK_FOR_LAST)
         self._declared.append(self._bus.watch(self._keys.lives(self._wire.component), self._life_changed))
         self._declared.append(self._bus.subscribe(self._keys.fail(self._wire.component), self._failed))
+
+    def _ask_for_last(self, again: tuple[float, ...]) -> None:
+        if self._ended or (self.issued and again is not ASK_FOR_LAST):
+            return
+        key = self._keys.output(self._wire.component, self._wire.output)
+        self._bus.ask(key, b"", LAST_SIGNAL, self._latched)
+        if again:
+            self._bus.later(again[0], partial(self._ask_for_last, again[1:]))
 
     def _latched(self, replies: Replies) -> None:
         for sample in () if self._ended else replies.samples:

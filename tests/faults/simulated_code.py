@@ -38,8 +38,8 @@ class SimulatedCodeThread(CodeThread):
     def _free(self) -> float:
         return max(self._network.time, self.busy_until)
 
-    def _put(self, queue: deque[Action], action: Action) -> None:
-        queue.append(action)
+    def _put(self, actions: deque[Action], action: Action) -> None:
+        super()._put(actions, action)
         self._schedule()
 
     def _schedule(self) -> None:

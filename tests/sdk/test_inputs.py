@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import Network
-from selfconf.bus.port import Urgency
+from selfconf.bus.port import Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
@@ -314,3 +314,20 @@ def test_what_waits_when_an_input_is_connected_to_something_else_is_not_delivere
     slow.inputs.follow(apply(2))
     slow.code.poll()
     assert slow.heard == []
+
+
+def test_an_output_that_has_issued_nothing_is_asked_for_its_last_signal_again() -> None:
+    stage = Stage()
+    asked: list[str] = []
+
+    def answer(request: Request) -> None:
+        asked.append(request.key)
+        if len(asked) > 1:  # the first question was there before the signal, and the signal before the subscription
+            request.reply(KEYS.output(TRACKER, "pose"), b"7", encode(Stamp(TRACKER, "l", 1, 0.0)))
+        request.finish()
+
+    stage.others.serve(KEYS.outputs(TRACKER), answer)
+    stage.call(follow(1))
+    stage.let_pass(10.0)
+    assert ("position", 7) in stage.recorder.said
+    assert len(asked) == 2
