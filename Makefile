@@ -14,9 +14,9 @@ SEEDS  ?= 20
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
 
-# Twice as many processes as processors, for many tests wait for programs that they have started; which tests share one
-# is said in tests/schedule.py.
-PARALLEL := --numprocesses $(shell echo $$((2 * $$(nproc 2>/dev/null || echo 2))))
+# One process more than there are processors, for many tests wait for programs that they have started; which tests share
+# one is said in tests/schedule.py.
+PARALLEL := --numprocesses $(shell echo $$((1 + $$(nproc 2>/dev/null || echo 2))))
 
 test: $(VENV)/with-dev
 	$(BIN)/python -m pytest $(PARALLEL)
@@ -29,7 +29,8 @@ quick: $(VENV)/with-dev
 # faults, all that is recorded, and drives of ten seeds; about half an hour.
 nightly: $(VENV)/with-dev fuzz
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults \
-		tests/recorded tests/sim/test_rehearsal.py
+		tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
+		tests/test_compare_benchmark.py tests/test_ci_for_users.py
 
 # Five hundred real faults: processes that are killed, stopped and ended at random moments; about an hour.
 faults: $(VENV)/with-dev

@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import os
 
+import pytest
+
 PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "selfconf")
 NIGHTLY = PROFILE == "nightly"
+at_night = pytest.mark.skipif(not NIGHTLY, reason="takes long, and goes wrong where others do: `make nightly` runs it")
 _SHARES = {"quick": 0.1, "nightly": 20.0}
 
 

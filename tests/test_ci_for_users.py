@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from selfconf.cli.main import command, parser
+from tests.effort import at_night
 
 pytestmark = pytest.mark.process
 
@@ -90,6 +91,7 @@ def test_the_action_installs_the_checkout_it_lies_in(repository: Path, offline: 
     assert on_runner(repository, where, **offline).stdout.startswith(str(repository.parent / "runner"))
 
 
+@at_night
 def test_the_three_lines_need_one_thing_filled_in(repository: Path, offline: dict[str, str]) -> None:
     shutil.rmtree(repository.parent / "runner")
     lines, _, _ = BLOCKS

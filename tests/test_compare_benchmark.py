@@ -14,11 +14,13 @@ from benchmarks.compare.report import Row
 from benchmarks.compare.trees import both
 from benchmarks.search import engines
 from selfconf.cli.main import main
+from tests.effort import at_night
 
 ROOT = Path(__file__).resolve().parents[1]
 in_git = pytest.mark.skipif(not (ROOT / ".git").exists(), reason="there is no git repository to take a revision from")
 
 
+@at_night
 @pytest.mark.process
 @in_git
 def test_the_short_run_runs() -> None:

@@ -118,7 +118,7 @@ class Joining:
     # The one that relays may be gone, or it was stopped and another has taken its place.
 
     def _link_changed(self) -> None:
-        self._lost_at = None if self.bus.link else self.bus.now()
+        self._lost_at = None if self.bus.link else self._lost_at or self.bus.now()
         self._look_again()
         self._look_again = self.bus.later(random.uniform(0.0, HASTE), self._look)
 

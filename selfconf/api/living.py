@@ -33,6 +33,8 @@ from selfconf.rdf.sparql import Dataset
 
 ROLL_CALL = 3.0
 """How long, in seconds, a roll-call may take."""
+JUST_BEGUN = (0.1, 0.4)
+"""Seconds after which sites are called again if none answers: one that has just begun may not be known to its hub."""
 ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
 _Result = TypeVar("_Result")
@@ -102,8 +104,12 @@ class LivingEcology(Ecology):
         self.silent: tuple[str, ...] = ()
         """The configurators that live, but did not answer when they were asked for their `tasks`, sorted."""
         try:
-            if not self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL)):
-                raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
+            for pause in (*JUST_BEGUN, None):
+                if self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL)):
+                    break
+                if pause is None:
+                    raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
+                self._bus.poll(pause)
         except BaseException:
             self.close()
             raise

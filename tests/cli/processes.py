@@ -24,7 +24,7 @@ from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 """Seconds that a process may take for anything, on a busy machine."""
 PROGRAM = '''
 """Components for tests: each acts a little, and fails, or dies in `started`, when a file says so."""

@@ -286,7 +286,7 @@ def test_a_component_whose_code_hangs_is_off_when_its_configurator_is_gone(livin
     began = time.monotonic()
     assert until(lambda: not lamp.active, 5 * GRACE)
     assert GRACE - 0.1 <= time.monotonic() - began <= GRACE + 0.5
-    assert [fail.cause for _, fail in living.fails] == [Cause.LET_GO]
+    assert until(lambda: [fail.cause for _, fail in living.fails] == [Cause.LET_GO])
 
 
 def test_a_component_that_is_too_slow_for_its_signals_is_released_at_once_and_hears_the_newest(

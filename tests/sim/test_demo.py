@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.effort import at_night
+
 pytest.importorskip("pybullet", reason="the demo needs PyBullet")
 pytestmark = [pytest.mark.sim, pytest.mark.process]
 PATIENCE = 120.0
@@ -118,6 +120,7 @@ def test_the_living_ecology_can_be_asked_while_the_demo_runs(tmp_path: Path, dem
     assert running.gone()
 
 
+@at_night
 def test_a_dismantling_configurator_arrives_too(tmp_path: Path, demo: list[Demo]) -> None:
     demo.append(Demo(tmp_path, "--speed", "max", "--policy", "dismantle", "--pictures", "none"))
     assert demo[0].end() == 0, demo[0].said

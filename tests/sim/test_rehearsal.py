@@ -11,7 +11,7 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed: install the e
 from sim.apartment import Apartment
 from sim.floor_plan import Block
 from sim.rehearsal import Log, rehearse
-from tests.effort import NIGHTLY
+from tests.effort import NIGHTLY, at_night
 
 pytestmark = [pytest.mark.sim, pytest.mark.slow]
 
@@ -55,6 +55,7 @@ def test_an_obstacle_in_her_way_is_avoided(apartment: Apartment) -> None:
     assert bedroom_error(log, apartment) < 0.25
 
 
+@at_night
 def test_a_blocked_door_makes_her_give_up_and_say_why(apartment: Apartment) -> None:
     crate = Block("crate", 3.75, 0.99, 0.0, 0.0, 0.4, 0.8, 0.9, ORANGE)
     log = rehearse(apartment, seed=1, obstacles=[crate])
@@ -64,6 +65,7 @@ def test_a_blocked_door_makes_her_give_up_and_say_why(apartment: Apartment) -> N
     assert log.touched == set()
 
 
+@at_night
 def test_she_finds_her_way_round_furniture_that_was_moved(apartment: Apartment) -> None:
     moved = tuple(
         replace(piece, x=2.2, y=1.4) if piece.name == "coffee-table" else piece for piece in apartment.furniture
@@ -74,6 +76,7 @@ def test_she_finds_her_way_round_furniture_that_was_moved(apartment: Apartment) 
     assert log.touched == set()
 
 
+@at_night
 def test_a_rehearsal_can_be_repeated_exactly(apartment: Apartment) -> None:
     first, second = (rehearse(apartment, seed=4, patience=4.0) for _ in range(2))
     assert first.poses == second.poses
