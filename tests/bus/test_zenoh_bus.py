@@ -120,8 +120,7 @@ def test_clients_of_two_routers_that_are_connected_hear_each_other(zenoh_router:
     matches: list[bool] = []
     publisher = one.publisher(f"{top}/pose", Urgency.SIGNAL, matches.append)
     assert until(lambda: matches == [True], one, two)
-    publisher.put(b"across")
-    assert until(lambda: bool(heard), one, two)
+    assert until(lambda: publisher.put(b"across") or bool(heard), one, two)  # a signal may be lost
     for bus in (one, two, second):
         bus.close()
 
