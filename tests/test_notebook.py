@@ -30,15 +30,18 @@ def shown() -> dict[str, dict[str, str]]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PYTHONPATH", str(TOUR.parents[2]))
         nbclient.NotebookClient(notebook, timeout=PATIENCE, kernel_name="python3", resources=where).execute()
-    return {
-        cell.source: {
-            kind: text
-            for output in cell.outputs
-            for kind, text in (output.data if "data" in output else {"stream": output.text}).items()
-        }
-        for cell in notebook.cells
-        if cell.cell_type == "code"
-    }
+    return {cell.source: _outputs(cell) for cell in notebook.cells if cell.cell_type == "code"}
+
+
+def _outputs(cell: Any) -> dict[str, str]:
+    """What a cell shows by media type; what it prints, by and by, is one stream."""
+    shown: dict[str, str] = {}
+    for output in cell.outputs:
+        if "data" in output:
+            shown.update(output.data)
+        else:
+            shown["stream"] = shown.get("stream", "") + output.text
+    return shown
 
 
 def of(shown: dict[str, dict[str, str]], beginning: str) -> dict[str, str]:
