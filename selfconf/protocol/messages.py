@@ -245,9 +245,9 @@ class Status:
     priority: int = 0
     beginning: float = 0.0
     owed: tuple[IRI, ...] = ()
+    """The components that were turned off and have not obeyed yet."""
     dropped: Mapping[str, Any] = field(default_factory=dict)
     """How many signals those components have passed over that are too slow."""
-    """The components that were turned off and have not obeyed yet."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ language, is read as every message is.
 from __future__ import annotations
 
 import json
+import re
 
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
@@ -15,9 +16,9 @@ from selfconf.protocol.messages import SignalEncoding, Stamp
 
 RAW = b"raw"
 """What stands before the stamp of a signal that is bytes and not JSON."""
-
-
 _LAST = ("sequence", "time")
+_END = re.compile(rb'(0|[1-9]\d{0,17}),"time":((?:0|[1-9]\d{0,17})(?:\.\d{1,20})?(?:[eE][-+]?\d{1,3})?)\}')
+"""How a stamp ends that is read quickly: numbers as JSON writes them, which `int` and `float` read as JSON does."""
 _JSON = json.JSONEncoder(separators=(",", ":"))
 PLAIN = SignalEncoding()
 """The encoding of JSON, and of bytes of which nothing is said."""
@@ -46,21 +47,17 @@ class StampReader:
     """Reads the stamps of one source."""
 
     def __init__(self) -> None:
-        self._beginning = b""
+        self._beginning: bytes | None = None  # no stamp begins with nothing, but what is no stamp may
         self._raw, self._said = False, Stamp(IRI(""), "", 0, 0.0)
         """What stamps with that beginning say, but for number and time."""
 
     def read(self, attachment: bytes) -> tuple[bool, Stamp]:
         """Whether a signal is bytes and not JSON, and its stamp. Raises PeerError for what is no stamp."""
         beginning, _, end = attachment.partition(b',"sequence":')
-        number, _, time = end.partition(b',"time":')
-        try:
-            last = int(number), float(time.removesuffix(b"}"))
-        except ValueError:  # it ends in another way
-            last = None
+        last = _END.fullmatch(end)
         if last is not None and beginning == self._beginning:
             said = self._said
-            return self._raw, Stamp(said.component, said.life, *last, said.encoding)
+            return self._raw, Stamp(said.component, said.life, int(last[1]), float(last[2]), said.encoding)
         raw = attachment.startswith(RAW)
         stamp = decode(attachment[len(RAW) :] if raw else attachment, Stamp)
         if last is not None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.errors import PeerError
@@ -43,6 +44,41 @@ def test_a_stamp_in_any_order_of_its_members_is_read(stamps: list[tuple[bool, St
                 assert reader.read((RAW if raw else b"") + json.dumps(members).encode()) == (raw, stamp)
 
 
+NUMBERS = st.one_of(
+    st.sampled_from(
+        ["1_000", "nan", "NaN", "inf", "-Infinity", "1e999", "9" * 400, "9" * 5000, "", " 1", "1 ", "+1", "-1"]
+    ),
+    st.sampled_from(
+        ["007", "00.5", "1.", ".5", "1e5", "1E+5", "1e", "-0", "-0.0", "true", "٣", "1}", '1,"time":2', "[]"]
+    ),
+    st.integers().map(str),
+    st.floats().map(repr),
+    st.text("0123456789._eE+-naif }", max_size=6),
+)
+
+
+def said_of(read: Callable[[], tuple[bool, Stamp]]) -> str:
+    """What a stamp says; that it is refused, if it is."""
+    try:
+        return repr(read())  # the time may be no number, which equals nothing
+    except PeerError:
+        return "refused"
+
+
+@given(st.booleans(), NUMBERS, NUMBERS, st.sampled_from(["}", "", "}}", "} ", ',"further":1}', " }"]))
+@example(False, "1", "1_000.0", "}")
+@example(False, "1", "1.0", "")
+def test_a_stamp_whose_beginning_is_known_says_what_it_says_to_a_reader_of_messages(
+    raw: bool, sequence: str, time: str, end: str
+) -> None:
+    reader, writer = StampReader(), StampWriter(IRI("urn:a"), "l")
+    first = writer.write(1, 2.0, raw)
+    reader.read(first)
+    attachment = first.partition(b"1")[0] + f'{sequence},"time":{time}{end}'.encode()
+    decoded = said_of(lambda: (raw, decode(attachment.removeprefix(RAW), Stamp)))
+    assert said_of(lambda: reader.read(attachment)) == decoded
+
+
 def test_what_comes_after_the_time_is_heeded_though_the_beginning_is_known() -> None:
     reader = StampReader()
     plain = b'{"kind":"stamp","component":"urn:a","life":"l","sequence":%d,"time":1.0%s}'
@@ -59,7 +95,10 @@ def test_an_encoding_is_written_where_there_is_one_only() -> None:
     assert b"encoding" not in writer.write(3, 2.0, True, PLAIN)
 
 
-@pytest.mark.parametrize("attachment", [b"", b"raw", b"raw{}", b'{"sequence":1,"time":1.0}', encode(Release(1, "s"))])
+@pytest.mark.parametrize(
+    "attachment",
+    [b"", b"raw", b"raw{}", b',"sequence":1,"time":1.0}', b'{"sequence":1,"time":1.0}', encode(Release(1, "s"))],
+)
 def test_what_is_no_stamp_is_refused(attachment: bytes) -> None:
     with pytest.raises(PeerError):
         StampReader().read(attachment)
