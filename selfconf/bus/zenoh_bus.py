@@ -17,7 +17,6 @@ else on its host, the site's own bus included, is a *client* of a relay. How ses
 from __future__ import annotations
 
 import atexit
-import itertools
 import logging
 import threading
 import time
@@ -221,8 +220,8 @@ class ZenohBus(Loop):
         self._readers: set[threading.Thread] = set()
         """The threads that read channels; none may be left when Python ends, or it ends with a crash."""
         self._open = True
-        self._turns = itertools.count()
-        self._turn = 0
+        self._turns = 0
+        """How often this bus has gained or lost a hub: of a hub that was away for a moment the name is the same."""
         self._declared.add(session.info.declare_transport_events_listener(Callback(self._turned, indirect=False)))
         _OPEN.add(self)
 
@@ -247,10 +246,10 @@ class ZenohBus(Loop):
     def link(self) -> str:
         """The hub that this bus is a client of, and how often it has gained or lost one."""
         hubs = ",".join(sorted(map(str, self._session.info.routers_zid()))) if self._open else ""
-        return hubs and f"{hubs} {self._turn}"
+        return hubs and f"{hubs} {self._turns}"
 
     def _turned(self, _: Any) -> None:
-        self._turn = next(self._turns)
+        self._turns += 1
 
     def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
         """Declare a key to put on."""
@@ -311,10 +310,10 @@ class ZenohBus(Loop):
             replies = Replies(tuple(samples), tuple(e for e in errors if e != "Timeout"), not late)
             self.wake_up(lambda: done(replies))
 
-        bulk = "*" in key
+        handler = _handler(key, listen, end)
         channel = self._session.get(
             key,
-            FifoChannel(_CHANNEL) if bulk else Callback(lambda reply: listen((reply,)), end, indirect=False),
+            handler,
             payload=payload,
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
@@ -323,8 +322,7 @@ class ZenohBus(Loop):
             priority=zenoh.Priority.INTERACTIVE_HIGH,
             express=True,
         )
-        if bulk:
-            self._read_aside(channel, listen, end)
+        self._read_aside(handler, channel, listen, end)
 
     def announce(self, key: str) -> Callable[[], None]:
         """Be alive under a key."""
@@ -342,11 +340,9 @@ class ZenohBus(Loop):
         def listen(samples: Sequence[zenoh.Sample]) -> None:
             receiver.received(*((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT) for sample in samples))
 
-        bulk = "*" in key.removesuffix("/*")  # of one component there are few lives
-        handler: Any = FifoChannel(_CHANNEL) if bulk else Callback(lambda sample: listen((sample,)), indirect=False)
+        handler = _handler(key, listen)
         declared = self._session.liveliness().declare_subscriber(key, handler, history=True)
-        if bulk:
-            self._read_aside(declared.handler, listen)
+        self._read_aside(handler, declared.handler, listen)
         return receiver.open(declared)
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
@@ -360,16 +356,20 @@ class ZenohBus(Loop):
             keys = tuple(sorted(alive))
             self.wake_up(lambda: done(keys))
 
-        bulk = "*" in key.removesuffix("/*")
-        handler: Any = FifoChannel(_CHANNEL) if bulk else Callback(lambda reply: listen((reply,)), end, indirect=False)
+        handler = _handler(key, listen, end)
         channel = self._session.liveliness().get(key, handler, timeout=seconds)
-        if bulk:
-            self._read_aside(channel, listen, end)
+        self._read_aside(handler, channel, listen, end)
 
     def _read_aside(
-        self, channel: Any, take: Callable[[Sequence[Any]], object], end: Callable[[], None] = lambda: None
+        self,
+        handler: Any,
+        channel: Any,
+        take: Callable[[Sequence[Any]], object],
+        end: Callable[[], None] = lambda: None,
     ) -> None:
-        """Read what a channel of Zenoh receives, on a thread of its own, until the channel ends."""
+        """Read what a channel of Zenoh receives, on a thread of its own, until it ends; a callback needs none."""
+        if isinstance(handler, Callback):
+            return
 
         def read() -> None:
             while some := _received(channel):
@@ -406,6 +406,13 @@ class ZenohBus(Loop):
                 declared.undeclare()
 
         return undo
+
+
+def _handler(key: str, take: Callable[[Sequence[Any]], object], end: Callable[[], None] = lambda: None) -> Any:
+    """What Zenoh hands over under a key to: a channel where it may be thousands, else a callback for each."""
+    if "*" in key.removesuffix("/*"):  # of one component there are few lives, and few outputs
+        return FifoChannel(_CHANNEL)
+    return Callback(lambda one: take((one,)), end, indirect=False)
 
 
 def _received(channel: Any) -> list[Any]:
