@@ -33,8 +33,8 @@ from selfconf.rdf.sparql import Dataset
 
 ROLL_CALL = 3.0
 """How long, in seconds, a roll-call may take."""
-JUST_BEGUN = (0.1, 0.4)
-"""Seconds after which sites are called again if none answers: one that has just begun may not be known to its hub."""
+PAUSES = (0.0, 0.1, 0.4)
+"""Seconds before each call of the sites, until one answers: one that has just begun may not be known to its hub."""
 ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
 _Result = TypeVar("_Result")
@@ -104,12 +104,8 @@ class LivingEcology(Ecology):
         self.silent: tuple[str, ...] = ()
         """The configurators that live, but did not answer when they were asked for their `tasks`, sorted."""
         try:
-            for pause in (*JUST_BEGUN, None):
-                if self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL)):
-                    break
-                if pause is None:
-                    raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
-                self._bus.poll(pause)
+            if not any(self._sites_answer(pause) for pause in PAUSES):
+                raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
         except BaseException:
             self.close()
             raise
@@ -333,6 +329,11 @@ class LivingEcology(Ecology):
             if names and self._bus.now() > deadline:
                 raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")
             self._bus.poll(0.02)
+
+    def _sites_answer(self, pause: float) -> bool:
+        """Whether any site of the ecology lives, as it is found after a pause in seconds."""
+        self._bus.poll(pause)
+        return bool(self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL)))
 
     def _ask(self, key: str, payload: bytes = b"", seconds: float = ROLL_CALL) -> Replies:
         def begin(done: Callable[[Replies], None]) -> None:

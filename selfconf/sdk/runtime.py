@@ -15,7 +15,6 @@ import secrets
 import socket
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
 
 from selfconf.bus.port import Bus, Request, Undo, Urgency
 from selfconf.errors import PeerError
@@ -137,10 +136,6 @@ class ComponentRuntime:
         self._when_at_rest(closed)
 
     # What the component does.
-
-    def emit(self, port: str, value: Any, moment: float | None, media: str = "") -> None:
-        """Issue a signal; may be called from any thread."""
-        self.outputs.emit(port, value, moment, media)
 
     def fail(self, reason: str, cause: Cause = Cause.FAIL) -> None:
         """Raise FAIL, at once; may be called from any thread."""
@@ -341,8 +336,8 @@ class ComponentRuntime:
         if not outranked:
             return
         claim = self.activation.waiting[0]
+        detail = f"the task {task_name(claim.task)} of priority {claim.priority} asks for it"
         for task in outranked:
-            detail = f"the task {task_name(claim.task)} of priority {claim.priority} asks for it"
             self._put_fail(Cause.YIELD, detail, task)
         if self._preemption is None:
             self._preemption = self.bus.later(YIELDING, self._preempt)

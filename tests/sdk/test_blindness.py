@@ -41,7 +41,7 @@ def driving(tolerates: float | None = None) -> tuple[Stage, ComponentRuntime]:
     tracker = stage.neighbour()
     stage.call(reserve())
     stage.call(follow(values={"goal": Literal("x")}))
-    tracker.emit("pose", 1, None)
+    tracker.component.emit("pose", 1)
     stage.let_pass(0.1)
     assert stage.recorder.said == [("goal", "x"), ("started",), ("position", 1)]
     stage.recorder.said.clear()
@@ -68,7 +68,7 @@ def test_it_is_still_held_and_starts_again_with_its_parameters_when_it_is_fed() 
     stage.let_pass(2 * TOLERATES)
     assert stage.state().active
     stage.recorder.said.clear()
-    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(0.1)
     assert stage.recorder.said == [("goal", "x"), ("started",), ("fed", "position"), ("position", 2)]
     assert stage.fails == []
@@ -78,7 +78,7 @@ def test_an_actuator_that_is_fed_again_in_time_does_not_rest() -> None:
     stage, tracker = driving()
     tracker.bus.close()
     stage.let_pass(TOLERATES / 2)
-    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(10 * TOLERATES)
     assert stage.recorder.said == [("unfed", "position"), ("fed", "position"), ("position", 2)]
 
@@ -92,7 +92,7 @@ def test_its_timers_rest_too_and_are_not_doubled_when_it_starts_again() -> None:
     component.ticks = 0
     stage.let_pass(1.0)
     assert component.ticks == 0
-    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(1.05)
     assert component.ticks == 10
 
@@ -112,7 +112,7 @@ def test_an_actuator_that_cannot_start_again_fails() -> None:
     tracker.bus.close()
     stage.let_pass(2 * TOLERATES)
     stage.recorder.refusal = Refused("the battery is empty")
-    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(0.1)
     assert [(fail.component, fail.cause, fail.detail) for fail in stage.fails] == [
         (DRIVE, Cause.FAIL, "the battery is empty")
@@ -125,7 +125,7 @@ def test_an_actuator_that_is_released_while_it_rests_stays_off() -> None:
     tracker.bus.close()
     stage.let_pass(2 * TOLERATES)
     stage.call(release(2))
-    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(10)
     assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
 
@@ -153,7 +153,7 @@ def test_each_input_may_be_unfed_for_that_long_by_itself() -> None:
     stage.let_pass(0.8 * TOLERATES)
     end_right()
     stage.let_pass(0.1)
-    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(0.7 * TOLERATES)
     assert ("stopped",) not in stage.recorder.said
     stage.let_pass(0.3 * TOLERATES)

@@ -27,13 +27,13 @@ def test_rewiring_an_input_neither_stops_nor_starts_the_component() -> None:
     stage = Stage()
     tracker = stage.neighbour()
     stage.call(follow(1))
-    tracker.emit("pose", 1, None)
+    tracker.component.emit("pose", 1)
     stage.let_pass(0.1)
     stage.call(apply(2, US, {"position": (Wire(IRI("urn:c:odometry"), "pose"),)}))
-    tracker.emit("pose", 2, None)
+    tracker.component.emit("pose", 2)
     stage.let_pass(0.1)
     stage.call(apply(3, US, {"position": (Wire(TRACKER, "pose"),)}))
-    tracker.emit("pose", 3, None)
+    tracker.component.emit("pose", 3)
     stage.let_pass(0.1)
     assert [said for said in stage.recorder.said if said != ("position", 2)] == [
         ("started",),
@@ -82,14 +82,14 @@ def test_an_output_that_promised_a_rate_and_stops_is_reported_and_again_as_long_
     stage = Stage()
     tracker = stage.neighbour()
     stage.call(follow(period=0.1))
-    tracker.emit("pose", 1, None)
+    tracker.component.emit("pose", 1)
     stage.let_pass(PATIENCE * 0.1 - 0.05)
     assert not silence(stage)
     stage.let_pass(0.1)
     assert silence(stage) == [(TRACKER, "")]
     stage.let_pass(PATIENCE * 0.1)
     assert len(silence(stage)) == 2
-    tracker.emit("pose", 2, None)
+    tracker.component.emit("pose", 2)
     stage.let_pass(0.1)
     assert len(silence(stage)) == 2
 
@@ -99,7 +99,7 @@ def test_an_output_that_keeps_its_promise_is_not_reported() -> None:
     tracker = stage.neighbour()
     stage.call(follow(period=0.1))
     for number in range(50):
-        tracker.emit("pose", number, None)
+        tracker.component.emit("pose", number)
         stage.let_pass(0.1)
     assert not silence(stage)
 
@@ -116,7 +116,7 @@ def test_an_output_may_take_its_time_to_begin_but_not_for_ever() -> None:
 
 def test_an_output_that_promised_nothing_may_be_silent() -> None:
     stage = Stage()
-    stage.neighbour().emit("pose", 1, None)
+    stage.neighbour().component.emit("pose", 1)
     stage.call(follow())
     stage.let_pass(100)
     assert not silence(stage)
@@ -126,7 +126,7 @@ def test_an_output_that_is_followed_no_more_may_be_silent() -> None:
     stage = Stage()
     tracker = stage.neighbour()
     stage.call(follow(1, period=0.1))
-    tracker.emit("pose", 1, None)
+    tracker.component.emit("pose", 1)
     stage.let_pass(0.05)
     stage.call(apply(2, US))
     stage.let_pass(10)
@@ -167,14 +167,14 @@ def test_an_input_that_has_lost_its_only_source_says_so_and_again_when_there_is_
     stage = Stage(Watchful())
     tracker = stage.neighbour()
     stage.call(follow(period=0.1))
-    tracker.emit("pose", 1, None)
+    tracker.component.emit("pose", 1)
     stage.let_pass(0.05)
     loss(tracker)
     stage.let_pass(PATIENCE * 0.1 + 0.1)
     assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
     tracker.bus.close()
     stage.let_pass(10)
-    stage.neighbour(life="life-u").emit("pose", 2, None)
+    stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(0.1)
     assert stage.recorder.said[2:] == [("unfed", "position"), ("fed", "position"), ("position", 2)]
 
@@ -214,7 +214,7 @@ def test_an_input_that_changes_its_source_is_unfed_until_the_first_signal_of_the
     stage.call(apply(2, US, {"position": (Wire(ODOMETRY, "pose"),)}))
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("unfed", "position")]
-    odometry.emit("pose", 3, None)
+    odometry.component.emit("pose", 3)
     stage.let_pass(0.1)
     assert stage.recorder.said[2:] == [("fed", "position"), ("position", 3)]
 
@@ -226,7 +226,7 @@ def test_an_input_that_changes_to_an_output_that_stands_by_and_has_just_issued_i
     spare = {"position": (Wire(ODOMETRY, "pose"),)}
     stage.call(replace(follow(1), standby=spare))
     stage.let_pass(0.1)
-    odometry.emit("pose", "newest", None)
+    odometry.component.emit("pose", "newest")
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",)]
     stage.call(apply(2, US, spare))
@@ -241,7 +241,7 @@ def test_what_an_output_that_stands_by_issued_long_ago_does_not_count() -> None:
     spare = {"position": (Wire(ODOMETRY, "pose"),)}
     stage.call(replace(follow(1), standby=spare))
     stage.let_pass(0.1)
-    odometry.emit("pose", "old", None)
+    odometry.component.emit("pose", "old")
     stage.let_pass(JUST_COME + 0.1)
     stage.call(apply(2, US, spare))
     stage.let_pass(0.1)

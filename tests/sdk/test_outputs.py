@@ -113,7 +113,7 @@ def test_a_value_that_json_does_not_have_is_the_programmers_error(value: Any) ->
 def test_a_new_connection_carries_the_last_signal_at_once_and_an_old_one_does_not_carry_it_twice() -> None:
     stage = Stage()
     tracker = stage.neighbour()
-    tracker.emit("pose", "here", None)
+    tracker.component.emit("pose", "here")
     stage.let_pass(1.0)
     stage.call(follow())
     stage.let_pass(0.1)
@@ -138,7 +138,7 @@ def test_every_new_follower_gets_the_last_signal_though_others_follow_already() 
     tracker = stage.neighbour()
     stage.others.subscribe(KEYS.output(TRACKER, "pose"), lambda _: None)
     stage.let_pass(0.1)
-    tracker.emit("pose", "here", None)
+    tracker.component.emit("pose", "here")
     stage.let_pass(1.0)
     for number in range(3):
         assert another_follower(stage, f"urn:c:{number}").said == [("started",), ("position", "here")]
@@ -166,7 +166,7 @@ def test_an_output_that_is_asked_for_its_last_signal_answers_for_itself_and_only
 def test_a_signal_of_an_earlier_activation_is_not_latched() -> None:
     stage = Stage()
     tracker = stage.neighbour()
-    tracker.emit("pose", "old", None)
+    tracker.component.emit("pose", "old")
     for name, message in (("release", release(2, US)), ("apply", apply(3, US))):
         stage.caller.ask(KEYS.call(TRACKER, name), encode(message), 1.0, lambda _: None)
         stage.let_pass(0.1)

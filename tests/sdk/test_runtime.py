@@ -221,7 +221,7 @@ def test_a_component_that_breaks_on_a_signal_fails(caplog: pytest.LogCaptureFixt
     tracker = stage.neighbour()
     stage.call(follow())
     with caplog.at_level(logging.CRITICAL):
-        tracker.emit("pose", {"feet": 1}, None)
+        tracker.component.emit("pose", {"feet": 1})
         stage.let_pass(0.1)
     assert [(fail.component, fail.cause, fail.detail) for fail in stage.fails] == [
         (CAP, Cause.FAIL, "KeyError: 'metres'")
