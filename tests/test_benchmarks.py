@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -15,22 +12,13 @@ from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row, exponents, page, verdict
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
-
-ROOT = Path(__file__).resolve().parents[1]
+from tests.benchmark import short_run
 
 
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
-    command = [sys.executable, "-m", "benchmarks.search.run", "--smoke"]
-    done = subprocess.run(
-        command,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert done.returncode == 0, done.stderr
-    assert "## Time to the proof that there is none" in done.stdout
+    printed = short_run("benchmarks.search.run")
+    assert "## Time to the proof that there is none" in printed
 
 
 @pytest.mark.parametrize("solvable", [True, False])

@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
 from benchmarks.faults.__main__ import report
 from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS
 from benchmarks.faults.ecology import Sign, lives_at_once
 from benchmarks.faults.trial import KINDS, PHASES, PROMISES, Outcome, plan
-
-ROOT = Path(__file__).resolve().parents[1]
+from tests.benchmark import short_run
 
 
 @pytest.mark.process
 def test_the_short_run_of_the_adoption_runs() -> None:
-    command = [sys.executable, "-m", "benchmarks.adoption", "--smoke"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    assert "1 trials; 0 components were stopped or started." in done.stdout
+    printed = short_run("benchmarks.adoption")
+    assert "1 trials; 0 components were stopped or started." in printed
 
 
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
-    command = [sys.executable, "-m", "benchmarks.faults", "--smoke"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    assert "1 trials" in done.stdout
+    printed = short_run("benchmarks.faults")
+    assert "1 trials" in printed
 
 
 def test_a_trial_is_decided_by_its_seed_and_every_fault_comes_at_every_phase() -> None:

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
 from benchmarks.live.__main__ import Measured, report
-
-ROOT = Path(__file__).resolve().parents[1]
+from tests.benchmark import short_run
 
 
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
-    command = [sys.executable, "-m", "benchmarks.live", "--smoke"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    assert "| 20 | 2 |" in done.stdout
+    printed = short_run("benchmarks.live")
+    assert "| 20 | 2 |" in printed
 
 
 def test_the_page_tells_how_the_times_grow() -> None:

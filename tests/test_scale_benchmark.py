@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 import rdflib
 
 from benchmarks.scale import engines, report, styles, worlds
 from selfconf.rdf.advertisements import read_advertisements
-
-ROOT = Path(__file__).resolve().parents[1]
+from tests.benchmark import short_run
 
 
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
-    command = [sys.executable, "-m", "benchmarks.scale", "--smoke"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    assert "| 200 |" in done.stdout
-    assert "each with a label" in done.stdout
-    assert "N-Triples, shuffled" in done.stdout
+    printed = short_run("benchmarks.scale")
+    assert "| 200 |" in printed
+    assert "each with a label" in printed
+    assert "N-Triples, shuffled" in printed
 
 
 def test_rdflib_reads_the_same_profiles() -> None:

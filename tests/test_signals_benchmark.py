@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
 from benchmarks.signals.__main__ import Effort, Found, Measured, report
-
-ROOT = Path(__file__).resolve().parents[1]
+from tests.benchmark import short_run
 
 
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
-    command = [sys.executable, "-m", "benchmarks.signals", "--smoke"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    assert "| JSON | 1,000 |" in done.stdout
-    assert "A slow consumer" in done.stdout
+    printed = short_run("benchmarks.signals")
+    assert "| JSON | 1,000 |" in printed
+    assert "A slow consumer" in printed
 
 
 def test_the_page_tells_the_ratios() -> None:

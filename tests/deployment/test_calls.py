@@ -11,6 +11,7 @@ from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
 from selfconf.deployment.calls import CALL, SITE_BACK, STARTING, WAKING
 from selfconf.deployment.liveness import SETTLING
+from selfconf.deployment.runner import TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Reserve, Verdict
@@ -113,6 +114,17 @@ def home_without_a_tracker(folder: Path) -> Lab:
     return lab
 
 
+def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:
+    """A site ends that has been asked to start the tracker; and the configurator that has asked."""
+    lab = home_without_a_tracker(folder)
+    asked: list[MemoryBus] = []
+    site = living_room(lab, "1", asked.append)
+    agent = lab.agent()
+    assert lab.until(lambda: asked)
+    site.close()
+    return lab, agent
+
+
 def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
     lab = home_without_a_tracker(tmp_path)
     tracker = iri("person-tracker")
@@ -126,12 +138,7 @@ def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second
 
 
 def test_what_a_site_was_starting_it_is_asked_to_start_again_in_its_next_life(tmp_path: Path) -> None:
-    lab = home_without_a_tracker(tmp_path)
-    asked: list[MemoryBus] = []
-    first = living_room(lab, "1", asked.append)
-    agent = lab.agent()
-    assert lab.until(lambda: asked)
-    first.close()
+    lab, agent = asked_of_a_site_that_ends(tmp_path)
     lab.let_pass(SITE_BACK / 2)
     living_room(lab, "2", lambda _: lab.component("tracker"))
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK)
@@ -140,12 +147,7 @@ def test_what_a_site_was_starting_it_is_asked_to_start_again_in_its_next_life(tm
 
 
 def test_what_a_site_was_starting_is_given_up_if_the_site_does_not_come_back(tmp_path: Path) -> None:
-    lab = home_without_a_tracker(tmp_path)
-    asked: list[MemoryBus] = []
-    first = living_room(lab, "1", asked.append)
-    agent = lab.agent()
-    assert lab.until(lambda: asked)
-    first.close()
+    lab, agent = asked_of_a_site_that_ends(tmp_path)
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK + 1.0)
     assert lab.active() == TASK | {"odometry"}
     assert [event.detail for event in lab.acts("unreachable")] == ["its site has ended"]

@@ -21,14 +21,20 @@ from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, US, Stage, apply, f
 POSE = IRI("urn:s:Pose")
 
 
+class Listener(Recorder):
+    """A component that keeps the signals that it receives."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.arrived: list[Signal] = []
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.arrived.append(signal)
+
+
 def test_what_is_emitted_arrives_with_its_source_number_and_time() -> None:
-    arrived: list[Signal] = []
-
-    class Listener(Recorder):
-        def received(self, port: str, signal: Signal) -> None:
-            arrived.append(signal)
-
-    stage = Stage(Listener())
+    listener = Listener()
+    arrived, stage = listener.arrived, Stage(listener)
     tracker = stage.neighbour()
     stage.call(follow())
     tracker.component.emit("pose", {"x": 1.5}, time=12.0)
@@ -42,13 +48,8 @@ def test_what_is_emitted_arrives_with_its_source_number_and_time() -> None:
 
 def test_an_image_arrives_with_its_encoding_and_is_what_it_was_when_it_was_emitted() -> None:
     numpy = pytest.importorskip("numpy")
-    arrived: list[Signal] = []
-
-    class Listener(Recorder):
-        def received(self, port: str, signal: Signal) -> None:
-            arrived.append(signal)
-
-    stage = Stage(Listener())
+    listener = Listener()
+    arrived, stage = listener.arrived, Stage(listener)
     tracker = stage.neighbour()
     stage.call(follow())
     picture = numpy.arange(6, dtype="uint16").reshape(2, 3)
