@@ -118,7 +118,7 @@ def _locked(descriptor: int, deadline: float) -> bool:
         except BlockingIOError:
             if time.monotonic() >= deadline:
                 return False
-            time.sleep(0.005)
+            time.sleep(0.005)  # flock has no time-out, and nothing tells when a lock is free
         else:
             return True
 

@@ -76,7 +76,7 @@ class SinkEnd:
         """A signal has arrived and was read."""
         self._moments[number] = time.monotonic()
         if self._work:
-            time.sleep(self._work)
+            time.sleep(self._work)  # stands for the work of a slow component
 
     def told(self, order: dict[str, Any]) -> dict[str, Any]:
         """Tell what has arrived and how much memory is used; then begin `anew`, if so told, with slow or quick work."""

@@ -147,7 +147,7 @@ def _text(name: str, value: Value) -> str | Term:
     if hasattr(value, "n3"):  # one of rdflib's terms; they are strings too
         from selfconf.rdf.rdflib_terms import from_rdflib
 
-        value = from_rdflib(value)  # type: ignore[arg-type]  # told by the line above
+        value = from_rdflib(value)  # type: ignore[arg-type]  # no other text has a method `n3`
         if not isinstance(value, BlankNode):
             return value
     if not isinstance(value, str):

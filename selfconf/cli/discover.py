@@ -7,6 +7,7 @@ import json
 from typing import NamedTuple
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+from selfconf.model.term import IRI
 
 EXAMPLE = """  selfconf discover --format json"""
 
@@ -15,7 +16,7 @@ class DiscoveredComponent(NamedTuple):
     """A component that is out there."""
 
     component: str
-    types: list[str]
+    types: list[IRI]
     site: str
     state: str
 
@@ -49,7 +50,7 @@ def run(given: argparse.Namespace) -> int:
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
     names = Names(QUERY_PREFIXES)
-    kinds = [", ".join(names(kind) for kind in found.types) for found in rows]  # type: ignore[arg-type]  # they are IRIs
+    kinds = [", ".join(names(kind) for kind in found.types) for found in rows]
     cells = [[row.component, kind, row.site, row.state] for row, kind in zip(rows, kinds, strict=True)]
     print(table(["component", "types", "site", "state"], cells))
     print(f"{count(len(rows), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")

@@ -99,7 +99,7 @@ class CodeThread:
     def _next(self, seconds: float) -> Action | None:
         """What is next, waited for so long; None if there is nothing, or the thread was woken."""
         if self._in_rush and seconds > 0 and not self._calls and not self._signals:
-            time.sleep(RUSH)
+            time.sleep(RUSH)  # for no condition: meanwhile more actions come, to be run together
         began = time.monotonic()
         try:
             self._more.get(seconds > 0, seconds or None)

@@ -84,7 +84,8 @@ def read_payload(payload: bytes, raw: bool, encoding: SignalEncoding) -> Any:
     if numpy is not None:
         return numpy.frombuffer(payload, numpy.dtype(encoding.datatype).newbyteorder("<")).reshape(encoding.shape)
     try:
-        return memoryview(payload).cast(ELEMENT_FORMATS[encoding.datatype], encoding.shape)  # type: ignore[call-overload]  # any
+        form = ELEMENT_FORMATS[encoding.datatype]
+        return memoryview(payload).cast(form, encoding.shape)  # type: ignore[call-overload]  # `form` is no constant
     except (TypeError, ValueError):  # a memoryview knows neither these datatypes nor dimensions without any element
         return memoryview(payload)
 

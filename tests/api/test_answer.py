@@ -79,13 +79,13 @@ def test_an_answer_can_be_compared_hashed_copied_and_pickled(
 
 def test_an_answer_does_not_change(answer: Answer, refusal: sc.Refusal) -> None:
     with pytest.raises(FrozenInstanceError):
-        answer.assignments = ()  # type: ignore[misc]  # that is what is tested
+        answer.assignments = ()  # type: ignore[misc]  # refused when it runs, too
     with pytest.raises(TypeError):
-        answer.bindings["robot"] = TRACKER  # type: ignore[index]  # that is what is tested
+        answer.bindings["robot"] = TRACKER  # type: ignore[index]  # refused when it runs, too
     with pytest.raises(FrozenInstanceError):
-        refusal.reasons = ()  # type: ignore[misc]  # that is what is tested
+        refusal.reasons = ()  # type: ignore[misc]  # refused when it runs, too
     with pytest.raises(FrozenInstanceError):
-        refusal.reasons[0].place = None  # type: ignore[misc]  # that is what is tested
+        refusal.reasons[0].place = None  # type: ignore[misc]  # refused when it runs, too
 
 
 def test_the_turtle_of_an_answer_is_a_configuration_that_validates(answer: Answer, tmp_path: Path) -> None:
@@ -173,9 +173,9 @@ def test_a_word_that_is_no_option_is_answered_with_those_that_are(
 
 def test_arguments_of_another_kind_are_refused_in_a_sentence(task: sc.TaskSpecification, home: sc.Ecology) -> None:
     with pytest.raises(ProgrammerError, match=r"selfconf.template\(\) gives, not str"):
-        sc.configure("examples/navigate.ttl", home)  # type: ignore[arg-type]  # that is what is tested
+        sc.configure("examples/navigate.ttl", home)  # type: ignore[arg-type]  # refused when it runs, too
     with pytest.raises(ProgrammerError, match=r"selfconf.read\(\) or selfconf.join\(\) gives, not str"):
-        sc.configure(task, "examples/peis-home")  # type: ignore[arg-type]  # that is what is tested
+        sc.configure(task, "examples/peis-home")  # type: ignore[arg-type]  # refused when it runs, too
 
 
 def test_what_if_and_cost_come_with_the_answer_where_they_are_asked_for(answer: Answer) -> None:

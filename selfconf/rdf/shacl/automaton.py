@@ -19,7 +19,7 @@ from functools import lru_cache
 from typing import Any
 
 if sys.version_info >= (3, 11):
-    from re import _compiler, _parser  # type: ignore[attr-defined]  # the parser of `re` has no stubs
+    from re import _compiler, _parser  # type: ignore[attr-defined]  # the stubs leave out what is private
 else:  # the same modules before they were moved
     import sre_compile as _compiler
     import sre_parse as _parser

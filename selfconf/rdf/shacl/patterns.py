@@ -20,7 +20,7 @@ from selfconf.rdf.shacl.automaton import Automaton, NotRegular, parsed
 CHEAP = 10_000
 """Steps of backtracking that `re` may always take: a tenth of a millisecond."""
 CHEAP_ENOUGH = 1_000_000
-"""The same where there is no automaton."""
+"""Steps of backtracking that `re` may take where there is no automaton: ten milliseconds."""
 LONGEST_TEXT = 100_000
 """Characters that an automaton reads."""
 PATTERN_SECONDS = 0.1

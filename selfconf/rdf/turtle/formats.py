@@ -89,7 +89,7 @@ def read_ontology(
         raise TurtleError("an entity within an entity is not expanded; write it out", file=source)
     lines = _Lines(octets)
     reader = ox.parse(
-        lines if found is RDF_XML else octets,  # type: ignore[arg-type]  # whatever has a method `read`
+        lines if found is RDF_XML else octets,  # type: ignore[arg-type]  # of a file it calls `read` alone
         format=found.parser,
         base_iri=base,
         rename_blank_nodes=True,

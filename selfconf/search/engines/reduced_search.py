@@ -137,7 +137,7 @@ class ReducedSearch:
         for need in needs:
             if not supports[need] and self.last[need] <= place:
                 return True
-        for need in self.expiring[place]:  # noqa: SIM110 - a generator costs more than the loop, once for each step
+        for need in self.expiring[place]:  # noqa: SIM110  # in each step, where a generator costs more
             if self.needed[need] and not supports[need]:
                 return True
         return False

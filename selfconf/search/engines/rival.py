@@ -44,7 +44,10 @@ class Rival:
         """Whether there is a solution, once that is known."""
         self._socket, other = socket.socketpair()
         self._socket.setblocking(False)
-        place = Path(find_spec("pysat").origin).parents[1]  # type: ignore[union-attr, arg-type] # `available` found it
+        found = find_spec("pysat")
+        assert found is not None  # for `available` has found it
+        assert found.origin is not None  # for it is a package with an `__init__`
+        place = Path(found.origin).parents[1]
         command = [sys.executable, "-I", str(PROGRAM), str(place)]
         # A session of its own: Ctrl-C at a terminal is for the search, which then ends this process.
         self._process = subprocess.Popen(
