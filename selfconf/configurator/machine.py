@@ -261,18 +261,19 @@ def _failed(state: State, event: Failed) -> Reaction:
         return state, ()
     if event.cause is Cause.SILENCE and not held.confirmed:
         return state, ()  # it may not have begun
-    if event.cause in (Cause.YIELD, Cause.LET_GO) and not held.reserved:
+    startable = event.startable and event.cause in PROCESS_ENDS
+    loss = Loss(event.cause, event.detail, event.life or held.life, event.cause is Cause.YIELD, startable=startable)
+    if event.cause not in (Cause.YIELD, Cause.LET_GO):
+        return _lose(state, event.component, loss)
+    if not held.reserved:
         return state, ()  # another task is asked to let go of it, perhaps for this one
-    if event.cause is Cause.LET_GO:  # nothing may act on a part; the component can be had again
-        return _dismantle(replace(state, news=True), Phase.COMPOSING)
-    loss = Loss(event.cause, event.detail, event.life or held.life, busy=event.cause is Cause.YIELD)
-    return _lose(state, event.component, replace(loss, startable=event.startable and event.cause in PROCESS_ENDS))
+    # Nothing may act on a part: all come to rest, the component in its turn. One that has let go can be had again.
+    lost = {**state.lost, event.component: loss} if loss.busy else state.lost
+    return _dismantle(replace(state, lost=lost, news=state.news or not loss.busy), Phase.COMPOSING)
 
 
 def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
     """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
-    if loss.cause is Cause.YIELD:  # nothing may act on a part: the component itself comes to rest in its turn
-        return _dismantle(replace(state, lost={**state.lost, component: loss}), Phase.COMPOSING)
     epoch = state.epoch + 1
     without = replace(
         state,
