@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from tests import schedule
+from tests.asked_here import ask_here
 from tests.effort import examples
 
 settings.register_profile(
@@ -50,6 +52,14 @@ def runtime_folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest
     for name in ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT", "SELFCONF_PARENT"):
         monkeypatch.delenv(name, raising=False)
     return folder
+
+
+@pytest.fixture
+def asked_here() -> Iterator[pytest.MonkeyPatch]:
+    """Queries need no process of their own, until this is undone."""
+    with pytest.MonkeyPatch.context() as patch:
+        ask_here(patch)
+        yield patch
 
 
 @pytest.fixture

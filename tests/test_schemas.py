@@ -150,6 +150,7 @@ def test_the_examples_in_a_schema_keep_to_it(command: str) -> None:
         validator(command).validate(example)
 
 
+@pytest.mark.usefixtures("asked_here")
 @pytest.mark.parametrize("command", EXAMPLES)
 def test_the_examples_in_a_schema_are_what_the_command_prints(
     command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
@@ -162,6 +163,7 @@ def test_the_examples_in_a_schema_are_what_the_command_prints(
         assert (body | {"seconds": timed["seconds"]} if "seconds" in timed else body) == example
 
 
+@pytest.mark.usefixtures("asked_here")
 @pytest.mark.parametrize("case", [one for one in cases.examples() if "json" in one.arguments], ids=lambda one: one.name)
 def test_what_is_printed_about_the_examples_keeps_to_the_schema(
     case: Case, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
@@ -203,6 +205,7 @@ def test_all_answers_that_are_recorded_keep_to_the_schema() -> None:
     assert found.keys() >= {one.code for one in (*get_args(Reason), *get_args(Relaxation))} - {"contradictory-count"}
 
 
+@pytest.mark.usefixtures("asked_here")
 def test_every_kind_of_term_keeps_to_the_schema_of_solutions(capsys: pytest.CaptureFixture[str]) -> None:
     query = 'SELECT * { VALUES (?a ?b ?c) { (<x:y> "text" "Wort"@de) (UNDEF UNDEF 1.5) } BIND(BNODE() AS ?d) }'
     body = printed(capsys, "query", query, "--ads", str(ROOT / "examples" / "clock"))

@@ -97,12 +97,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--full", action="store_true", help="all families at all sizes")
     parser.add_argument("--smoke", action="store_true", help="a few small instances, to see that everything runs")
-    parser.add_argument("--limit", type=float, help="seconds for each answer (3; 20 with --full; 1 with --smoke)")
+    parser.add_argument("--limit", type=float, help="seconds for each answer (3; 20 with --full; 0.3 with --smoke)")
     parser.add_argument("--only", default="", help="families whose name contains this")
     parser.add_argument("--write", action="store_true", help="write the page and the plot")
     parser.add_argument("--tuning", action="store_true", help="only try the thresholds of the search")
     options = parser.parse_args()
-    limit = options.limit or (20.0 if options.full else 1.0 if options.smoke else 3.0)
+    limit = options.limit or (20.0 if options.full else 0.3 if options.smoke else 3.0)
     rows: list[Row] = []
     engines = installed()
     if options.tuning:

@@ -44,7 +44,7 @@ class Quality:
 
 
 QUALITIES = {
-    "draft": Quality((900, 570), samples=2, density=160.0, film_size=(480, 278), film_samples=1, frames=16),
+    "draft": Quality((720, 456), 1, 100.0, film_size=(380, 220), film_samples=1, film_density=60.0, frames=10),
     "fine": Quality(),
 }
 
@@ -60,7 +60,7 @@ def draw(
 
     These are `run-perspective.png`, `run-plan.png` and `run.webp`; `configuration-1.svg` and `.png` and so on for each
     wiring of the record; `tracker-view.png` if it has camera images. `quality` is a name in QUALITIES (KeyError) or a
-    Quality. "fine" takes somewhat over a minute of one core, "draft" a quarter of that; both use all cores.
+    Quality. "fine" takes somewhat over a minute of one core, "draft" a sixth of that; both use all cores.
     """
     care = QUALITIES[quality] if isinstance(quality, str) else quality
     out_dir.mkdir(parents=True, exist_ok=True)

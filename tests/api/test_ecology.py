@@ -19,6 +19,8 @@ from selfconf.rdf.vocabulary import RDF, XSD
 from tests.cli.endpoints import Scripted, http
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
+pytestmark = pytest.mark.usefixtures("asked_here")
+
 
 def test_components_are_found_by_iri_with_their_profiles(home: sc.Ecology) -> None:
     assert len(home) == len(home.components) == 6
@@ -120,7 +122,6 @@ def test_an_ecology_is_true_even_where_it_is_empty() -> None:
     assert "0 components" in repr(empty)
 
 
-@pytest.mark.process
 def test_a_select_gives_solutions_with_terms_of_every_kind() -> None:
     home = read(PREFIXES + ':a a sc:Component, :T ; :p 5, "x", "y"@en, "z"^^:own, [ :q true ], :b .')
     found = home.query("SELECT ?v WHERE { <https://example.org/peis-home#a> <https://example.org/peis-home#p> ?v }")
@@ -138,21 +139,18 @@ def test_a_select_gives_solutions_with_terms_of_every_kind() -> None:
     assert repr(found).splitlines()[0].strip() == "v"
 
 
-@pytest.mark.process
 def test_triples_are_turtle(paper: LoadedEcology) -> None:
     found = paper.query("CONSTRUCT { ?c a rob:Found } WHERE { ?c a rob:MotorDrive }")
     assert isinstance(found, str)
     assert len(read(found.replace("rob:Found", "rob:Found, sc:Component"))) == 2
 
 
-@pytest.mark.process
 def test_each_advertisement_is_a_graph(paper: LoadedEcology) -> None:
     found = paper.query("SELECT ?g { GRAPH ?g { ?c a rob:MotorDrive } } ORDER BY ?g")
     assert isinstance(found, Solutions)
     assert [row["g"] for row in found] == [iri("astrid-drive"), iri("pippi-drive")]
 
 
-@pytest.mark.process
 @pytest.mark.parametrize(
     ("sparql", "words"),
     [("SELECT WHERE", "not a SPARQL query"), ("SELECT * { SERVICE <http://127.0.0.1:9/> { ?s ?p ?o } }", "SERVICE")],
@@ -163,7 +161,8 @@ def test_a_query_that_cannot_be_asked_is_an_error(paper: LoadedEcology, sparql: 
 
 
 @pytest.mark.process
-def test_a_query_ends_in_time(paper: LoadedEcology) -> None:
+def test_a_query_ends_in_time(paper: LoadedEcology, asked_here: pytest.MonkeyPatch) -> None:
+    asked_here.undo()  # it is the process that is ended
     join = " ".join(f"?a{number} ?b{number} ?c{number} ." for number in range(30))
     with pytest.raises(QueryError, match=r"more than 0\.5 s"):
         paper.query(f"SELECT (COUNT(*) AS ?n) {{ {join} }}", seconds=0.5)
@@ -190,7 +189,6 @@ def test_an_endpoint_is_never_loaded_as_a_whole() -> None:
     assert "http://127.0.0.1:9/query" in ecology._repr_html_()
 
 
-@pytest.mark.process
 def test_an_endpoint_answers_a_query_itself() -> None:
     body: dict[str, Any] = {
         "head": {"vars": ["c"]},

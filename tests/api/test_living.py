@@ -115,6 +115,7 @@ def test_what_is_advertised_is_found_and_whether_it_lives(living: LivingEcology)
     assert living.complaints == ()
 
 
+@pytest.mark.usefixtures("asked_here")
 def test_a_query_is_asked_of_all_that_is_advertised_and_deployed(living: LivingEcology, house: Home) -> None:
     found = living.query("SELECT ?c { ?c a rob:MotorDrive } ORDER BY ?c")
     assert isinstance(found, Solutions)

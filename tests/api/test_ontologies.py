@@ -132,6 +132,7 @@ def test_the_library_takes_folders(tmp_path: Path) -> None:
     assert partition(task, home, reasoning="subclass", ontologies=[words])["eye"].eligible == (iri("cam"),)
 
 
+@pytest.mark.usefixtures("asked_here")
 @pytest.mark.parametrize("ending", FORMATS)
 def test_every_command_takes_a_folder(ending: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = str(write(tmp_path / "words", ending))

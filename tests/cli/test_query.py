@@ -12,7 +12,7 @@ from tests.cli.command import Outcome, run
 from tests.cli.processes import Home
 from tests.lab import PREFIXES, iri, write_advertisements
 
-pytestmark = pytest.mark.process
+pytestmark = [pytest.mark.process, pytest.mark.usefixtures("asked_here")]
 
 SENSORS = "SELECT ?c WHERE { ?c a rob:PositionSensor } ORDER BY ?c"
 

@@ -394,8 +394,8 @@ class Watch:
         ]
         return (
             [
-                (
-                    life.node.open,
+                life.node.open
+                and (
                     life.node.paused,
                     life.thread.hangs,
                     life.runtime.active,

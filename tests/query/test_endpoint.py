@@ -17,7 +17,7 @@ from tests.cli.command import Outcome, run
 from tests.cli.endpoints import Scripted, http, oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, write_advertisements
 
-pytestmark = pytest.mark.process
+pytestmark = [pytest.mark.process, pytest.mark.usefixtures("asked_here")]
 
 SENSORS = "SELECT ?c WHERE { ?c a rob:PositionSensor } ORDER BY ?c"
 TASK = ("--bind", "robot=:Astrid", "--bind", "goal=x")
@@ -156,13 +156,19 @@ def test_a_server_that_misbehaves_is_one_sentence(how: str, capsys: pytest.Captu
     assert [request.split(b" HTTP")[0] for request in server.requests] == [b"POST /query"] * 2
 
 
-def test_query_says_the_same_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+def test_query_says_the_same_sentence(
+    capsys: pytest.CaptureFixture[str], asked_here: pytest.MonkeyPatch
+) -> None:
+    asked_here.undo()  # the sentence comes from a process of its own
     with Scripted(BAD["JSON that breaks off"][0]) as server:
         assert run(capsys, "query", SENSORS, "--endpoint", server.url).is_one_sentence("breaks off", server.url)
 
 
 @pytest.mark.parametrize("how", ["nothing at all", "an answer without end"])
-def test_a_server_that_holds_the_line_meets_the_time_limit(how: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_server_that_holds_the_line_meets_the_time_limit(
+    how: str, capsys: pytest.CaptureFixture[str], asked_here: pytest.MonkeyPatch
+) -> None:
+    asked_here.undo()  # it is the process that is ended
     answer = b"" if how == "nothing at all" else http(TYPES).replace(b": 105", b": 9999")[:-9]
     with Scripted(answer, hold=True) as server:
         outcome = run(capsys, "query", SENSORS, "--endpoint", server.url, "--seconds", "1.5")

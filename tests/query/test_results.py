@@ -14,7 +14,7 @@ from selfconf.query import Question, answer
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.turtle import document as turtle
 
-pytestmark = pytest.mark.process
+pytestmark = pytest.mark.usefixtures("asked_here")
 
 
 TEXT = '<urn:a> <urn:p> 1 , "x\\ty, \\"z\\""@en , "plain" , <urn:b> , [ <urn:q> 2.5 ] .'

@@ -12,6 +12,7 @@ import sys
 
 import pytest
 
+from tests.asked_here import ask_here
 from tests.effort import examples
 from tests.recorded import cases
 from tests.recorded.answers import Answer, differences, taken_apart
@@ -26,6 +27,7 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     """A group, and what is answered to its cases now."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cases, "ECOLOGIES", min(cases.ECOLOGIES, examples(500)))
+        ask_here(patch)
         patch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path_factory.mktemp("runtime")))
         for name in ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT", "SELFCONF_PARENT"):
             patch.delenv(name, raising=False)

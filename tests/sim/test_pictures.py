@@ -46,6 +46,8 @@ from sim.pictures.view_area import view_area
 from sim.pictures.viewpoint import perspective, plan
 
 TINY = Quality((420, 300), samples=1, density=60, film_size=(220, 130), film_samples=1, film_density=60, frames=4)
+LEAST = Quality((320, 240), samples=1, density=20, film_size=(110, 65), film_samples=1, film_density=20, frames=2)
+"""For what is drawn to see that it can be."""
 GREY = Material("#808080")
 HOSTILE = "<script>&\"'\x00]]> ]\ud800 \u202e漢字\n" + "long " * 60
 
@@ -182,7 +184,7 @@ def test_what_is_painted_on_the_floor_is_not_there_before_its_time(run: RunRecor
 def test_a_run_may_be_short_or_still_and_need_not_fail(
     samples: tuple[Sample, ...], apartment: Apartment, tmp_path: Path
 ) -> None:
-    paths = draw(RunRecord(samples), apartment, tmp_path, TINY)
+    paths = draw(RunRecord(samples), apartment, tmp_path, LEAST)
     assert [path.name for path in paths] == ["run-perspective.png", "run-plan.png", "run.webp"]
     assert all(path.stat().st_size > 0 for path in paths)
 
@@ -190,7 +192,7 @@ def test_a_run_may_be_short_or_still_and_need_not_fail(
 def test_a_run_that_leaves_the_apartment_is_drawn_as_well(apartment: Apartment, tmp_path: Path) -> None:
     samples = (Sample(0.0, 1.0, 1.4), Sample(9.0, 40.0, -30.0))
     failure = Failure(8.0, 40.0, -30.0)
-    assert len(draw(RunRecord(samples, failures=(failure,), goal=(-9.0, 9.0)), apartment, tmp_path, TINY)) == 3
+    assert len(draw(RunRecord(samples, failures=(failure,), goal=(-9.0, 9.0)), apartment, tmp_path, LEAST)) == 3
 
 
 def test_progress_rises_from_nothing_to_all(album: list[Path], heard: list[float]) -> None:
