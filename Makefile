@@ -8,6 +8,9 @@ PYTHON ?= $(shell for p in python3.11 python3.10 python3 python; do \
 	for p in python3.13 python3.12 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && echo $$p && exit; done)
 SEEDS  ?= 20
+# Hundreds of programs are started, and several processes read all tests: to compile everything anew in each of them,
+# as containers with this variable have it, costs a minute and more.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test quick nightly faults fuzz check package format lint types floors shapes docs-check experiment bench clean
 
@@ -42,7 +45,10 @@ faults: $(VENV)/with-dev
 fuzz: $(VENV)/with-dev
 	$(BIN)/python -m benchmarks.fuzz --number 60 --seed $$(date +%j) --show
 
-check: $(VENV)/with-dev lint types floors shapes docs-check test package
+# What looks at the files and what builds the package wait for each other in no way; the tests use all processors.
+check: $(VENV)/with-dev
+	@$(MAKE) --jobs=2 --output-sync=target lint types floors shapes docs-check package
+	@$(MAKE) test
 
 package: $(VENV)/with-dev
 	.ci/package

@@ -24,8 +24,9 @@ WHOLE = {
     "tests/cli/test_untrusted.py",
     "tests/query/test_endpoint.py",
     "tests/sim/test_pictures.py",
+    "tests/test_house.py",
 }
-"""Modules whose tests share something that takes seconds to make: a living ecology, an endpoint, an album."""
+"""Modules whose tests share something that takes seconds to make: an ecology, an endpoint, an album, a survey."""
 BAD_FILES = ("test_a_bad_file_", "test_the_log_of_every_bad_file_")
 """How the names of tests begin that share the reports about all files of `tests/bad`."""
 RECORDED = "tests/recorded/test_recorded.py"

@@ -14,6 +14,7 @@ import ast
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -40,7 +41,10 @@ def modules(*tops: str) -> Iterator[tuple[str, ast.Module]]:
     """The path from the root, and the syntax tree, of each module below some packages."""
     for top in tops:
         for path in sorted((ROOT / top).rglob("*.py")):
-            yield path.relative_to(ROOT).as_posix(), ast.parse(path.read_text("utf-8"))
+            yield path.relative_to(ROOT).as_posix(), _tree(path.read_text("utf-8"))
+
+
+_tree = cache(ast.parse)
 
 
 def complex_functions() -> dict[str, str]:

@@ -156,9 +156,7 @@ def test_a_server_that_misbehaves_is_one_sentence(how: str, capsys: pytest.Captu
     assert [request.split(b" HTTP")[0] for request in server.requests] == [b"POST /query"] * 2
 
 
-def test_query_says_the_same_sentence(
-    capsys: pytest.CaptureFixture[str], asked_here: pytest.MonkeyPatch
-) -> None:
+def test_query_says_the_same_sentence(capsys: pytest.CaptureFixture[str], asked_here: pytest.MonkeyPatch) -> None:
     asked_here.undo()  # the sentence comes from a process of its own
     with Scripted(BAD["JSON that breaks off"][0]) as server:
         assert run(capsys, "query", SENSORS, "--endpoint", server.url).is_one_sentence("breaks off", server.url)

@@ -100,6 +100,7 @@ def album(
     return draw(run, apartment, folder, TINY, lambda what, share: heard.append(share))
 
 
+@pytest.mark.slow
 def test_an_album_holds_every_picture_and_returns_their_paths(album: list[Path]) -> None:
     names = [path.name for path in album]
     assert names == [
@@ -115,16 +116,19 @@ def test_an_album_holds_every_picture_and_returns_their_paths(album: list[Path])
     assert all(path.is_file() for path in album)
 
 
+@pytest.mark.slow
 def test_pictures_stay_below_their_limits(album: list[Path]) -> None:
     assert all(path.stat().st_size < (900_000 if path.suffix == ".webp" else 600_000) for path in album)
 
 
+@pytest.mark.slow
 def test_stills_have_the_size_that_was_asked_for(album: list[Path]) -> None:
     for path in album[:2]:
         with Image.open(path) as picture:
             assert picture.size == TINY.size
 
 
+@pytest.mark.slow
 def test_the_film_moves(album: list[Path]) -> None:
     with Image.open(album[2]) as picture:
         assert getattr(picture, "n_frames", 1) >= TINY.frames
@@ -145,6 +149,7 @@ def test_a_picture_that_packs_badly_is_made_coarser_until_it_is_small_enough(
     assert (tmp_path / "noise.webp").stat().st_size < easy
 
 
+@pytest.mark.slow
 def test_the_path_is_blue_by_the_tracker_and_orange_by_odometry(
     run: RunRecord, apartment: Apartment, album: list[Path]
 ) -> None:
@@ -195,6 +200,7 @@ def test_a_run_that_leaves_the_apartment_is_drawn_as_well(apartment: Apartment, 
     assert len(draw(RunRecord(samples, failures=(failure,), goal=(-9.0, 9.0)), apartment, tmp_path, LEAST)) == 3
 
 
+@pytest.mark.slow
 def test_progress_rises_from_nothing_to_all(album: list[Path], heard: list[float]) -> None:
     assert heard[0] == 0.0
     assert heard[-1] == 1.0
@@ -315,6 +321,7 @@ def test_the_view_area_is_what_the_camera_sees_of_the_living_room(apartment: Apa
 # Diagrams
 
 
+@pytest.mark.slow
 def test_the_svg_is_xml_and_names_every_component(album: list[Path], run: RunRecord) -> None:
     for path, wiring_ in zip((album[3], album[5]), run.wirings, strict=True):
         text = "\n".join(ElementTree.parse(path).getroot().itertext())
