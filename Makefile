@@ -30,8 +30,8 @@ test: $(VENV)/with-dev
 quick: $(VENV)/with-dev
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow'
 
-# Ten thousand random ecologies for each property of the search, against every oracle, ten thousand histories with
-# faults, all that is recorded, and drives of ten seeds; about half an hour.
+# Mistakes in good files, ten thousand random ecologies for each property of the search, against every oracle, ten
+# thousand histories with faults, all that is recorded, and drives of ten seeds; about half an hour.
 nightly: $(VENV)/with-dev fuzz
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults \
 		tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \

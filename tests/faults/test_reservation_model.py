@@ -11,7 +11,7 @@ from tests.faults.exploration import Bounds, Findings, explore
 from tests.faults.reservation_model import Claim, Mask, Scheme
 
 STATES = 20_000 * examples(100) // 100
-"""How many states of a case are explored at most; ten, or a hundred times as many at night."""
+"""How many states of a case are explored at most; at night fifty times as many."""
 
 
 def components(letters: str) -> Mask:

@@ -20,7 +20,7 @@ from tests.effort import NIGHTLY, examples
 
 
 def agreement(share: float = 1.0) -> settings:
-    """How many problems a test draws: 500 for every push, 50 in a quick run, 10,000 at night."""
+    """How many problems a test draws: 200 for every push, 50 in a quick run, 10,000 at night."""
     return settings(
         max_examples=examples(int(500 * share)),
         deadline=None,
