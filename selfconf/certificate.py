@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from selfconf.model.configuration import Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import Candidate, Partition
+from selfconf.model.profile import Input, Output
 from selfconf.model.template import Task
 from selfconf.model.term import IRI, Term
 
@@ -90,7 +91,7 @@ class _Check:
         fed = {(connection.sink, connection.input) for connection in actual}
         for candidate in (candidate for some in players.values() for candidate in some):
             for wanted in candidate.profile.inputs:
-                if (candidate.profile.component, wanted.name) not in fed:
+                if not wanted.optional and (candidate.profile.component, wanted.name) not in fed:
                     yield f"the input {wanted.name!r} of {candidate.profile.component.short} is not fed"
 
     def _possible_connections(self, players: Players) -> set[Connection]:
@@ -104,8 +105,21 @@ class _Check:
             if interaction.output is None or interaction.output == output.name
             for wanted in sink.profile.inputs
             if interaction.input is None or interaction.input == wanted.name
-            if self.hierarchy.matches(output.signal, wanted.signal)
+            if self._may_feed(output, wanted, by_name=None not in (interaction.output, interaction.input))
         }
+
+    def _may_feed(self, output: Output, wanted: Input, by_name: bool) -> bool:
+        """Return whether types and conditions allow an output to feed an input; `by_name` where both are named."""
+        if not any(self.hierarchy.matches(one, other) for one in output.signals for other in wanted.signals) and not (
+            by_name and () in (output.signals, wanted.signals)
+        ):
+            return False
+        unit, frame, shape = wanted.condition or (None, None, None)
+        return (
+            (output.unit == unit or None in (output.unit, unit))
+            and (output.frame == frame or None in (output.frame, frame))
+            and (shape is None or shape in output.conforms)
+        )
 
     def _values(self, players: Players) -> Iterator[str]:
         names = {parameter.iri: parameter.name for parameter in self.template.parameters}

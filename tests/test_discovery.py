@@ -274,7 +274,7 @@ def test_advertisements_that_change_in_the_middle_are_taken_from_one_revision(fi
         ("", "does not advertise"),
         (ADVERTISEMENTS["drive"], "does not advertise"),
         (":person-tracker a sc:Component .", "a component needs a type of its own"),
-        (':person-tracker a sc:Component, rob:PositionSensor ; sc:hasOutput [ sc:name "pose" ] .', "sc:signalType"),
+        (":person-tracker a sc:Component, rob:PositionSensor ; sc:hasOutput [ sc:signalType :Pose ] .", "sc:name"),
     ],
 )
 def test_what_is_no_advertisement_of_its_component_is_left_out_and_named(

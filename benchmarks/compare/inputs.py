@@ -129,7 +129,7 @@ def _advertisements(problem: Problem) -> Iterator[str]:
             if len(parts) > 2:
                 continue  # it is a candidate of another role too, and described already
             for link, ports in (("hasInput", candidate.profile.inputs), ("hasOutput", candidate.profile.outputs)):
-                parts += [f'sc:{link} [ sc:name "{port.name}" ; sc:signalType <{port.signal}> ]' for port in ports]
+                parts += [f'sc:{link} [ sc:name "{port.name}" ; sc:signalType <{port.signals[0]}> ]' for port in ports]
             for variable, mask in zip(variables, candidate.admits, strict=False):
                 values = [value for place, value in enumerate(variable.domain) if mask == 1 << place]
                 parts += [f"<{variable.parameter}-of> <{value}>" for value in values]

@@ -147,8 +147,8 @@ def profiles(graph: rdflib.Graph) -> list[Profile]:
                 types=frozenset(IRI(kind) for kind in graph.objects(component, rdflib.RDF.type)),
                 properties=tuple(sorted((pair for pair in said if pair[0] not in STRUCTURE), key=property_order)),
                 ports=Ports(
-                    tuple(Input(*port) for port in ports(component, "hasInput", "signalType")),
-                    tuple(Output(*port) for port in ports(component, "hasOutput", "signalType")),
+                    tuple(Input(name, (signal,)) for name, signal in ports(component, "hasInput", "signalType")),
+                    tuple(Output(name, (signal,)) for name, signal in ports(component, "hasOutput", "signalType")),
                 ),
                 parameters=tuple(
                     OperationalParameter(*one) for one in ports(component, "hasParameter", "parameterType")

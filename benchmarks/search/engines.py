@@ -196,14 +196,14 @@ def _needs(problem: Problem, plays: list[list[L]]) -> Iterator[tuple[list[L], li
         for candidate, literal in zip(candidates, plays[role], strict=True):
             for output in candidate.profile.outputs:
                 for name in (None, output.name):
-                    gives[role].setdefault((output.signal, name), []).append(literal)
+                    gives[role].setdefault((output.signals[0], name), []).append(literal)
     for role, candidates in enumerate(problem.candidates):
         needing: dict[tuple[str, Sources], list[L]] = {}
         for candidate, literal in zip(candidates, plays[role], strict=True):
             for wanted in candidate.profile.inputs:
-                needing.setdefault((wanted.signal, problem.feeding(role, wanted.name)), []).append(literal)
+                needing.setdefault((wanted.signals[0], problem.feeding(role, wanted.name)), []).append(literal)
         for (signal, sources), some in needing.items():
-            yield some, [g for source, output in sources for g in gives[source].get((signal, output), ())]
+            yield some, [g for source, output, _ in sources for g in gives[source].get((signal, output), ())]
 
 
 def _values(

@@ -34,8 +34,8 @@ def profile(name: object, inputs: Sequence[object] = (), outputs: Sequence[objec
     return Profile(
         iri(name),
         ports=shared_ports(  # as whoever reads an advertisement does
-            tuple(Input(f"i{k}", iri(s)) for k, s in enumerate(inputs)),
-            tuple(Output(f"o{k}", iri(s)) for k, s in enumerate(outputs)),
+            tuple(Input(f"i{k}", (iri(s),)) for k, s in enumerate(inputs)),
+            tuple(Output(f"o{k}", (iri(s),)) for k, s in enumerate(outputs)),
         ),
     )
 

@@ -29,10 +29,10 @@ def in_pairs(domains: Sequence[Sequence[int]], pairs: Mapping[tuple[int, int], G
     for (sink, source), goes in pairs.items():
         for k, value in enumerate(domains[sink]):
             signal = iri(f"{source}.{sink}.{value}")
-            inputs[sink][k].append(Input(f"from{source}", signal))
+            inputs[sink][k].append(Input(f"from{source}", (signal,)))
             for n, other in enumerate(domains[source]):
                 if goes(value, other):
-                    outputs[source][n].append(Output(f"to{sink}.{value}", signal))
+                    outputs[source][n].append(Output(f"to{sink}.{value}", (signal,)))
     candidates = tuple(
         tuple(
             Candidate(Profile(iri(f"c{role:03}.{value:04}"), ports=shared_ports(tuple(wanted), tuple(issued))))

@@ -92,17 +92,17 @@ def _ports(problem: Problem, profile: Profile, tell: bool) -> Iterator[Triple]:
     for wanted in profile.inputs:
         yield name, f"{BASE}input", _port(wanted, tell)
         if tell:
-            yield _port(wanted, tell), f"{BASE}signal", str(wanted.signal)
+            yield _port(wanted, tell), f"{BASE}signal", str(wanted.signals[0])
             yield _port(wanted, tell), f"{BASE}name", f"{BASE}name:{wanted.name}"
     for output in profile.outputs:
-        for signal in problem.hierarchy.superclasses(output.signal):
+        for signal in problem.hierarchy.superclasses(output.signals[0]):
             yield name, f"{BASE}output", str(signal)
             if tell:
                 yield name, f"{BASE}output:{output.name}", str(signal)
 
 
 def _port(wanted: Input | Output, tell: bool) -> str:
-    return f"{wanted.signal}:{wanted.name}" if tell else str(wanted.signal)
+    return f"{wanted.signals[0]}:{wanted.name}" if tell else str(wanted.signals[0])
 
 
 def _named(problem: Problem) -> bool:

@@ -48,8 +48,8 @@ class Strategy(str, Enum):
 def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
     """Whether under a hierarchy an output of some candidate matches an input of another type."""
     profiles = [candidate.profile for candidates in partition.candidates for candidate in candidates]
-    wanted = {port.signal for profile in profiles for port in profile.inputs}
-    offered = {port.signal for profile in profiles for port in profile.outputs}
+    wanted = {signal for profile in profiles for port in profile.inputs for signal in port.signals}
+    offered = {signal for profile in profiles for port in profile.outputs for signal in port.signals}
     return any(not wanted.isdisjoint(hierarchy.superclasses(signal) - {signal}) for signal in offered)
 
 

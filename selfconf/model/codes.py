@@ -45,6 +45,7 @@ class Code:
 
 
 _TUNER = ":tuner a sc:Component, rob:Tuner"
+_DISPLAY = ":display a sc:Component, rob:Display"
 _TEMPLATE = ":radio a sc:Template ; sc:roles ( :source :sink ) ."
 _SOURCE = ":source a sc:Role ; sh:class rob:Tuner ; sc:feeds :sink ."
 _SINK = ":sink a sc:Role ; sh:class rob:Speaker ."
@@ -142,11 +143,11 @@ CODES: tuple[Code, ...] = (
         ("PortNameOnce", "PortNameText"),
     ),
     Code(
-        "SC-A08", "A port has exactly one signal type, an IRI.",
-        "Ports are connected by type; one without a type can be connected to nothing.",
-        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ] .',
+        "SC-A08", "The signal types of a port are IRIs.",
+        "Ports are connected by type. An output is of all its types; an input takes any of its own.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType "audio" ] .',
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
-        ("PortSignalOnce", "PortSignalIri"),
+        ("PortSignalIri",),
     ),
     Code(
         "SC-A09", "The inputs of a component have different names, and so have its outputs.",
@@ -215,6 +216,29 @@ CODES: tuple[Code, ...] = (
         ":display a sc:Component, rob:Display ;\n"
         '    sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ; sc:depth 10 ] .',
         ("Depth", "DepthOfOutput"),
+    ),
+    Code(
+        "SC-A18", "A port has at most one unit, an IRI, and at most one frame, an IRI or a string.",
+        "Where an output and an input both state one, they have to agree.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "level" ; sc:signalType rob:Volume ; sc:unit "dB" ] .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "level" ; sc:signalType rob:Volume ; sc:unit unit:DeciB ] .',
+        ("PortUnit", "PortFrame"),
+    ),
+    Code(
+        "SC-A19", "An input says at most once, by true or false, whether it is optional.",
+        "An optional input may stay unfed. To an output it does not matter whether it feeds something.",
+        f'{_DISPLAY} ; sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ; sc:optional "yes" ] .',
+        f'{_DISPLAY} ; sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ; sc:optional true ] .',
+        ("Optional", "OptionalOutput"),
+    ),
+    Code(
+        "SC-A20", "What an input accepts is one shape in brackets, of SHACL Core and without targets.",
+        "It judges the outputs that may feed this input, and nothing else; so it names no other shape, no target and "
+        "no query, and is of bounded size.",
+        f'{_DISPLAY} ; sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ; sc:accepts :any ] .',
+        f'{_DISPLAY} ; sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ;\n'
+        "    sc:accepts [ sh:property [ sh:path ( sc:rate sc:value ) ; sh:minInclusive 5 ] ] ] .",
+        ("Accepts", "AcceptingOutput"),
     ),
     Code(
         "SC-T01", "A template has an IRI and is a sc:Template.",
@@ -603,6 +627,13 @@ CODES: tuple[Code, ...] = (
         "A port that nothing has is one that was meant to be a component's, and is left out of its advertisement.",
         f'{_TUNER} .\n_:sound sc:name "sound" ; sc:signalType rob:Audio .',
         f'{_TUNER} ; sc:hasOutput _:sound .\n_:sound sc:name "sound" ; sc:signalType rob:Audio .',
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L18", "A port has a signal type.",
+        "Ports are paired by type; without one only an interaction pairs a port that names both ends.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ] .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         severity=Severity.WARNING,
     ),
 )  # fmt: skip

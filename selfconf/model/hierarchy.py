@@ -6,9 +6,10 @@ equal pair is *exact* and an offered subclass *plug-in*; *subsumes* and *overlap
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from enum import Enum
 
+from selfconf.model.profile import Input, Output
 from selfconf.model.term import IRI
 
 
@@ -79,6 +80,20 @@ class Hierarchy:
     def matches(self, offered: IRI, wanted: IRI) -> bool:
         """Whether a class (of components, signals or parameters) that is offered serves where another is wanted."""
         return offered == wanted or (not self.flat and wanted in self._classes.above(offered))
+
+    def served(self, offered: Sequence[IRI]) -> Iterable[IRI]:
+        """The classes that something serves which is of all of some classes: these, and every class above them."""
+        if self.flat:
+            return offered
+        if len(offered) == 1:
+            return self._classes.above(offered[0])
+        return frozenset().union(*map(self._classes.above, offered))
+
+    def pairs(self, output: Output, wanted: Input) -> bool:
+        """Whether an output may feed an input: one of its types serves, and the condition of the input is met."""
+        return any(signal in wanted.signals for signal in self.served(output.signals)) and (
+            wanted.condition is None or wanted.condition.met_by(output)
+        )
 
 
 NOTHING_ABOVE = Hierarchy()

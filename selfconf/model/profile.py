@@ -6,11 +6,13 @@ component types and the properties. Operational parameters set or tune the runni
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from functools import lru_cache
 from typing import NamedTuple
 
+from selfconf.model.obstacle import in_words
 from selfconf.model.term import IRI, Term
 
 
@@ -25,21 +27,81 @@ class Place:
         return self.source if self.line is None else f"{self.source}:{self.line}"
 
 
+class Condition(NamedTuple):
+    """What an input asks of an output besides its signal types; what is None is not asked for.
+
+    A unit or a frame that the output does not state is taken to agree.
+    """
+
+    unit: IRI | None = None
+    frame: Term | None = None
+    accepts: str | None = None
+    """The shape that the output has to conform to (`sc:accepts`), as Turtle."""
+
+    def met_by(self, output: Output) -> bool:
+        """Whether an output agrees in unit and frame, and conforms to the shape."""
+        return (
+            (self.unit is None or output.unit in (None, self.unit))
+            and (self.frame is None or output.frame in (None, self.frame))
+            and (self.accepts is None or self.accepts in output.conforms)
+        )
+
+
+class WantedSignal(NamedTuple):
+    """What an input wants: a signal of any one of its types, from an output that meets its condition."""
+
+    signals: tuple[IRI, ...] = ()
+    condition: Condition | None = None
+
+    def output(self, name: str) -> Output:
+        """An output of that name which issues what is wanted, of the first of the types."""
+        unit, frame, accepts = self.condition or Condition()
+        return Output(name, self.signals[:1], None, unit, frame, frozenset(() if accepts is None else (accepts,)))
+
+    def __str__(self) -> str:
+        condition = self.condition or Condition()
+        shape = " that conforms to its sc:accepts" if condition.accepts else ""
+        return signal_in_words(self.signals, condition.unit, condition.frame) + shape
+
+
+def signal_in_words(signals: Sequence[IRI], unit: IRI | None, frame: Term | None) -> str:
+    """What a port carries: its types by their short names, its unit and its frame."""
+    types = " or ".join(dict.fromkeys(signal.short for signal in signals)) or "signal without a type"
+    in_unit = "" if unit is None else f" in {unit.short}"
+    return f"{types}{in_unit}" + ("" if frame is None else f" in the frame {in_words((frame,))}")
+
+
 # Ports are named tuples, which Python hashes and compares in C: a search groups a hundred thousand candidates by them.
 class Input(NamedTuple):
-    """A port that accepts signals of one type; `depth` is how many may wait while the component is busy, if it says."""
+    """A port that accepts signals of any one of its types; without a type it is paired by its name alone."""
 
     name: str
-    signal: IRI
+    signals: tuple[IRI, ...]
+    """The signal types, sorted."""
     depth: int | None = None
+    """How many signals may wait while the component is busy, if it says so."""
+    optional: bool = False
+    """Whether it may stay unfed."""
+    condition: Condition | None = None
+
+    @property
+    def wanted(self) -> WantedSignal:
+        """The signal that it wants."""
+        return WantedSignal(self.signals, self.condition)
 
 
 class Output(NamedTuple):
-    """A port that issues signals of one type; `rate` is the least rate it promises, in hertz, if it promises one."""
+    """A port that issues signals which are of all its types; without a type it is paired by its name alone."""
 
     name: str
-    signal: IRI
+    signals: tuple[IRI, ...]
+    """The signal types, sorted."""
     rate: float | None = None
+    """The least rate that it promises, in hertz, if it promises one."""
+    unit: IRI | None = None
+    frame: Term | None = None
+    conforms: frozenset[str] = frozenset()
+    """Of the shapes that inputs ask outputs to conform to, those that it is known to conform to."""
 
 
 class Ports(NamedTuple):
@@ -97,6 +159,11 @@ class Profile:
     def outputs(self) -> tuple[Output, ...]:
         """The ports that issue signals."""
         return self.ports.outputs
+
+    @property
+    def required(self) -> tuple[Input, ...]:
+        """The inputs that must be fed."""
+        return tuple(port for port in self.ports.inputs if not port.optional)
 
     @property
     def is_shareable(self) -> bool:

@@ -12,7 +12,7 @@ from typing import ClassVar
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.partition import NearMiss
-from selfconf.model.profile import Place
+from selfconf.model.profile import Place, WantedSignal
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.term import IRI
@@ -96,14 +96,14 @@ class DerivationStep:
     more: int
     """How many others leave for the same cause."""
     input: str
-    signal: IRI
+    wanted: WantedSignal
     sources: tuple[IRI, ...]
     optional: tuple[IRI, ...] = ()
     """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
 
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
-        none_issues = f"nobody left in {{}} issues a {self.signal.short}"
+        none_issues = f"nobody left in {{}} issues a {self.wanted}"
         lack = _lack(self.sources, self.optional, none_issues, f"no interaction feeds its input {self.input!r}")
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
 
@@ -123,7 +123,7 @@ class InputUnfed:
     role: IRI
     component: IRI
     input: str
-    signal: IRI
+    wanted: WantedSignal
     sources: tuple[IRI, ...]
     requirements: tuple[Requirement, ...] = ()
     consequences: tuple[DerivationStep, ...] = ()
@@ -134,8 +134,8 @@ class InputUnfed:
     """Where the role or component that it speaks of is described, if that is known."""
 
     def __str__(self) -> str:
-        name = f"the input {self.input!r} ({self.signal.short}) of {self.component.short}"
-        none_issues = f"no candidate of {{}} issues a {self.signal.short} for it"
+        name = f"the input {self.input!r} ({self.wanted}) of {self.component.short}"
+        none_issues = f"no candidate of {{}} issues a {self.wanted} for it"
         lack = _lack(self.sources, self.optional, none_issues, f"no interaction feeds it in the role {self.role.short}")
         return "; so ".join([f"{name} cannot be fed: {lack}", *map(str, self.consequences)])
 

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from selfconf.model.obstacle import in_words
 from selfconf.model.partition import Candidate, NearMiss
-from selfconf.model.profile import Output, Place
+from selfconf.model.profile import Output, Place, signal_in_words
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import listed
 
@@ -29,12 +29,19 @@ class Addition:
 
     def __str__(self) -> str:
         number = "one more component" if self.count == 1 else f"{self.count} more components"
-        signals = listed(dict.fromkeys(output.signal.short for output in self.outputs if output.name not in self.named))
-        by_name = [f"{o.signal.short} by the output {o.name!r}" for o in self.outputs if o.name in self.named]
+        signals = listed(dict.fromkeys(_signal(output) for output in self.outputs if output.name not in self.named))
+        by_name = [
+            f"{_signal(output)} by the output {output.name!r}" for output in self.outputs if output.name in self.named
+        ]
         issued = listed([*([signals] if signals else []), *by_name])
         issuing = f" that issue{'s' if self.count == 1 else ''} {issued}" if issued else ""
         values = "".join(f", with {name} {in_words((value,))}" for name, value in self.values)
         return f"{number} for the role {self.role.short}{issuing}{values}"
+
+
+def _signal(output: Output) -> str:
+    shape = " as the sc:accepts of its input asks" if output.conforms else ""
+    return signal_in_words(output.signals, output.unit, output.frame) + shape
 
 
 @dataclass(frozen=True, slots=True)

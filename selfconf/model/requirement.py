@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from selfconf.model.profile import WantedSignal
 from selfconf.model.term import IRI
 
 
@@ -25,12 +26,12 @@ class InputFed:
     """
 
     role: IRI
-    signal: IRI
+    wanted: WantedSignal
     input: str | None = None
 
     def __str__(self) -> str:
         port = f" at {self.input!r}" if self.input else ""
-        return f"{self.role.short} gets the {self.signal.short} that it needs{port}"
+        return f"{self.role.short} gets the {self.wanted} that it needs{port}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 import rdflib
 from pyparsing import ParseException
@@ -36,9 +36,12 @@ from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
 from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
+from selfconf.rdf.rdflib_terms import rdflib_term
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
+from selfconf.rdf.turtle import Node
 
+Focus = TypeVar("Focus", bound=Node)
 SHAPE_SECONDS = 120.0
 """Processor time that judging by one shape may take."""
 EXTRA_SECONDS = 0.2
@@ -80,12 +83,12 @@ def violations(
     subjects: rdflib.Graph,
     shapes: rdflib.Graph,
     shape: IRI,
-    focus: Sequence[IRI],
+    focus: Sequence[Focus],
     source: str,
     called: str | None = None,
     detailed: bool = True,
-    sizes: Mapping[IRI, int] | None = None,
-) -> dict[IRI, list[ShapeViolated | NotJudged]]:
+    sizes: Mapping[Focus, int] | None = None,
+) -> dict[Focus, list[ShapeViolated | NotJudged]]:
     """The nodes of `focus` that do not conform to `shape`, each with its violations, one for each property shape.
 
     Conformance is that of SHACL, section 3.4: a result of any severity counts. So does a value that cannot be compared
@@ -102,7 +105,7 @@ def violations(
     try:
         with processor_limit(SHAPE_SECONDS), linear_patterns(), only_ordered(), _silent():
             judge = _Judge(subjects, shapes, shape, detailed)
-            found: dict[IRI, list[ShapeViolated | NotJudged]] = {}
+            found: dict[Focus, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
             for size, node in sorted(sized):
                 wrong = judge.wrong(node, size)
@@ -134,14 +137,14 @@ class _Judge:
         self._shape = validator.shacl_graph.lookup_shape_from_node(rdflib.URIRef(shape))
         list(self._violations(_NOTHING))  # what is at fault with nothing said is the shape
 
-    def size(self, node: IRI) -> int:
+    def size(self, node: Node) -> int:
         """How many values a node has of the property of which it has most: what a query may have to combine."""
         return max(
-            Counter(predicate for _, predicate, _ in self._graph.triples((rdflib.URIRef(node), None, None))).values(),
+            Counter(predicate for _, predicate, _ in self._graph.triples((rdflib_term(node), None, None))).values(),
             default=0,
         )
 
-    def wrong(self, node: IRI, size: int) -> list[ShapeViolated | NotJudged]:
+    def wrong(self, node: Node, size: int) -> list[ShapeViolated | NotJudged]:
         """What keeps a node of some size from conforming; nothing if it conforms."""
         try:
             with self._shares.limit(size):
@@ -157,8 +160,8 @@ class _Judge:
                 return [ShapeViolated("Value cannot be compared")]
             return [NotJudged(f"pySHACL stops at what it says ({reason_of(error)})")]
 
-    def _violations(self, node: IRI) -> Iterable[ShapeViolated]:
-        conforms, results = self._shape.validate(self._executor, self._data, focus=rdflib.URIRef(node))
+    def _violations(self, node: Node) -> Iterable[ShapeViolated]:
+        conforms, results = self._shape.validate(self._executor, self._data, focus=rdflib_term(node))
         return () if conforms and not results else _details(results)
 
 

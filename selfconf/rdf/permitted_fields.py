@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from selfconf.model.number import number_of
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.turtle import SKOLEM
-from selfconf.rdf.vocabulary import SC, TYPE, UNIT, XSD
+from selfconf.rdf.vocabulary import RDF, SC, SH, TYPE, UNIT, XSD
 
 NEXT = " ;\n\t"
 """What Oxigraph writes between two statements about one subject; no term has a line break in it."""
@@ -100,6 +100,12 @@ TRUE_OR_FALSE = ValueKind(
     literal=lambda lexical, datatype: datatype == XSD.boolean and lexical in ("true", "false"),
 )
 NODE = ValueKind("a node with properties", iri=_always, blank=True)
+ACCEPTED_SHAPE = ValueKind("a shape in brackets", blank=True)
+NAMED_OR_TEXT = ValueKind(
+    "an IRI or a string that is not empty",
+    iri=_always,
+    literal=lambda lexical, datatype: datatype == STRING and lexical != "",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,17 +166,51 @@ class Field:
         return self.least <= values and (self.most is None or values <= self.most)
 
 
+_SHAPES = ("property", "node", "not", "qualifiedValueShape")
+_LISTS = ("and", "or", "xone", "in", "languageIn", "ignoredProperties", "alternativePath")
+_PATHS = ("path", "inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
+SHAPE_VALUED = frozenset(SH[name] for name in (*_SHAPES, "and", "or", "xone"))
+"""The predicates of SHACL Core whose values are shapes, or lists of shapes."""
+PERMITTED_IN_SHAPES = frozenset((TYPE, RDF.first, RDF.rest)).union(
+    SH[name]
+    for name in (
+        *_SHAPES, *_LISTS, *_PATHS, "class", "datatype", "nodeKind", "hasValue", "minCount", "maxCount", "pattern",
+        "flags", "minLength", "maxLength", "uniqueLang", "minInclusive", "maxInclusive", "minExclusive",
+        "maxExclusive", "equals", "disjoint", "lessThan", "lessThanOrEquals", "closed", "qualifiedMinCount",
+        "qualifiedMaxCount", "qualifiedValueShapesDisjoint", "name", "description", "message", "severity", "order",
+        "group", "deactivated",
+    )
+)  # fmt: skip
+"""What may be said in the shape of `sc:accepts`: SHACL Core, without targets."""
+
 PORT_NAME = Field(SC.name, TEXT, least=1, distinct=True)
-SIGNAL_TYPE = Field(SC.signalType, RESOURCE, least=1)
+SIGNAL_TYPE = Field(SC.signalType, RESOURCE, most=None)
+PARAMETER_TYPE = Field(SC.parameterType, RESOURCE, least=1)
+PORT = (PORT_NAME, SIGNAL_TYPE, Field(SC.unit, RESOURCE), Field(SC.frame, NAMED_OR_TEXT))
+"""What an input and an output may both say."""
 RATE = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, HERTZ, least=1)))
 DURATION = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, SECOND, least=1)))
 INPUT = Subject(
-    (PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, most=0, into=RATE), Field(SC.depth, COUNT_FROM_ONE)), SC.Input
+    (
+        *PORT,
+        Field(SC.rate, NODE, most=0, into=RATE),
+        Field(SC.depth, COUNT_FROM_ONE),
+        Field(SC.optional, TRUE_OR_FALSE),
+        Field(SC.accepts, ACCEPTED_SHAPE),
+    ),
+    SC.Input,
 )
 OUTPUT = Subject(
-    (PORT_NAME, SIGNAL_TYPE, Field(SC.rate, NODE, into=RATE), Field(SC.depth, COUNT_FROM_ONE, most=0)), SC.Output
+    (
+        *PORT,
+        Field(SC.rate, NODE, into=RATE),
+        Field(SC.depth, COUNT_FROM_ONE, most=0),
+        Field(SC.optional, TRUE_OR_FALSE, most=0),
+        Field(SC.accepts, ACCEPTED_SHAPE, most=0),
+    ),
+    SC.Output,
 )
-PARAMETER = Subject((PORT_NAME, Field(SC.parameterType, RESOURCE, least=1)), SC.OperationalParameter)
+PARAMETER = Subject((PORT_NAME, PARAMETER_TYPE), SC.OperationalParameter)
 GROUNDING = Subject((Field(SC.command, COMMAND_LINE),), SC.Grounding)
 COMPONENT = Subject(
     (
@@ -201,6 +241,8 @@ SETTINGS = {
 """The fields of a component that say one thing each, with the member of its profile that holds it."""
 LINKS = frozenset(field.predicate for subject in COMPONENT.walk() for field in subject.fields if field.into.fields)
 """What leads from a component to what else its profile is made of."""
+SHAPE_LINKS = PERMITTED_IN_SHAPES - {TYPE} | {SC.accepts}
+"""What leads from an input to what the shape that it accepts is made of."""
 STRUCTURE = COMPONENT.predicates | {SC.name, SC.signalType}
 """The predicates that are no properties of a component: those that its profile has fields for, and the name and type
 that only its ports have."""

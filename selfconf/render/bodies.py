@@ -116,7 +116,13 @@ def _additions(repair: Relaxation) -> dict[str, Any]:
                 "role": one.role,
                 "count": one.count,
                 "outputs": [
-                    {**({"name": o.name} if o.name in one.named else {}), "signal": o.signal} for o in one.outputs
+                    {
+                        **({"name": o.name} if o.name in one.named else {}),
+                        **({"signal": o.signals[0]} if o.signals else {}),
+                        **({"unit": o.unit} if o.unit else {}),
+                        **({"frame": value_body(o.frame)} if o.frame else {}),
+                    }
+                    for o in one.outputs
                 ],
                 "values": {name: value_body(value) for name, value in one.values},
             }

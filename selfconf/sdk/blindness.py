@@ -1,7 +1,8 @@
 """What a component does that is blind: it is told, and an actuator rests until it sees again.
 
 An input is unfed from the loss of its last source to the first signal of the next. An actuator, a component without
-outputs, of which an input has been unfed for longer than it tolerates is stopped, and started again by that signal.
+outputs, of which a required input has been unfed for longer than it tolerates is stopped, and started again by that
+signal.
 """
 
 from __future__ import annotations
@@ -15,21 +16,26 @@ TOLERATES = 1.0
 
 
 class Blindness:
-    """The unfed inputs of one component, and whether it rests because of them."""
+    """The unfed inputs of one component, and whether it rests because of those that it requires."""
 
-    def __init__(self, bus: Bus, tolerates: float | None, rest: Callable[[], None]) -> None:
-        """`rest` is called on the bus's thread when an input was unfed for too long; `tolerates` None: never."""
-        self._bus, self._tolerates, self._rest = bus, tolerates, rest
+    def __init__(self, bus: Bus, required: frozenset[str], tolerates: float | None, rest: Callable[[], None]) -> None:
+        """`rest` is called on the bus's thread when a required input was unfed for too long; None: never."""
+        self._bus, self._required, self._tolerates, self._rest = bus, required, tolerates, rest
         self.unfed: dict[str, float] = {}
         """The inputs that are unfed, each with the time since when, by the clock of the bus."""
         self._timer: Undo | None = None
+
+    @property
+    def blind(self) -> bool:
+        """Whether a required input is unfed."""
+        return not self._required.isdisjoint(self.unfed)
 
     def begin(self, port: str) -> bool:
         """Note on the bus's thread that an input is unfed; whether that is new."""
         if port in self.unfed:
             return False
         self.unfed[port] = self._bus.now()
-        if self._timer is None and self._tolerates is not None:
+        if self._timer is None and self._tolerates is not None and port in self._required:
             self._timer = self._bus.later(self._tolerates, self._too_long)
         return True
 
@@ -47,13 +53,16 @@ class Blindness:
         self._look()
 
     def _look(self) -> None:
-        if not self.unfed and self._timer is not None:
+        if not self.blind and self._timer is not None:
             self._timer()
             self._timer = None
 
     def _too_long(self) -> None:
         self._timer = None
-        longest = max((self._bus.now() - since for since in list(self.unfed.values())), default=None)
+        longest = max(
+            (self._bus.now() - since for port, since in list(self.unfed.items()) if port in self._required),
+            default=None,
+        )
         if longest is None or self._tolerates is None:
             return
         if longest < self._tolerates:  # another input was unfed when the timer began, and is fed by now

@@ -54,7 +54,8 @@ class ComponentCode:
         self._rests = 0
         self._on = self._resting = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
-        self._blindness = Blindness(bus, None if profile.outputs else tolerates, self._rest)
+        required = frozenset(port.name for port in profile.required)
+        self._blindness = Blindness(bus, required, None if profile.outputs else tolerates, self._rest)
         self._values: dict[str, Term] = {}
 
     @property
@@ -139,7 +140,7 @@ class ComponentCode:
         if not self.active:
             return
         if self._blindness.end(port):
-            if self._resting and not self._blindness.unfed:
+            if self._resting and not self._blindness.blind:
                 self._wake()
             self._guarded("fed", lambda: self._component.fed(port))
         if not self._resting:
@@ -150,7 +151,7 @@ class ComponentCode:
         turn = self.turn
 
         def rest() -> None:
-            if turn == self.turn and self.active and self._blindness.unfed:
+            if turn == self.turn and self.active and self._blindness.blind:
                 log.warning("%s: an input is unfed; at rest until it is fed", self._name)
                 self._stop()
                 self._rests += 1

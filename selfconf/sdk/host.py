@@ -166,7 +166,9 @@ class Host:
 
 def signal_fields_of(kind: type[Component], profile: Profile) -> Mapping[IRI, SignalFields]:
     """The fields of the signals that a component emits, as its advertisement and the ontologies of selfconf say."""
-    return _signal_fields(kind.advertisement_path(), frozenset(port.signal for port in profile.outputs))
+    return _signal_fields(
+        kind.advertisement_path(), frozenset(signal for port in profile.outputs for signal in port.signals)
+    )
 
 
 @cache

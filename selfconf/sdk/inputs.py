@@ -106,9 +106,10 @@ class Inputs:
 
     def _left_without(self, inputs: Mapping[str, tuple[Wire, ...]]) -> set[str]:
         """The inputs that lose every output they follow, to others of which none has just issued a signal."""
-        before = self._followed_by_port()
-        fresh = [port for port, wires in inputs.items() if before.get(port) and not before[port] & {*wires}]
-        return {port for port in fresh if not any(self._subscriptions[port, wire].heard for wire in inputs[port])}
+        left = [
+            port for port, wires in self._followed_by_port().items() if wires and not wires & {*inputs.get(port, ())}
+        ]
+        return {port for port in left if not any(self._subscriptions[port, w].heard for w in inputs.get(port, ()))}
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""

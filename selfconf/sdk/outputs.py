@@ -47,7 +47,9 @@ class Outputs:
         `fields` are those of the kinds of signals; `malformed` hears what is wrong with a signal that is not issued.
         """
         self._profile, self._active, self._malformed = profile, active, malformed
-        self._fields = {port.name: fields[port.signal] for port in profile.outputs if port.signal in fields}
+        self._fields = {
+            port.name: [fields[signal] for signal in port.signals if signal in fields] for port in profile.outputs
+        }
         self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.outputs}
         self._sequence = itertools.count(1)
         self._last: dict[str, tuple[bytes, bytes]] = {}
@@ -71,10 +73,11 @@ class Outputs:
             raise ProgrammerError(f"{self._profile.component.short} advertises no output {port!r}")
         if not self._active():
             return
-        fields = self._fields.get(port)
+        fields = self._fields[port]
         try:
             packed = as_bytes(value, media)
-            problem = None if fields is None else fields.problem_of_bytes() if packed else fields.problem(value)
+            problems = (one.problem_of_bytes() if packed else one.problem(value) for one in fields)
+            problem = next(filter(None, problems), None)
             if problem is not None:
                 self._malformed(f"what it emits on {port!r} {problem}")
                 return

@@ -174,7 +174,10 @@ def core(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
         return together if lack.wanted == lack.found + 1 else oracle.irreducible(together)
     crowded = exclusive_groups(pruned(given)).crowded
     if crowded:
-        return oracle.irreducible(_among(given, crowded))
+        together = _among(given, crowded)
+        # What arc consistency removed before may have needed an input that a role outside feeds.
+        if oracle.feasible(together) is False:
+            return oracle.irreducible(together)
     if not solver_available():
         return oracle.irreducible(all_of(given))
     return _core_by_deletion(oracle)
@@ -192,7 +195,7 @@ def _among(given: ReducedProblem, roles: Collection[int]) -> tuple[Constraint, .
 
 
 def _sources(given: ReducedProblem, need: int) -> set[int]:
-    return {source for source, _ in given.needs[need].sources}
+    return {source.role for source in given.needs[need].sources}
 
 
 def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tuple[tuple[Constraint, ...], bool]:
@@ -314,7 +317,7 @@ class _Wording:
             cause.role,
             cause.component,
             cause.input,
-            cause.signal,
+            cause.wanted,
             cause.sources,
             self.requirements,
             tuple(consequences),
@@ -347,15 +350,15 @@ class _Wording:
         profile = problem.candidates[role][min(kind.number for kind in kinds)].profile
         unfed = next(
             name
-            for name, signal, _ in profile.inputs
-            if signal == need.signal and problem.feeding(role, name) == need.sources
+            for name, signals, _, optional, condition in profile.inputs
+            if not optional and (signals, condition) == need.wanted and problem.feeding(role, name) == need.sources
         )
-        feeding = [problem.roles[source] for source in dict.fromkeys(source for source, _ in need.sources)]
+        feeding = [problem.roles[source] for source in dict.fromkeys(source.role for source in need.sources)]
         sources = tuple(feeder.iri for feeder in feeding)
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
         signatures = {one for kind in kinds for one in kind.signatures}
         others = sum(map(signatures.__contains__, map(signature, problem.candidates[role]))) - 1
-        return DerivationStep(problem.roles[role].iri, profile.component, others, unfed, need.signal, sources, optional)
+        return DerivationStep(problem.roles[role].iri, profile.component, others, unfed, need.wanted, sources, optional)
 
     def _requirement(self, constraint: Constraint) -> model.Requirement:
         """Return a constraint in the words of the template."""
@@ -364,7 +367,7 @@ class _Wording:
             return model.RolePlayed(problem.roles[constraint.role].iri)
         if isinstance(constraint, Fed):
             need = self.given.needs[constraint.need]
-            return model.InputFed(problem.roles[need.role].iri, need.signal, need.input)
+            return model.InputFed(problem.roles[need.role].iri, need.wanted, need.input)
         if isinstance(constraint, Shared):
             names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
             return model.OneValue(names[problem.variables[constraint.variable].parameter])

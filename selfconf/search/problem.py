@@ -3,7 +3,7 @@
 *Given* roles in their order, for each role its candidates in theirs, and the interactions between roles; *wanted*
 as many distinct components per role as it asks for at least, so that every input of every component is matched by
 an output of a component that plays a role feeding it (component mutual compatibility rule, section 2.3 of the
-paper), and so that each free parameter has a value that all of the components admit.
+paper), unless it is optional, and so that each free parameter has a value that all of the components admit.
 
 *Slots.* A role that asks for at least k components has k slots, which are the variables of a constraint satisfaction
 problem, the candidates being their values; a solution fills every slot. Solutions are compared slot by slot, in the
@@ -12,7 +12,7 @@ strategy can change it: it can only take longer.
 
 *Extension.* A least solution is then extended: as long as there is a candidate that fits, the first one (in the
 order of the roles, then of the candidates) is added, up to the role's maximum. It fits if it plays no role yet, each
-of its inputs is matched, and the free parameters still have a value. Adding a component never unfeeds another.
+of its required inputs is matched, and the free parameters still have a value. Adding a component never unfeeds another.
 """
 
 from __future__ import annotations
@@ -32,8 +32,16 @@ Playing = Sequence[Sequence[Candidate]]
 """For each role, in order, the candidates that play it so far."""
 
 
-Sources = tuple[tuple[int, str | None], ...]
-"""The roles that may feed something, each with the name of the output, if the interaction names one."""
+class Feeder(NamedTuple):
+    """A role that may feed an input; `output` is the name of the output, if the interaction names one."""
+
+    role: int
+    output: str | None = None
+    by_name: bool = False
+    """Whether the interaction names both ports, so that ports without a type are paired as well."""
+
+
+Sources = tuple[Feeder, ...]
 
 
 class Link(NamedTuple):
@@ -100,16 +108,23 @@ class Problem:
 
     def feeding(self, role: int, name: str | None) -> Sources:
         """Return what may feed an input of a role, by its name; None stands for one that no interaction names."""
-        some = [(source, output) for source, output, wanted in self.links[role] if wanted in (None, name)]
+        some = [
+            Feeder(source, output, output is not None and wanted is not None)
+            for source, output, wanted in self.links[role]
+            if wanted in (None, name)
+        ]
         return tuple(dict.fromkeys(some))
 
     def matches(self, output: Output, link: Link, wanted: Input) -> bool:
-        """Return whether an output feeds an input along a link, by the names, where given, and the signal types."""
-        return (
-            (link.output is None or link.output == output.name)
-            and (link.input is None or link.input == wanted.name)
-            and self.hierarchy.matches(output.signal, wanted.signal)
-        )
+        """Return whether an output feeds an input along a link, by the names, where given, and the signal types.
+
+        Where a link names both ports and one of them has no type, the names are enough.
+        """
+        if link.output not in (None, output.name) or link.input not in (None, wanted.name):
+            return False
+        if link.output and link.input and not (output.signals and wanted.signals):
+            return wanted.condition is None or wanted.condition.met_by(output)
+        return self.hierarchy.pairs(output, wanted)
 
     def feeders(self, role: int, wanted: Input, playing: Playing) -> Iterator[tuple[Profile, Output]]:
         """Yield the profiles, with their outputs, that feed an input of a component that plays a role."""
@@ -120,18 +135,27 @@ class Problem:
                         yield candidate.profile, output
 
     def compatible(self, role: int, profile: Profile, playing: Playing) -> bool:
-        """Return whether each input of a sink is matched by an output of a source: the mutual compatibility rule."""
-        if not profile.inputs:
-            return True
+        """Return whether each required input of a sink is matched by an output: the mutual compatibility rule."""
         lacking: dict[IRI, list[str]] = {}
-        for name, signal, _ in profile.inputs:
-            lacking.setdefault(signal, []).append(name)
-        flat, above = self.hierarchy.flat, self.hierarchy.superclasses
+        for wanted in profile.inputs:
+            name, signals, _, optional, condition = wanted
+            if optional:
+                continue
+            if condition is None and len(signals) == 1:
+                lacking.setdefault(signals[0], []).append(name)
+            elif next(self.feeders(role, wanted, playing), None) is None:
+                return False
+        return not lacking or self._fed(role, lacking, playing)
+
+    def _fed(self, role: int, lacking: dict[IRI, list[str]], playing: Playing) -> bool:
+        """Return whether inputs of one type each, by signal and name, are all fed; those that are get lost."""
+        served = self.hierarchy.served
         for source, output, only in self.links[role]:
             for candidate in playing[source]:
-                for name, offered, _ in candidate.profile.outputs:
+                for name, offered, _, _, _, _ in candidate.profile.outputs:
                     if output is None or output == name:
-                        for signal in (offered,) if flat else above(offered):
+                        # Without a type an output feeds the input that is named beside it, whatever that wants.
+                        for signal in served(offered) if offered else tuple(lacking) if output and only else ():
                             if signal in lacking:
                                 _strike_out(lacking, signal, only)
                 if not lacking:

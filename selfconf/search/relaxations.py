@@ -25,7 +25,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition
-from selfconf.model.profile import Output, Ports, Profile
+from selfconf.model.profile import Input, Output, Ports, Profile, WantedSignal
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.relaxation import (
     AcceptNearMiss,
@@ -207,27 +207,28 @@ def wanted_of(problem: Problem, role: int) -> list[tuple[Output, ...]]:
     It issues each signal that the roles fed by it could need; but where an interaction names the output, that output
     has one signal only, so that there is a choice for each.
     """
-    plain: dict[IRI, None] = {}
-    by_name: dict[str, dict[IRI, None]] = {}
+    plain: dict[WantedSignal, None] = {}
+    by_name: dict[str, dict[WantedSignal, None]] = {}
     for sink in problem.sinks[role]:
         for link in problem.links[sink]:
             if link.source == role:
-                signals = plain if link.output is None else by_name.setdefault(link.output, {})
+                wanted = plain if link.output is None else by_name.setdefault(link.output, {})
                 for candidate in problem.candidates[sink]:
-                    signals.update(
-                        (port.signal, None) for port in candidate.profile.inputs if link.input in (None, port.name)
+                    wanted.update(
+                        (port.wanted, None) for port in candidate.profile.required if link.input in (None, port.name)
                     )
     names = set(by_name)
     others = []
-    for signal in plain:
-        name, number = signal.short, 2
+    for one in plain:
+        if not one.signals:
+            continue  # nothing feeds it along an interaction that does not name it
+        stem = name = one.signals[0].short
+        number = 2
         while name in names:
-            name, number = f"{signal.short}{number}", number + 1
+            name, number = f"{stem}{number}", number + 1
         names.add(name)
-        others.append(Output(name, signal))
-    ways = itertools.product(
-        *([Output(name, signal) for signal in signals] for name, signals in by_name.items() if signals)
-    )
+        others.append(one.output(name))
+    ways = itertools.product(*([one.output(name) for one in wanted] for name, wanted in by_name.items() if wanted))
     return [(*others, *chosen) for chosen in itertools.islice(ways, CHOICES)]
 
 
@@ -238,7 +239,7 @@ def _helpful(problem: Problem, budget: Budget) -> list[int]:
         return []
     with budget.portion(HELPFUL_STEPS) as part:
         together = core(FeasibilityOracle(given, part))
-    sources = [s for r in together if isinstance(r, Fed) for s, _ in given.needs[r.need].sources]
+    sources = [s.role for r in together if isinstance(r, Fed) for s in given.needs[r.need].sources]
     played = set(given.slots)
     # Roles that feed come first: of a role that others feed, a component without inputs is less likely to be had.
     found = dict.fromkeys((*sources, *(r.role for r in together if isinstance(r, Played))))
@@ -335,15 +336,16 @@ def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction
             pair = role.iri, need.role
             if number in plain or pair in tried or len(tried) == TRIALS:
                 continue
-            if _issues(problem, number, need.signal):
+            if _issues(problem, number, need):
                 tried.add(pair)
                 yield AddInteraction(*pair)
 
 
-def _issues(problem: Problem, role: int, signal: IRI) -> bool:
-    """Return whether a candidate of a role issues a signal, or one below it."""
+def _issues(problem: Problem, role: int, need: InputFed) -> bool:
+    """Return whether a candidate of a role issues what an input needs."""
+    wanted = Input("", need.wanted.signals, condition=need.wanted.condition)
     return any(
-        problem.hierarchy.matches(output.signal, signal)
+        problem.hierarchy.pairs(output, wanted)
         for candidate in problem.candidates[role]
         for output in candidate.profile.outputs
     )

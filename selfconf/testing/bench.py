@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -47,11 +48,11 @@ class ComponentBench:
         (only,) = self.ecology.advertisements.values()
         self.profile: Profile = only.profile
         self._feeders = {
-            port.name: self.ecology.add(_Feeder(), _probe(f"in{number}", "hasOutput", port.signal))
+            port.name: self.ecology.add(_Feeder(), _probe(f"in{number}", "hasOutput", port.signals))
             for number, port in enumerate(self.profile.inputs)
         }
         self._listeners = {
-            port.name: self.ecology.add(_Listener(), _probe(f"out{number}", "hasInput", port.signal))
+            port.name: self.ecology.add(_Listener(), _probe(f"out{number}", "hasInput", port.signals))
             for number, port in enumerate(self.profile.outputs)
         }
         self._run: MemoryRun | None = None
@@ -141,5 +142,6 @@ def _turtle(value: str | int | float | bool) -> str:
     return Literal(value).turtle(str) if isinstance(value, str) else f"{value!r}{'e0' * isinstance(value, float)}"
 
 
-def _probe(name: str, link: str, signal: IRI) -> str:
-    return PREFIXES + f':{name} a sc:Component, :Probe ; sc:{link} [ sc:name "signal" ; sc:signalType <{signal}> ] .\n'
+def _probe(name: str, link: str, signals: Sequence[IRI]) -> str:
+    types = "".join(f" ; sc:signalType <{signal}>" for signal in signals)
+    return PREFIXES + f':{name} a sc:Component, :Probe ; sc:{link} [ sc:name "signal"{types} ] .\n'

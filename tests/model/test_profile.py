@@ -14,8 +14,8 @@ def test_a_place_is_shown_as_editors_know_it() -> None:
 
 
 def test_ports_are_found_by_name_and_inputs_are_no_outputs() -> None:
-    pose = Output("pose", IRI("urn:Pose"), 5.0)
-    profile = Profile(IRI("urn:c"), ports=Ports((Input("where", IRI("urn:Pose")),), (pose,)))
+    pose = Output("pose", (IRI("urn:Pose"),), 5.0)
+    profile = Profile(IRI("urn:c"), ports=Ports((Input("where", (IRI("urn:Pose"),)),), (pose,)))
     assert profile.output("pose") is pose
     assert profile.output("where") is None
     assert [port.name for port in profile.inputs] == ["where"]
@@ -25,8 +25,8 @@ def test_ports_are_found_by_name_and_inputs_are_no_outputs() -> None:
 @pytest.mark.parametrize(
     ("ports", "parameters", "otherwise"),
     [
-        (Ports(outputs=(Output("pose", IRI("urn:Pose")),)), (), True),
-        (Ports(inputs=(Input("where", IRI("urn:Pose")),)), (), False),
+        (Ports(outputs=(Output("pose", (IRI("urn:Pose"),)),)), (), True),
+        (Ports(inputs=(Input("where", (IRI("urn:Pose"),)),)), (), False),
         (Ports(), (OperationalParameter("goal", IRI("urn:Goal")),), False),
     ],
 )
@@ -49,5 +49,5 @@ def test_where_a_component_is_described_makes_it_no_other_component() -> None:
 
 
 def test_equal_ports_are_one_object() -> None:
-    ports = (Input("where", IRI("urn:Pose")),)
-    assert shared_ports(ports, ()) is shared_ports((Input("where", IRI("urn:Pose")),), ())
+    ports = (Input("where", (IRI("urn:Pose"),)),)
+    assert shared_ports(ports, ()) is shared_ports((Input("where", (IRI("urn:Pose"),)),), ())

@@ -6,6 +6,7 @@ from typing import get_args
 
 import pytest
 
+from selfconf.model.profile import WantedSignal
 from selfconf.model.refusal import (
     Conflict,
     Contradiction,
@@ -22,7 +23,7 @@ from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, RolePlay
 from selfconf.model.term import IRI
 
 EYE, MIND, CAP, IMAGE = (IRI(f"urn:{name}") for name in ("eye", "mind", "cap", "Image"))
-UNFED = InputUnfed(MIND, CAP, "picture", IMAGE, (EYE,))
+UNFED = InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,))
 WORDED: list[tuple[Reason, str]] = [
     (
         Contradiction(EYE, 3, 2),
@@ -44,16 +45,16 @@ WORDED: list[tuple[Reason, str]] = [
         "the input 'picture' (Image) of cap cannot be fed: no candidate of eye issues a Image for it",
     ),
     (
-        InputUnfed(MIND, CAP, "picture", IMAGE, ()),
+        InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), ()),
         "the input 'picture' (Image) of cap cannot be fed: no interaction feeds it in the role mind",
     ),
     (
-        InputUnfed(MIND, CAP, "picture", IMAGE, (EYE,), optional=(EYE,)),
+        InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,), optional=(EYE,)),
         "the input 'picture' (Image) of cap cannot be fed: the role eye asks for nobody (sc:minCount 0)",
     ),
     (Conflict((EYE,), ("room",)), "the role eye cannot be played with one room for all"),
     (
-        Conflict((EYE, MIND), requirements=(OneRoleEach(), InputFed(MIND, IMAGE))),
+        Conflict((EYE, MIND), requirements=(OneRoleEach(), InputFed(MIND, WantedSignal((IMAGE,))))),
         (
             "the roles eye and mind cannot all be played with a different component for each so that mind gets the "
             "Image that it needs"
@@ -94,9 +95,9 @@ def test_a_reason_about_several_roles_belongs_to_the_first() -> None:
 
 @pytest.mark.parametrize(("more", "who"), [(0, "cap"), (1, "cap and one other"), (5, "cap and 5 others")])
 def test_what_follows_is_told_with_how_many_leave_for_it(more: int, who: str) -> None:
-    step = DerivationStep(MIND, CAP, more, "picture", IMAGE, (EYE,))
+    step = DerivationStep(MIND, CAP, more, "picture", WantedSignal((IMAGE,)), (EYE,))
     assert str(step) == f"{who} cannot play the role mind, as nobody left in eye issues a Image"
-    told = InputUnfed(MIND, CAP, "picture", IMAGE, (EYE,), consequences=(step, step))
+    told = InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,), consequences=(step, step))
     assert str(told).split("; so ") == [str(UNFED), str(step), str(step)]
 
 

@@ -27,7 +27,7 @@ def test_a_repair_by_type_says_what_the_component_is_not() -> None:
 
 
 EYE, MIND = iri("eye"), iri("mind")
-IMAGE = Output("image", iri("Image"))
+IMAGE = Output("image", (iri("Image"),))
 WORDED: list[tuple[Relaxation, str]] = [
     (AddComponents((Addition(EYE, 1),)), "add one more component for the role eye"),
     (

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import get_args
 
+from selfconf.model.profile import WantedSignal
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.term import IRI
 
 ROLE, SIGNAL = IRI("urn:mind"), IRI("urn:Image")
 WORDED: dict[Requirement, str] = {
     RolePlayed(ROLE): "mind is played",
-    InputFed(ROLE, SIGNAL): "mind gets the Image that it needs",
-    InputFed(ROLE, SIGNAL, "left"): "mind gets the Image that it needs at 'left'",
+    InputFed(ROLE, WantedSignal((SIGNAL,))): "mind gets the Image that it needs",
+    InputFed(ROLE, WantedSignal((SIGNAL,)), "left"): "mind gets the Image that it needs at 'left'",
     OneValue("room"): "there is one room for all",
     OneRoleEach(): "nobody plays two parts",
 }

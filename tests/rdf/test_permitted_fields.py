@@ -19,6 +19,7 @@ from selfconf.model import term as model
 from selfconf.model.profile import Profile
 from selfconf.rdf.advertisements import reader
 from selfconf.rdf.permitted_fields import (
+    ACCEPTED_SHAPE,
     COMMAND_LINE,
     COMPONENT,
     COUNT,
@@ -28,6 +29,7 @@ from selfconf.rdf.permitted_fields import (
     HERTZ,
     INPUT,
     MOST,
+    NAMED_OR_TEXT,
     NODE,
     NUMBER,
     OUTPUT,
@@ -86,6 +88,15 @@ ASKED: dict[int, set[tuple[str, object]]] = {
     },
     id(TRUE_OR_FALSE): {("in", (Literal(True), Literal(False)))},
     id(NODE): {("nodeKind", SH.BlankNodeOrIRI)},
+    id(ACCEPTED_SHAPE): {("nodeKind", SH.BlankNode)},
+    id(NAMED_OR_TEXT): {
+        (
+            "or",
+            frozenset(
+                (frozenset((("nodeKind", SH.IRI),)), frozenset((("datatype", XSD.string), ("minLength", 1)))),
+            ),
+        )
+    },
 }
 """What a shape asks of a value of each kind."""
 Asked = set[tuple[int, str, str, object]]
@@ -126,6 +137,8 @@ def constraints(shape: Node) -> Iterator[tuple[str, object]]:
             word = str(predicate).removeprefix(str(SH))
             if word == "in":
                 yield word, tuple(Collection(SHAPE, value))
+            elif word == "or":
+                yield word, frozenset(frozenset(constraints(each)) for each in Collection(SHAPE, value))
             else:
                 yield word, value.toPython() if isinstance(value, Literal) else value
 

@@ -9,7 +9,7 @@ from selfconf.model.consequence import Consequence
 from selfconf.model.obstacle import WrongType
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate, NearMiss
-from selfconf.model.profile import Output, Place, Profile
+from selfconf.model.profile import Output, Place, Profile, WantedSignal
 from selfconf.model.refusal import (
     Conflict,
     Contradiction,
@@ -55,13 +55,13 @@ REASONS: tuple[Reason, ...] = (
     Contradiction(SOURCE, 3, 2),
     ValueUnknown(SINK, "room"),
     TooFewEligible(SOURCE, 1, 0, place=Place("tell.ttl", 7)),
-    InputUnfed(SINK, SCREEN, "text", term("Text"), (SOURCE,), place=Place("screen.ttl")),
+    InputUnfed(SINK, SCREEN, "text", WantedSignal((term("Text"),)), (SOURCE,), place=Place("screen.ttl")),
     TooFewDistinct((SOURCE, SINK), 2, 1),
     Conflict((SINK,), ("room",)),
 )
 """A reason of each kind."""
 REPAIRS: tuple[Relaxation, ...] = (
-    AddComponents((Addition(SOURCE, 2, (Output("time", term("Text")),)),)),
+    AddComponents((Addition(SOURCE, 2, (Output("time", (term("Text"),)),)),)),
     AskForFewer(SOURCE, 0),
     AskForOne(SPARE),
     AddInteraction(SOURCE, SINK, place=Place("tell.ttl", 7)),

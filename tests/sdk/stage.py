@@ -33,12 +33,14 @@ CAP, DRIVE, TRACKER = IRI("urn:c:cap"), IRI("urn:c:drive"), IRI("urn:c:tracker")
 XSD = "http://www.w3.org/2001/XMLSchema#"
 CAP_PROFILE = Profile(
     CAP,
-    ports=Ports((Input("position", IRI("urn:s:Pose")),), (Output("velocity", IRI("urn:s:Velocity")),)),
+    ports=Ports((Input("position", (IRI("urn:s:Pose"),)),), (Output("velocity", (IRI("urn:s:Velocity"),)),)),
     parameters=(OperationalParameter("goal", IRI("urn:p:Goal")),),
 )
-DRIVE_PROFILE = Profile(DRIVE, ports=Ports((Input("position", IRI("urn:s:Pose")),)), parameters=CAP_PROFILE.parameters)
+DRIVE_PROFILE = Profile(
+    DRIVE, ports=Ports((Input("position", (IRI("urn:s:Pose"),)),)), parameters=CAP_PROFILE.parameters
+)
 """An actuator: it has no outputs."""
-TRACKER_PROFILE = Profile(TRACKER, ports=Ports(outputs=(Output("pose", IRI("urn:s:Pose")),)))
+TRACKER_PROFILE = Profile(TRACKER, ports=Ports(outputs=(Output("pose", (IRI("urn:s:Pose"),)),)))
 
 
 class Stage:
@@ -84,7 +86,7 @@ class Stage:
 
     def neighbour(self, rate: float | None = None, life: str = "life-t") -> ComponentRuntime:
         """A tracker that is active."""
-        profile = Profile(TRACKER, ports=Ports(outputs=(Output("pose", IRI("urn:s:Pose"), rate),)))
+        profile = Profile(TRACKER, ports=Ports(outputs=(Output("pose", (IRI("urn:s:Pose"),), rate),)))
         runtime = ComponentRuntime(self.network.node(), KEYS, profile, Component(), life)
         replies: list[Replies] = []
         self.caller.ask(KEYS.call(TRACKER, "apply"), encode(apply()), 1.0, replies.append)

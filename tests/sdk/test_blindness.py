@@ -140,7 +140,7 @@ def test_an_actuator_that_is_released_while_it_is_blind_is_stopped_once() -> Non
 
 
 def test_each_input_may_be_unfed_for_that_long_by_itself() -> None:
-    inputs = (Input("left", IRI("urn:s:Pose")), Input("right", IRI("urn:s:Pose")))
+    inputs = (Input("left", (IRI("urn:s:Pose"),)), Input("right", (IRI("urn:s:Pose"),)))
     stage = Stage(Driving(), replace(DRIVE_PROFILE, ports=Ports(inputs)))
     wires = {"left": (Wire(TRACKER, "pose"),), "right": (Wire(IRI("urn:c:other"), "pose"),)}
     left = stage.neighbour()

@@ -257,7 +257,7 @@ class Slow:
     def __init__(self, period: float | None = None, depth: int | None = None) -> None:
         self.network, self.code = Network(), CodeThread(inline=False)
         self.heard: list[Any] = []
-        profile = replace(CAP_PROFILE, ports=Ports((Input("position", IRI("urn:s:Pose"), depth),)))
+        profile = replace(CAP_PROFILE, ports=Ports((Input("position", (IRI("urn:s:Pose"),), depth),)))
         events = InputEvents(lambda port, signal: self.heard.append(signal.value), lambda *_: None, lambda _: None)
         self.inputs = Inputs(self.network.node(), KEYS, self.code, profile, events)
         self.inputs.follow(follow(period=period))

@@ -146,7 +146,7 @@ def test_every_new_follower_gets_the_last_signal_though_others_follow_already() 
 
 
 def test_an_output_that_is_asked_for_its_last_signal_answers_for_itself_and_only_while_it_acts() -> None:
-    stage = Stage(profile=replace(CAP_PROFILE, ports=Ports((), (Output("a", POSE), Output("b", POSE)))))
+    stage = Stage(profile=replace(CAP_PROFILE, ports=Ports((), (Output("a", (POSE,)), Output("b", (POSE,))))))
     replies: list[Replies] = []
 
     def last(port: str) -> list[bytes]:

@@ -12,18 +12,25 @@ from collections.abc import Iterator
 import clingo
 
 from selfconf.model.partition import ANY_VALUE
+from selfconf.model.profile import Profile
 from selfconf.search.problem import Problem
 
 RULES = """
 K { plays(R,N) : candidate(R,N,_) } K :- role(R,K).
 :- component(C), 2 { plays(R,N) : candidate(R,N,C) }.
-fed(R,N,I) :- plays(R,N), candidate(R,N,C), input(C,I,T), feeds(Q,O,R,I), issues(Q,O,T).
-issues(Q,O,U) :- plays(Q,N), candidate(Q,N,C), output(C,O,T), at_or_below(T,U).
-feeds(Q,O,R,I) :- link(Q,R), output(_,O,_), input(_,I,_).
-feeds(Q,O,R,I) :- link_from(Q,O,R), input(_,I,_).
-feeds(Q,O,R,I) :- link_to(Q,R,I), output(_,O,_).
+fed(R,N,I) :- plays(R,N), candidate(R,N,C), input(C,I), takes(C,I,T), feeds(Q,O,R,I), issues(Q,D,O,T),
+    not unfit(D,O,C,I).
+fed(R,N,I) :- plays(R,N), candidate(R,N,C), input(C,I), link_between(Q,O,R,I), plays(Q,M), candidate(Q,M,D),
+    output(D,O), not both_typed(D,O,C,I), not unfit(D,O,C,I).
+both_typed(D,O,C,I) :- of(D,O,_), takes(C,I,_).
+issues(Q,C,O,U) :- plays(Q,N), candidate(Q,N,C), of(C,O,T), at_or_below(T,U).
+unfit(D,O,C,I) :- stated(D,O,K,V), asked(C,I,K,W), V != W.
+unfit(D,O,C,I) :- accepts(C,I,S), output(D,O), not conforms(D,O,S).
+feeds(Q,O,R,I) :- link(Q,R), output(_,O), input(_,I).
+feeds(Q,O,R,I) :- link_from(Q,O,R), input(_,I).
+feeds(Q,O,R,I) :- link_to(Q,R,I), output(_,O).
 feeds(Q,O,R,I) :- link_between(Q,O,R,I).
-:- plays(R,N), candidate(R,N,C), input(C,I,_), not fed(R,N,I).
+:- plays(R,N), candidate(R,N,C), input(C,I), not optional(C,I), not fed(R,N,I).
 1 { value(V,K) : domain(V,K) } 1 :- variable(V).
 :- plays(R,N), constrained(R,N,V), value(V,K), not allows(R,N,V,K).
 #maximize { 1@L : plays(R,N), level(R,N,L) }.
@@ -65,9 +72,8 @@ def _facts(problem: Problem) -> Iterator[str]:
             if profile.component not in described:
                 described.add(profile.component)
                 yield f"component({name})."
-                yield from (f'input({name},"{port.name}","{port.signal}").' for port in profile.inputs)
-                yield from (f'output({name},"{port.name}","{port.signal}").' for port in profile.outputs)
-                signals |= {port.signal for port in profile.outputs}
+                yield from _port_facts(profile)
+                signals |= {signal for port in profile.outputs for signal in port.signals}
     for signal in signals:
         yield from (f'at_or_below("{signal}","{above}").' for above in hierarchy.superclasses(signal))
     for interaction in task.template.interactions:
@@ -91,3 +97,24 @@ def _values(problem: Problem, variable: int) -> range:
     one = problem.variables[variable]
     is_set = any(p.is_set for p in problem.task.template.parameters if p.iri == one.parameter)
     return range(len(one.domain) + (not is_set))
+
+
+def _port_facts(profile: Profile) -> Iterator[str]:
+    """The ports of a component: their types, what they state of unit and frame, and the shapes."""
+    for port in profile.inputs:
+        name = f'"{profile.component}","{port.name}"'
+        yield f"input({name})."
+        yield from (f'takes({name},"{signal}").' for signal in port.signals)
+        if port.optional:
+            yield f"optional({name})."
+        unit, frame, shape = port.condition or (None, None, None)
+        yield from (f'asked({name},{kind},"{value}").' for kind, value in (("unit", unit), ("frame", frame)) if value)
+        if shape:
+            yield f'accepts({name},"{shape}").'
+    for output in profile.outputs:
+        name = f'"{profile.component}","{output.name}"'
+        yield f"output({name})."
+        yield from (f'of({name},"{signal}").' for signal in output.signals)
+        stated = (("unit", output.unit), ("frame", output.frame))
+        yield from (f'stated({name},{kind},"{value}").' for kind, value in stated if value)
+        yield from (f'conforms({name},"{shape}").' for shape in output.conforms)

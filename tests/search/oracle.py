@@ -8,6 +8,7 @@ from itertools import combinations, product
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.partition import Candidate, Partition, Variable
+from selfconf.model.profile import Input, Output
 from selfconf.model.template import Role, Task
 from selfconf.model.term import IRI
 
@@ -37,7 +38,8 @@ class World:
                                 continue
                             if interaction.input not in (None, wanted.name):
                                 continue
-                            if wanted.signal in self.hierarchy.superclasses(output.signal):
+                            named = interaction.output is not None and interaction.input is not None
+                            if self.feeds(output, wanted, named):
                                 found.add(
                                     Connection(
                                         source.profile.component,
@@ -48,6 +50,18 @@ class World:
                                 )
         return found
 
+    def feeds(self, output: Output, wanted: Input, named: bool) -> bool:
+        """Return whether types, unit, frame and shape let an output feed an input; `named` if both names are given."""
+        served = set[IRI]().union(*[self.hierarchy.superclasses(signal) for signal in output.signals])
+        if not served & set(wanted.signals) and not (named and (not output.signals or not wanted.signals)):
+            return False
+        if wanted.condition is None:
+            return True
+        agree = [(wanted.condition.unit, output.unit), (wanted.condition.frame, output.frame)]
+        if any(asked is not None and stated is not None and asked != stated for asked, stated in agree):
+            return False
+        return wanted.condition.accepts is None or wanted.condition.accepts in output.conforms
+
     def unfed(self, players: Sequence[Sequence[Candidate]]) -> list[tuple[IRI, str]]:
         """The inputs of players that nothing is connected to."""
         fed = {(c.sink, c.input) for c in self.connections(players)}
@@ -56,7 +70,7 @@ class World:
             for role in players
             for candidate in role
             for wanted in candidate.profile.inputs
-            if (candidate.profile.component, wanted.name) not in fed
+            if not wanted.optional and (candidate.profile.component, wanted.name) not in fed
         ]
 
     def values(self, players: Sequence[Sequence[Candidate]]) -> list[set[int] | None]:

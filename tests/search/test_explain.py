@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 
 from selfconf.model.partition import ANY_VALUE, Candidate
+from selfconf.model.profile import WantedSignal
 from selfconf.model.refusal import Refusal
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.search.engines import clause_learning
@@ -48,10 +49,10 @@ def _holds(world: World, players: tuple[tuple[Candidate, ...], ...], wanted: set
             if not common:
                 return False
     unfed = _unfed(world, players)
-    return not any(need in unfed for r in wanted if isinstance(r, InputFed) for need in ((r.role, r.signal, r.input),))
+    return not any(need in unfed for r in wanted if isinstance(r, InputFed) for need in ((r.role, r.wanted, r.input),))
 
 
-def _unfed(world: World, players: tuple[tuple[Candidate, ...], ...]) -> set[tuple[str, str, str | None]]:
+def _unfed(world: World, players: tuple[tuple[Candidate, ...], ...]) -> set[tuple[str, WantedSignal, str | None]]:
     found = set()
     for role, chosen in zip(world.roles, players, strict=True):
         named = any(i.input for i in world.template.interactions if i.sink == role.iri)
@@ -61,22 +62,23 @@ def _unfed(world: World, players: tuple[tuple[Candidate, ...], ...]) -> set[tupl
                     i for i in world.template.interactions if i.sink == role.iri and i.input in (None, wanted.name)
                 ]
                 fed = any(
-                    wanted.signal in world.hierarchy.superclasses(output.signal) and link.output in (None, output.name)
+                    link.output in (None, output.name) and world.feeds(output, wanted, bool(link.output and link.input))
                     for link in links
                     for source in players[world.place[link.source]]
                     for output in source.profile.outputs
                 )
-                if not fed:
+                if not fed and not wanted.optional:
                     # Inputs that the same links feed are one requirement, named after any of them.
                     same = [
                         i.name
                         for c in world.candidates[world.place[role.iri]]
                         for i in c.profile.inputs
-                        if i.signal == wanted.signal
+                        if i.wanted == wanted.wanted
+                        and not i.optional
                         and [k for k in world.template.interactions if k.sink == role.iri and k.input in (None, i.name)]
                         == links
                     ]
-                    found |= {(role.iri, wanted.signal, name if named else None) for name in same}
+                    found |= {(role.iri, wanted.wanted, name if named else None) for name in same}
     return found
 
 
@@ -100,6 +102,12 @@ def _check(problem: Problem) -> None:
 @agreement()
 def test_a_reason_is_irreducible(problem: Problem) -> None:
     _check(problem)
+
+
+def test_roles_that_are_crowded_because_of_what_a_third_could_feed_are_no_reason_alone() -> None:
+    everyone = [component("c0"), component("c1", "p:S"), component("c2", "p:S")]
+    roles = {"r0": everyone, "r1": everyone, "r2": everyone}
+    _check(problem(roles, "r0>r0 r0>r1 r0>r2 r1>r0 r2>r0"))
 
 
 @given(problems(roles=3, components=4))

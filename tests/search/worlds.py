@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
-from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
+from selfconf.model.profile import Condition, Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
@@ -41,8 +41,8 @@ def component(name: str, inputs: str = "", outputs: str = "", preference: int = 
     return Profile(
         iri(name),
         ports=Ports(
-            tuple(Input(port, iri(signal)) for port, signal in _ports(inputs)),
-            tuple(Output(port, iri(signal)) for port, signal in _ports(outputs)),
+            tuple(Input(port, (iri(signal),)) for port, signal in _ports(inputs)),
+            tuple(Output(port, (iri(signal),)) for port, signal in _ports(outputs)),
         ),
         parameters=(OperationalParameter("goal", iri("Goal")),),
         preference=Decimal(preference),
@@ -97,6 +97,14 @@ def _mask(values: Mapping[str, Mapping[str, int]] | None, role: str, profile: Pr
 
 SIGNALS = [iri(name) for name in ("S", "T", "U", "V")]
 CLASSES = [*SIGNALS, iri("Goal")]
+PLAIN = ["plain"] * 6
+"""Most ports are plain: of one type, with no condition."""
+SOLVABLE = [*PLAIN, "more", "optional", "unit", "frame", "shape"]
+"""Kinds of ports that do not keep apart who is meant to feed whom."""
+ODD = [*SOLVABLE, "other", "untyped"]
+UNITS = [iri("M"), iri("CM")]
+FRAMES = [Literal("map"), Literal("base")]
+SHAPE = "[ <urn:test:path> <urn:test:value> ]"
 NAMES = ["p", "q", "r"]
 FURTHER = ascii_lowercase[ascii_lowercase.index("s") :]
 """Names for the outputs that a cast needs beyond those it happens to have."""
@@ -106,7 +114,7 @@ Cast = Sequence[Sequence[int]]
 
 
 @st.composite
-def problems(draw: st.DrawFn, roles: int = 4, components: int = 5) -> Problem:
+def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool = False) -> Problem:
     """Problems small enough to enumerate, with everything that a template can say.
 
     Roles share candidates and order them each in their own way; components may share what is equal of their ports;
@@ -115,8 +123,10 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5) -> Problem:
 
     Every other problem is made around a cast: for each role as many components of their own as it asks for, which
     issue what their inputs need and allow a common value of each parameter. So it has a solution. All else is noise.
+    With `plain` each port has one type, each input must be fed, and none states a condition.
     """
     solvable = draw(st.booleans())
+    kinds_of_port = PLAIN[:1] if plain else SOLVABLE if solvable else ODD
     shared: dict[Ports, Ports] | None = {} if draw(st.booleans()) else None
     count = draw(st.integers(1, roles))
     signals = st.sampled_from(SIGNALS[: draw(st.integers(1, 4))])
@@ -154,8 +164,8 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5) -> Problem:
             iri(f"c{k}"),
             ports=_once(
                 Ports(
-                    tuple(Input(*one) for one in sorted(wanted.items())),
-                    tuple(Output(*one) for one in sorted(issued.items())),
+                    tuple(_input(draw, *one, kinds_of_port) for one in sorted(wanted.items())),
+                    tuple(_output(draw, *one, kinds_of_port) for one in sorted(issued.items())),
                 ),
                 shared,
             ),
@@ -170,6 +180,37 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5) -> Problem:
     )
     task = Task(template, {iri("goal"): Literal("(AT BEDROOM)")})
     return Problem(task, Partition(candidates, variables), hierarchy)
+
+
+def _input(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Input:
+    """Return an input that takes a signal, perhaps others, perhaps nothing, and perhaps on a condition."""
+    kind = draw(st.sampled_from(kinds))
+    unit, frame = _stated(draw, kind)
+    condition = Condition(unit, frame, SHAPE if kind == "shape" else None)
+    signals = {signal, draw(st.sampled_from(SIGNALS))} if kind == "more" else {signal}
+    return Input(
+        name,
+        () if kind == "untyped" else tuple(sorted(signals)),
+        None,
+        kind == "optional",
+        None if condition == Condition() else condition,
+    )
+
+
+def _output(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Output:
+    """Return an output of a signal, perhaps of others too, which states a unit or a frame or not."""
+    kind = draw(st.sampled_from(kinds))
+    unit, frame = _stated(draw, kind)
+    conforms = frozenset((SHAPE,) if "other" not in kinds or draw(st.booleans()) else ())
+    signals = {signal, draw(st.sampled_from(SIGNALS))} if kind == "more" else {signal}
+    return Output(name, () if kind == "untyped" else tuple(sorted(signals)), None, unit, frame, conforms)
+
+
+def _stated(draw: st.DrawFn, kind: str) -> tuple[IRI | None, Term | None]:
+    """Return the unit and the frame that a port of some kind states."""
+    number = int(kind == "other")
+    which = draw(st.sampled_from(["unit", "frame"])) if number else kind
+    return (UNITS[number] if which == "unit" else None), (FRAMES[number] if which == "frame" else None)
 
 
 def _once(ports: Ports, shared: dict[Ports, Ports] | None) -> Ports:
@@ -281,10 +322,10 @@ def rivalries(draw: st.DrawFn, roles: int = 5, values: int = 4) -> Problem:
         differ = draw(st.booleans())
         for value in domains[sink]:
             signal = iri(f"s{source}.{sink}.{value}")
-            inputs.setdefault((sink, value), []).append(Input(f"from{source}", signal))
+            inputs.setdefault((sink, value), []).append(Input(f"from{source}", (signal,)))
             for other in domains[source]:
                 if value != other if differ else draw(st.integers(0, 3)):
-                    outputs.setdefault((source, other), []).append(Output(f"to{sink}.{value}", signal))
+                    outputs.setdefault((source, other), []).append(Output(f"to{sink}.{value}", (signal,)))
     candidates = []
     for role, domain in enumerate(domains):
         some = []

@@ -3,9 +3,11 @@
 `read_advertisements` is the one road from text to advertisements; documents may share a `SegmentCache`. An
 `Advertisement` is what is said about one component, as a profile and as triples; a `MalformedAdvertisement` is one that
 does not conform, and why. `LoadedAdvertisement` also shares its statements with others. What an advertisement may say
-stands in `selfconf.rdf.permitted_fields`.
+stands in `selfconf.rdf.permitted_fields`; the shape that an input accepts is read by `accepted_shape` and
+`statements_of_shape`, which raise `ShapeNotAccepted`.
 """
 
+from selfconf.rdf.advertisements.accepted_shapes import ShapeNotAccepted, accepted_shape, statements_of_shape
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.advertisements.loader import LoadedAdvertisement, read_advertisements
 from selfconf.rdf.advertisements.segments import SegmentCache
@@ -15,5 +17,8 @@ __all__ = [
     "LoadedAdvertisement",
     "MalformedAdvertisement",
     "SegmentCache",
+    "ShapeNotAccepted",
+    "accepted_shape",
     "read_advertisements",
+    "statements_of_shape",
 ]

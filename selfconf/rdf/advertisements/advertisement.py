@@ -3,7 +3,8 @@
 A document may hold several components. The advertisement of one is every statement that can be reached from it,
 through blank nodes and through named things that are not themselves components (a place, a robot), but not through
 its types: what a class means is for ontologies to say. An advertisement therefore speaks for its own component
-alone, and statements that would change what shapes or classes mean are left out of it, whichever site serves it.
+alone, and statements that would change what shapes or classes mean are left out of it, whichever site serves it; but
+for the shape that an input `sc:accepts`, which judges what feeds its own component and nothing else.
 """
 
 from __future__ import annotations
@@ -15,8 +16,9 @@ from dataclasses import dataclass
 
 from selfconf.model.profile import Place, Profile
 from selfconf.model.term import IRI, BlankNode, Literal, Term, sort_key
+from selfconf.rdf.permitted_fields import PERMITTED_IN_SHAPES
 from selfconf.rdf.turtle import Document, Node, Triple
-from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SH, TYPE
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, TYPE
 
 AXIOMS = frozenset((RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range))
 _SHAPES_AND_AXIOMS = (OWL.base, SH.base)
@@ -123,12 +125,18 @@ def about(document: Document, component: Node, components: frozenset[Node]) -> I
     """The statements that the advertisement of a component makes."""
     waiting: list[Node] = [component]
     seen: set[Term] = {component}
+    shapes: set[Term] = set()
     while waiting:
         subject = waiting.pop()
+        in_shape = subject in shapes
         for predicate, value in document.statements.get(subject, ()):
-            if not allowed(predicate, value):
+            if not (predicate in PERMITTED_IN_SHAPES if in_shape else allowed(predicate, value)):
                 continue
             yield subject, predicate, value
+            if in_shape and not isinstance(value, BlankNode):
+                continue  # a shape names classes and values, and says nothing of them
+            if in_shape or predicate == SC.accepts:
+                shapes.add(value)
             if predicate == TYPE or isinstance(value, Literal) or value in seen or value in components:
                 continue
             seen.add(value)

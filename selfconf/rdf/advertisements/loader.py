@@ -31,13 +31,14 @@ from selfconf.rdf.advertisements.statement_table import (
     StatementTable,
     bracketed,
 )
-from selfconf.rdf.permitted_fields import LINKS, NEXT, SETTINGS
+from selfconf.rdf.permitted_fields import LINKS, NEXT, SETTINGS, SHAPE_LINKS
 from selfconf.rdf.turtle import SKOLEM, Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
 
 Keyed = tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]
 _NAME = attrgetter("name")
 _SETTINGS = {f"<{predicate}>": member for predicate, member in SETTINGS.items()}
+_LINKS = LINKS | SHAPE_LINKS
 _NONE: frozenset[IRI] = frozenset()
 
 
@@ -299,7 +300,7 @@ def _judged(
             types = next(statement.types for statement in statements if statement.types)
             good.append(LinkedAdvertisement(IRI(subject[1:-1]), types, statements, origin, tuple(said)))
             continue
-        ((component, profile, problems),) = advertisements.profiles(origin.document(subject, said, LINKS))
+        ((component, profile, problems),) = advertisements.profiles(origin.document(subject, said, _LINKS))
         if profile is None or problems:
             bad.append(MalformedAdvertisement(component, origin.place, problems))
         else:

@@ -11,8 +11,18 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 from selfconf.model.number import number
-from selfconf.model.profile import NO_PREFERENCE, Input, OperationalParameter, Output, Place, Profile, shared_ports
+from selfconf.model.profile import (
+    NO_PREFERENCE,
+    Condition,
+    Input,
+    OperationalParameter,
+    Output,
+    Place,
+    Profile,
+    shared_ports,
+)
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.advertisements.accepted_shapes import ShapeNotAccepted, accepted_shape
 from selfconf.rdf.advertisements.advertisement import (
     Advertisement,
     MalformedAdvertisement,
@@ -21,7 +31,17 @@ from selfconf.rdf.advertisements.advertisement import (
     allowed,
     property_order,
 )
-from selfconf.rdf.permitted_fields import COMPONENT, PORT_NAME, STRUCTURE, Field, Subject
+from selfconf.rdf.permitted_fields import (
+    COMPONENT,
+    INPUT,
+    OUTPUT,
+    PARAMETER_TYPE,
+    PORT_NAME,
+    SIGNAL_TYPE,
+    STRUCTURE,
+    Field,
+    Subject,
+)
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
 
@@ -60,18 +80,13 @@ class _Reader:
             return None
         statements = self.document.statements[self.component]
         types = self._types()
-        inputs = []
-        for name, signal, node in self._named(COMPONENT[SC.hasInput]):
-            inputs.append(Input(name, signal, self._depth(node, name)))
-            if self.document.values(node, SC.rate):
-                self._problem(f"only an output promises a sc:rate, and {name!r} is an input")
-        outputs = []
-        for name, signal, node in self._named(COMPONENT[SC.hasOutput]):
-            rate = COMPONENT[SC.hasOutput].into[SC.rate]
-            outputs.append(Output(name, signal, self._quantity(node, rate, f"the sc:rate of output {name!r}")))
-            if self.document.values(node, SC.depth):
-                self._problem(f"only an input has a sc:depth, and {name!r} is an output")
-        parameters = [OperationalParameter(name, kind) for name, kind, _ in self._named(COMPONENT[SC.hasParameter])]
+        inputs = [self._input(name, node) for name, node in self._named(COMPONENT[SC.hasInput])]
+        outputs = [self._output(name, node) for name, node in self._named(COMPONENT[SC.hasOutput])]
+        parameters = [
+            OperationalParameter(name, kind)
+            for name, node in self._named(COMPONENT[SC.hasParameter])
+            if (kind := self._parameter_type(name, node)) is not None
+        ]
         return Profile(
             component=self.component,
             types=types,
@@ -100,21 +115,81 @@ class _Reader:
             self.problems.append("a component needs a type of its own besides sc:Component")
         return frozenset(value for value in values if isinstance(value, IRI) and allowed(TYPE, value))
 
-    def _named(self, link: Field) -> Iterator[tuple[str, IRI, Term]]:
-        """Name, type and node of each port or parameter; a problem for each that lacks one or repeats a name."""
-        (kind,) = (field for field in link.into.fields if field.least and field is not PORT_NAME)
+    def _named(self, link: Field) -> Iterator[tuple[str, Term]]:
+        """Name and node of each port or parameter; a problem for each that lacks a name or repeats one."""
         names: set[str] = set()
         for node in self.document.values(self.component, link.predicate):
-            name, type_ = self._required(node, PORT_NAME), self._required(node, kind)
+            name = self._required(node, PORT_NAME)
             if not isinstance(name, Literal):
                 self._problem(f"{_word(link.predicate)} needs {_one_of(PORT_NAME)}")
-            elif not isinstance(type_, IRI):
-                self._problem(f"{_word(link.predicate)} {name.lexical!r} needs {_one_of(kind)}")
-            else:
-                if PORT_NAME.distinct and name.lexical in names:
-                    self._problem(f"the name {name.lexical!r} stands for two values of {_word(link.predicate)}")
-                names.add(name.lexical)
-                yield name.lexical, type_, node
+                continue
+            if PORT_NAME.distinct and name.lexical in names:
+                self._problem(f"the name {name.lexical!r} stands for two values of {_word(link.predicate)}")
+            names.add(name.lexical)
+            self._look_for_misplaced(link, node, name.lexical)
+            yield name.lexical, node
+
+    def _look_for_misplaced(self, link: Field, node: Term, name: str) -> None:
+        """Note what only a port of the other direction says."""
+        for field in link.into.fields:
+            if field.most == 0 and self.document.values(node, field.predicate):
+                here, there = ("input", "output") if link.into is INPUT else ("output", "input")
+                self._problem(f"only an {there} has a {_word(field.predicate)}, and {name!r} is an {here}")
+
+    def _parameter_type(self, name: str, node: Term) -> IRI | None:
+        type_ = self._required(node, PARAMETER_TYPE)
+        if isinstance(type_, IRI):
+            return type_
+        self._problem(f"{_word(SC.hasParameter)} {name!r} needs {_one_of(PARAMETER_TYPE)}")
+        return None
+
+    def _input(self, name: str, node: Term) -> Input:
+        unit, frame = self._unit(node, name), self._field_of_port(node, name, INPUT[SC.frame])
+        accepts = self._accepts(node, name)
+        optional = self._field_of_port(node, name, INPUT[SC.optional])
+        depth = self._field_of_port(node, name, INPUT[SC.depth])
+        return Input(
+            name,
+            self._signals(node, name),
+            int(depth.lexical) if isinstance(depth, Literal) else None,
+            isinstance(optional, Literal) and optional.lexical == "true",
+            Condition(unit, frame, accepts) if unit or frame or accepts else None,
+        )
+
+    def _output(self, name: str, node: Term) -> Output:
+        rate = self._quantity(node, OUTPUT[SC.rate], f"the sc:rate of output {name!r}")
+        frame = self._field_of_port(node, name, OUTPUT[SC.frame])
+        return Output(name, self._signals(node, name), rate, self._unit(node, name), frame)
+
+    def _signals(self, node: Term, name: str) -> tuple[IRI, ...]:
+        values = self.document.values(node, SIGNAL_TYPE.predicate)
+        if not all(map(SIGNAL_TYPE.kind.allows, values)):
+            self._problem(f"the {_word(SIGNAL_TYPE.predicate)} of {name!r} is {SIGNAL_TYPE.kind.words}")
+        return tuple(sorted(value for value in values if isinstance(value, IRI)))
+
+    def _unit(self, node: Term, name: str) -> IRI | None:
+        unit = self._field_of_port(node, name, INPUT[SC.unit])
+        return unit if isinstance(unit, IRI) else None
+
+    def _field_of_port(self, node: Term, name: str, field: Field) -> Term | None:
+        """The value of a field that a port need not have; a problem if it is there and not in order."""
+        if not self.document.values(node, field.predicate):
+            return None
+        value = self._required(node, field)
+        if value is None:
+            self._problem(f"the {_word(field.predicate)} of {name!r} is {field.kind.words}, if it is there at all")
+        return value
+
+    def _accepts(self, node: Term, name: str) -> str | None:
+        """The text of the shape that an input accepts, if it states one."""
+        shape = self._field_of_port(node, name, INPUT[SC.accepts])
+        if shape is None:
+            return None
+        try:
+            return accepted_shape(self.document, shape)
+        except ShapeNotAccepted as error:
+            self._problem(f"the sc:accepts of input {name!r} is no shape that an advertisement may hold: {error}")
+            return None
 
     def _required(self, node: Term, field: Field) -> Term | None:
         """The value of a field that has exactly one, if it is of the kind that the field takes."""
@@ -151,16 +226,6 @@ class _Reader:
     def _restarts(self) -> int | None:
         value = self._setting(COMPONENT[SC.restarts])
         return None if value is None else int(value.lexical)
-
-    def _depth(self, port: Term, name: str) -> int | None:
-        field = COMPONENT[SC.hasInput].into[SC.depth]
-        if not self.document.values(port, field.predicate):
-            return None
-        value = self._required(port, field)
-        if isinstance(value, Literal):
-            return int(value.lexical)
-        self._problem(f"the sc:depth of input {name!r} is {field.kind.words}, if it is there at all")
-        return None
 
     def _quantity(self, node: Term, field: Field, what: str) -> float | None:
         """The number of a rate or of a duration, if there is one; a problem if it is not in order."""

@@ -8,13 +8,23 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal
 from typing import NamedTuple
 
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf import turtle
-from selfconf.rdf.permitted_fields import COMPONENT, GROUNDING, NEXT, PORT_NAME, PORTS, Field
+from selfconf.rdf.permitted_fields import (
+    COMPONENT,
+    GROUNDING,
+    NEXT,
+    PARAMETER_TYPE,
+    PORT_NAME,
+    PORTS,
+    SIGNAL_TYPE,
+    Field,
+)
 from selfconf.rdf.vocabulary import RDF, SC, XSD
 
 SUBJECT = IRI("urn:selfconf:component")
@@ -27,6 +37,8 @@ _SIMPLE = re.compile(
     r"|(?P<decimal>[+-]?[0-9]*\.[0-9]+)"
     r")"
 )
+_RARE = frozenset((SC.frame, SC.optional, SC.accepts))
+"""What few ports say of themselves: it is read carefully."""
 _KINDS = r"a <[^<>]*>(?: , <[^<>]*>)*"
 _VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)?|[+-]?[0-9]+|[+-]?[0-9]*\.[0-9]+)'
 
@@ -45,9 +57,9 @@ class _PortPattern(NamedTuple):
     @classmethod
     def of(cls, link: Field) -> _PortPattern:
         """The pattern from the table."""
-        fields = link.into.fields
-        (kind,) = (field.predicate for field in fields if field.least and field is not PORT_NAME)
+        fields = _recognised(link)
         allowed = [field.turtle for field in fields if field.most != 0]
+        (kind,) = (field.predicate for field in fields if field.least and field is not PORT_NAME)
         groups = SC.name.short, kind.short, SC.value.short, SC.depth.short
         there = "".join(allowed)  # where there is no rate or no depth, a group for it matches nothing
         allowed += [f"(?P<{group}>(?!))" for group in groups if f"(?P<{group}>" not in there]
@@ -63,6 +75,18 @@ class _PortPattern(NamedTuple):
         )
 
 
+def _recognised(link: Field) -> list[Field]:
+    """The fields of a port, or of an operational parameter, as far as they are recognised: with exactly one type."""
+    found = []
+    for field in link.into.fields:
+        if field in (SIGNAL_TYPE, PARAMETER_TYPE):
+            found.append(replace(field, least=1, most=1))
+        elif field.predicate != SC.unit:  # a rate has one too: `port_of` counts them
+            found.append(replace(field, most=0) if field.predicate in _RARE else field)
+    return found
+
+
+_UNIT = f"<{SC.unit}> "
 _RATED, _DEEP = f"<{SC.rate}> ", f"<{SC.depth}> "
 _PORTS = {f"<{link.predicate}>": _PortPattern.of(link) for link in PORTS}
 _SETTINGS: dict[str, tuple[re.Pattern[str], Callable[[str], Profile]]] = {
@@ -98,13 +122,14 @@ def port_of(link: str, text: str) -> PortText | None:
     if known is None:
         return None
     once, bounded, pattern, groups = known
+    # Loops, since this runs for each statement of each file that is not known yet.
     for mark in once:
         if text.count(mark) != 1:
             return None
     for mark, least, most in bounded:
         if not least <= text.count(mark) <= most:
             return None
-    found = pattern.fullmatch(text)
+    found = pattern.fullmatch(text) if text.count(_UNIT) == text.count(_RATED) else None
     if found is None:
         return None
     name, type_, rate, depth = found.group(*groups)
@@ -117,9 +142,9 @@ def ported(link: str, port: PortText) -> Profile:
     """The part of a statement with one port."""
     name, type_, rate, depth = port.name, IRI(port.type), port.rate, port.depth
     if link == f"<{SC.hasInput}>":
-        return Profile(SUBJECT, ports=Ports(inputs=(Input(name, type_, None if depth is None else int(depth)),)))
+        return Profile(SUBJECT, ports=Ports(inputs=(Input(name, (type_,), None if depth is None else int(depth)),)))
     if link == f"<{SC.hasOutput}>":
-        return Profile(SUBJECT, ports=Ports(outputs=(Output(name, type_, None if rate is None else float(rate)),)))
+        return Profile(SUBJECT, ports=Ports(outputs=(Output(name, (type_,), None if rate is None else float(rate)),)))
     return Profile(SUBJECT, parameters=(OperationalParameter(name, type_),))
 
 

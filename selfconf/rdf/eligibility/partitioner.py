@@ -22,6 +22,7 @@ from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_parameters as free_values
+from selfconf.rdf.eligibility.acceptance import Acceptance
 from selfconf.rdf.eligibility.advertisement_index import (
     AdvertisementIndex,
     AdvertisementSignature,
@@ -32,7 +33,7 @@ from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Triple
-from selfconf.rdf.vocabulary import TYPE
+from selfconf.rdf.vocabulary import RDFS, SC, TYPE
 
 if TYPE_CHECKING:
     import rdflib
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
 Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
 ANOTHER = IRI("urn:selfconf:another-value")
 """A value that no component has: what it lets pass, any value lets pass."""
+_CLASSIFYING = frozenset((TYPE, SC.signalType, SC.parameterType))
+"""What has a class as its value, of which a shape sees what lies above it."""
 _NOTHING: Mapping[IRI, frozenset[Term]] = {}
 
 
@@ -80,18 +83,20 @@ class Partitioner:
         self.not_judged: dict[IRI, NotJudged] = {}
         """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""
         self._given_up: dict[Advertisement, dict[IRI, NotJudged]] = {}
+        self._acceptance = Acceptance(hierarchy)
         self.suitable = free_values.Suitable(self._parameters, given.document)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
-        other.not_judged, other._given_up = {}, {}
+        other.not_judged, other._given_up, other._acceptance = {}, {}, Acceptance(hierarchy)
         return other
 
     def partition(self, advertisements: Advertisements) -> Partition:
         """F1 ... Fn and the variables that the free parameters are. Raises TemplateError for a shape that is none."""
-        eligible = self.eligible(AdvertisementIndex.of(advertisements))
+        ecology = AdvertisementIndex.of(advertisements)
+        eligible = self.eligible(ecology)
         variables = tuple(self._variables(eligible))
         bits = [{value: 1 << number for number, value in enumerate(variable.domain)} for variable in variables]
 
@@ -101,9 +106,14 @@ class Partitioner:
             allowed = tuple([_mask(found, v.parameter, b) for v, b in zip(variables, bits, strict=True)])
             return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity which are alike
 
-        return Partition(
-            tuple(ordered([Candidate(found.profile, admits(found)) for found in role]) for role in eligible), variables
+        found = Partition(
+            tuple(ordered([Candidate(one.profile, admits(one)) for one in role]) for role in eligible), variables
         )
+        judged = self._acceptance.judged(
+            self.task.template, found, lambda component: tuple(self.visible([ecology[component]]))
+        )
+        self.not_judged |= self._acceptance.not_judged
+        return judged
 
     def akin(self, role: CompiledRole, ecology: AdvertisementIndex) -> Iterator[TypeSet]:
         """The kinds that are of the classes that a role asks for."""
@@ -295,9 +305,11 @@ class Partitioner:
                 continue
             for above in self.hierarchy.superproperties(predicate):
                 yield subject, above, value  # the property itself is one of them
-            if predicate == TYPE and isinstance(value, IRI):
+            if predicate in _CLASSIFYING and isinstance(value, IRI):
                 for kind in self.hierarchy.superclasses(value) - {value}:
-                    yield subject, TYPE, kind
+                    yield value, RDFS.subClassOf, kind
+                    if predicate == TYPE:
+                        yield subject, TYPE, kind
 
     def _variables(self, eligible: list[list[EligibleComponent]]) -> Iterator[Variable]:
         for parameter in sorted(self.free):

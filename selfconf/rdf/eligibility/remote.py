@@ -14,9 +14,10 @@ from collections.abc import Iterable, Sequence
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.term import IRI
 from selfconf.rdf.eligibility.role_tests import CompiledRole
+from selfconf.rdf.permitted_fields import PERMITTED_IN_SHAPES
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.turtle import ox_term
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import SC, TYPE
 
 _COMPONENT = str(ox_term(SC.Component))
 BLANK_NODE_DEPTH = 3
@@ -26,6 +27,12 @@ TYPES = f"""SELECT DISTINCT ?type WHERE {{
 }}"""
 """The types that the components of an endpoint have."""
 
+_ACCEPTED = (
+    f"?component <{SC.hasInput}>/<{SC.accepts}> ?shape . "
+    f"?shape ({'|'.join(f'<{step}>' for step in sorted(PERMITTED_IN_SHAPES - {TYPE}))})* ?subject . "
+    "?subject ?predicate ?object FILTER ( isBlank(?subject) )"
+)
+"""The statements of the shapes that the inputs of a component accept, which are blank nodes at any depth."""
 ANYBODY = f"ASK {{ ?component a {_COMPONENT} }}"
 """Whether the default graph of an endpoint has a component at all."""
 
@@ -52,6 +59,7 @@ def statements(types: Iterable[IRI]) -> str:
     """The query for everything that the components of some types say."""
     values = " ".join(str(ox_term(kind)) for kind in types)
     branches = [f"{{ {_level(depth)} }}" for depth in range(BLANK_NODE_DEPTH)]
+    branches.append(f"{{ {_ACCEPTED} }}")
     inside = f"VALUES ?type {{ {values} }} ?component a ?type , {_COMPONENT} . {' UNION '.join(branches)}"
     return (
         "CONSTRUCT { ?subject ?predicate ?object } WHERE {\n"

@@ -12,6 +12,7 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.positions import NotTurtleError, Positions, parse_with_positions
 from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.input_shapes import unaccepted_shapes
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.terms import lint
 from selfconf.rdf.validation.shape_violations import Shapes, shape_violations
@@ -59,6 +60,10 @@ class FileCheck:
         graph, positions = parse_with_positions(text, name, base)
         violations = list(endless_lists(graph, positions))
         if not violations:  # pySHACL does not come back from a list without an end
-            violations = [*shape_violations(graph, positions, self.shapes), *malformed_roles(graph, positions)]
+            violations = [
+                *shape_violations(graph, positions, self.shapes),
+                *malformed_roles(graph, positions),
+                *unaccepted_shapes(graph, positions),
+            ]
         file = LintedFile(graph, positions, self.index, elsewhere, self.shapes.all)
         return violations + lint(file, conforms=not violations)

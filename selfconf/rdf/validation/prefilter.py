@@ -244,7 +244,13 @@ class _Advertisements:
 
     def clear(self, component: str) -> bool:
         """Whether a component certainly conforms."""
-        return component[:2] != "_:" and self._conforms(self.statements[component], COMPONENT)
+        said = self.statements[component]
+        return component[:2] != "_:" and self._conforms(said, COMPONENT) and self._typed(said)
+
+    def _typed(self, said: Properties) -> bool:
+        """Whether each port has a signal type, without which there is a warning."""
+        ports = (port for link in (SC.hasInput, SC.hasOutput) for port in said.get(link, ()))
+        return all(isinstance(port, str) and SC.signalType in self.statements.get(port, {}) for port in ports)
 
     def rated(self, properties: Properties) -> bool:
         """Whether something keeps to the shape of a rate, if it has one."""

@@ -92,7 +92,7 @@ def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
     for number, (role, _, sources, _) in enumerate(reduced.needs):
         if sources and sources[0][0] == sources[-1][0] != role and asked[sources[0][0]] == 1:
             source = sources[0][0]
-            if len(sources) == 1 or all(other == source for other, _ in sources):
+            if len(sources) == 1 or all(other == source for other, *_ in sources):
                 found.setdefault(source, set()).add(number)
     return found
 

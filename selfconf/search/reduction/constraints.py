@@ -73,7 +73,7 @@ def subproblem(given: ReducedProblem, constraints: Set[Constraint]) -> ReducedPr
     """
     needs = {one.need for one in constraints if isinstance(one, Fed)}
     required = {one.role for one in constraints if isinstance(one, Played)}
-    scope = required | {source for need in needs for source, _ in given.needs[need].sources}
+    scope = required | {source for need in needs for source, *_ in given.needs[need].sources}
     slots = tuple(role for role in given.slots if role in scope)
     weaker, kinds = _weakened(given, constraints, scope)
     removed, removals = consistent(kinds, len(given.needs), given.values, required)

@@ -43,11 +43,11 @@ def test_the_profile_of_the_thinking_cap_is_that_of_the_paper() -> None:
     assert profile.component == iri("thinking-cap")
     assert profile.types == {SC.Component, ROB.NavigationControl}
     assert profile.inputs == (
-        Input("localize", ROB.Odometry2D),
-        Input("position", ROB.PlanarPose2D),
-        Input("sonar", ROB.RangeScan),
+        Input("localize", (ROB.Odometry2D,)),
+        Input("position", (ROB.PlanarPose2D,)),
+        Input("sonar", (ROB.RangeScan,)),
     )
-    assert profile.outputs == (Output("set.velocity", ROB.Velocity2D),)
+    assert profile.outputs == (Output("set.velocity", (ROB.Velocity2D,)),)
     assert profile.parameters == (OperationalParameter("goal", ROB.BehaviouralGoal),)
     assert (profile.preference, profile.command) == (0.0, None)
 
@@ -84,7 +84,7 @@ def test_a_promised_rate_and_a_command_are_read() -> None:
         ':t a sc:Component, :T ; sc:grounding [ sc:command "python t.py" ] ; sc:hasOutput'
         ' [ sc:name "p" ; sc:signalType :S ; sc:rate [ sc:value 2.5 ; sc:unit unit:HZ ] ] .'
     ).profile
-    assert profile.outputs == (Output("p", iri("S"), 2.5),)
+    assert profile.outputs == (Output("p", (iri("S"),), 2.5),)
     assert profile.command == "python t.py"
 
 
@@ -94,7 +94,7 @@ def test_how_a_component_is_run_is_read() -> None:
         " sc:deadline [ sc:value 3 ; sc:unit unit:SEC ] ; sc:restarts 0 ;"
         ' sc:hasInput [ sc:name "velocity" ; sc:signalType :S ; sc:depth 3 ] .'
     ).profile
-    assert profile.inputs == (Input("velocity", iri("S"), 3),)
+    assert profile.inputs == (Input("velocity", (iri("S"),), 3),)
     assert (profile.tolerates, profile.deadline, profile.restarts, profile.shareable) == (0.5, 3.0, 0, False)
 
 
@@ -121,8 +121,13 @@ def test_a_document_may_hold_several_components_in_the_order_of_the_text() -> No
         (':x a sc:Component, :Lamp ; sc:preference "INF"^^xsd:double .', "sc:preference is one number"),
         (":x a sc:Component, :Lamp ; sc:hasInput [ sc:signalType :S ] .", "exactly one sc:name"),
         (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "" ; sc:signalType :S ] .', "not empty"),
-        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "a" ] .', "exactly one sc:signalType"),
-        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "a" ; sc:signalType "S" ] .', "an IRI"),
+        (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:unit 5 ] .", "sc:unit of 'a' is an IRI"),
+        (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:frame 5 ] .", "a string that is not empty"),
+        (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:optional 5 ] .", "true or false"),
+        (f":x a sc:Component, :L ; sc:hasOutput {PORT} ; sc:optional true ] .", "only an input has a sc:optional"),
+        (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:accepts :any ] .", "a shape in brackets"),
+        (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:accepts [ sh:targetClass :L ] ] .", "not of SHACL Core"),
+        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "a" ; sc:signalType "S" ] .', "is an IRI"),
         (':x a sc:Component, :Lamp ; sc:hasInput "a" .', "exactly one sc:name"),
         (f":x a sc:Component, :L ; sc:hasInput {PORT} ], {PORT} ] .", "stands for two"),
         (':x a sc:Component, :Lamp ; sc:hasParameter [ sc:name "a" ] .', "sc:parameterType"),
@@ -144,7 +149,7 @@ def test_what_does_not_conform_is_left_out_with_one_sentence(text: str, problem:
 
 
 def test_every_problem_is_named_not_the_first_alone() -> None:
-    _, (bad,) = read(':x a sc:Component ; sc:preference "high" ; sc:hasInput [ sc:name "a" ] .')
+    _, (bad,) = read(':x a sc:Component ; sc:preference "high" ; sc:hasInput [ sc:name "" ] .')
     assert len(bad.problems) == 3
 
 

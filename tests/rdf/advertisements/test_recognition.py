@@ -34,10 +34,10 @@ def carefully(text: str) -> Profile:
 @pytest.mark.parametrize(
     ("link", "said", "profile"),
     [
-        (IN, (NAME, SIGNAL), Profile(SUBJECT, ports=Ports(inputs=(Input("pose", TYPE),)))),
-        (IN, (NAME, SIGNAL, f"<{SC.depth}> 3"), Profile(SUBJECT, ports=Ports(inputs=(Input("pose", TYPE, 3),)))),
-        (OUT, (SIGNAL, NAME), Profile(SUBJECT, ports=Ports(outputs=(Output("pose", TYPE),)))),
-        (OUT, (NAME, SIGNAL, HERTZ), Profile(SUBJECT, ports=Ports(outputs=(Output("pose", TYPE, 2.5),)))),
+        (IN, (NAME, SIGNAL), Profile(SUBJECT, ports=Ports(inputs=(Input("pose", (TYPE,)),)))),
+        (IN, (NAME, SIGNAL, f"<{SC.depth}> 3"), Profile(SUBJECT, ports=Ports(inputs=(Input("pose", (TYPE,), 3),)))),
+        (OUT, (SIGNAL, NAME), Profile(SUBJECT, ports=Ports(outputs=(Output("pose", (TYPE,)),)))),
+        (OUT, (NAME, SIGNAL, HERTZ), Profile(SUBJECT, ports=Ports(outputs=(Output("pose", (TYPE,), 2.5),)))),
         (PARAMETER, (NAME, KIND), Profile(SUBJECT, parameters=(OperationalParameter("pose", TYPE),))),
     ],
 )

@@ -22,7 +22,7 @@ def test_the_same_text_is_the_same_statement() -> None:
 
 def test_a_statement_with_a_port_adds_it_to_a_profile() -> None:
     statement = StatementTable()[PORT]
-    assert statement.read().inputs == (Input("pose", IRI("urn:x:Pose")),)
+    assert statement.read().inputs == (Input("pose", (IRI("urn:x:Pose"),)),)
     assert statement.bracketed
 
 
@@ -54,7 +54,7 @@ def test_a_property_may_be_stated_again_and_a_preference_may_not() -> None:
         f"<{RDFS.subClassOf}> <urn:x:Light>",
         f"a <urn:x:Lamp> , <{OWL.Class}>",
         f'<{SC.preference}> "high"',
-        bracketed(INPUT, [f'<{SC.name}> "pose"']),
+        bracketed(INPUT, [f'<{SC.name}> ""']),
         f"{INPUT} <urn:x:port>",
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pyoxigraph as ox
 
 from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import read_advertisements
 from selfconf.rdf.eligibility.remote import ANYBODY, TYPES, prefaced, statements
 from tests.lab import PREFIXES, iri
 
@@ -20,6 +21,17 @@ def test_the_statements_of_components_of_some_types_are_asked_for_through_blank_
     assert {iri("size"), iri("of"), iri("unit")} <= {IRI(predicate) for predicate in found}
     subjects = {triple.subject for triple in STORE.query(statements([iri("B")]))}
     assert subjects == {ox.NamedNode(iri("b"))}
+
+
+def test_the_shape_that_an_input_accepts_is_handed_out_whole_however_deep_it_is() -> None:
+    text = """:a a sc:Component, :A ; sc:hasInput [ sc:name "i" ; sc:signalType :S ;
+        sc:accepts [ sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :on ) ; sh:in ( :x :y ) ] ] ] ."""
+    store = ox.Store()
+    store.load((PREFIXES + text).encode(), format=ox.RdfFormat.TURTLE)
+    handed_out = ox.serialize(store.query(statements([iri("A")])), format=ox.RdfFormat.TURTLE)
+    (one,), (other,) = (read_advertisements(source, "a")[0] for source in (handed_out, (PREFIXES + text).encode()))
+    assert one.profile.inputs == other.profile.inputs
+    assert one.profile.inputs[0].condition is not None
 
 
 def test_an_endpoint_tells_whether_it_has_components_and_of_which_types() -> None:

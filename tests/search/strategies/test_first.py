@@ -34,7 +34,7 @@ def test_first_is_the_best_answer_set_of_a_logic_program(problem: Problem) -> No
     assert (found is None) == (first_configuration(problem) is None)
 
 
-@given(problems(roles=3, components=4))
+@given(problems(roles=3, components=4, plain=True))
 @agreement()
 def test_first_is_the_first_answer_to_one_query_for_the_whole_template(problem: Problem) -> None:
     found = sparql.first(problem)

@@ -162,6 +162,18 @@ def ownerless_ports(file: LintedFile) -> Iterator[Diagnostic]:
                 yield at(file.positions, file.offset(node), "SC-L17", message, hint=f"Say whose it is, by {link}.")
 
 
+def untyped_ports(file: LintedFile) -> Iterator[Diagnostic]:
+    """Ports of components that have no signal type, which is allowed and seldom meant."""
+    for link in (_SC.hasInput, _SC.hasOutput):
+        for node in sorted(set(file.graph.objects(None, URIRef(link))), key=file.offset):
+            if isinstance(node, Literal) or (node, URIRef(_SC.signalType), None) in file.graph:
+                continue
+            name = file.graph.value(node, URIRef(_SC.name))
+            called = "This port" if name is None else f"The port {str(name)!r}"
+            hint = "Give it a sc:signalType, or name it in each sc:Interaction that is to pair it."
+            yield at(file.positions, file.offset(node), "SC-L18", f"{called} has no signal type.", hint=hint)
+
+
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
     """Literals where the property wants a thing."""
     for (_, predicate, value), offsets in file.positions.triples.items():
@@ -188,6 +200,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     prefixes,
     undeclared_prefixes,
     ownerless_ports,
+    untyped_ports,
     literals_for_iris,
     local_components,
 )

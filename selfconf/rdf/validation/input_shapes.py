@@ -1,0 +1,46 @@
+"""Whether what inputs accept are shapes that an advertisement may hold, judged by the reader of advertisements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import rdflib
+from rdflib import BNode, Graph, URIRef
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.advertisements import ShapeNotAccepted, statements_of_shape
+from selfconf.rdf.positions import Positions
+from selfconf.rdf.rdflib_terms import from_rdflib
+from selfconf.rdf.shacl import misfit
+from selfconf.rdf.turtle import Document, Node, Triple
+from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.vocabulary import SC
+
+
+def unaccepted_shapes(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """What keeps a shape of `sc:accepts` from being one of an advertisement, at the statement at fault."""
+    shapes = sorted({shape for shape in graph.objects(None, URIRef(SC.accepts)) if isinstance(shape, BNode)})
+    places = {
+        tuple(map(from_rdflib, triple)): offsets.object for triple, offsets in positions.triples.items() if shapes
+    }
+    document = _document(graph if shapes else (), positions.file)
+    wrong: tuple[Triple | None, str] | None
+    for shape in shapes:
+        try:
+            wrong = misfit(document, list(statements_of_shape(document, from_rdflib(shape))), frozenset())
+        except ShapeNotAccepted as error:
+            wrong = error.statement, f"This is no shape that an advertisement may hold: {error}"
+        if wrong is not None:
+            statement, message = wrong
+            yield at(positions, places.get(statement or (), positions.offset(shape) or 0), "SC-A20", f"{message}.")
+
+
+def _document(graph: Iterable[tuple[rdflib.term.Node, ...]], source: str) -> Document:
+    """The statements of a graph as the reader of advertisements takes them."""
+    statements: dict[Node, list[tuple[IRI, Term]]] = {}
+    for subject, predicate, value in graph:
+        about = from_rdflib(subject)
+        assert not isinstance(about, Literal)
+        statements.setdefault(about, []).append((IRI(str(predicate)), from_rdflib(value)))
+    return Document(source, statements, {})
