@@ -241,6 +241,16 @@ CODES: tuple[Code, ...] = (
         ("Accepts", "AcceptingOutput"),
     ),
     Code(
+        "SC-A21", "An operation has one name of its own, and at most one type of request and one of response.",
+        "Types of requests and responses are IRIs; only an operation that is needed may be optional.",
+        ':camera a sc:Component, :Camera ; sc:hasOperation [ sc:name "takePhoto" ; sc:response "photo" ] .',
+        ':camera a sc:Component, :Camera ; sc:hasOperation [ sc:name "takePhoto" ; sc:response rob:Image ] .',
+        (
+            "OperationNode", "OperationNameOnce", "OperationNameText", "OperationRequest", "OperationResponse",
+            "OptionalOffer", "OptionalNeed", "OperationNamesDistinct",
+        ),
+    ),
+    Code(
         "SC-T01", "A template has an IRI and is a sc:Template.",
         "Tasks and command lines speak of it by its IRI.",
         f":radio sc:roles ( :source :sink ) .\n{_SOURCE}\n{_SINK}", _PAIR,

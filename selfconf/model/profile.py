@@ -130,6 +130,19 @@ class OperationalParameter:
 
 
 @dataclass(frozen=True, slots=True)
+class Operation:
+    """Something that a component does when it is asked, with a request and a response; or that it needs to be done."""
+
+    name: str
+    request: IRI | None = None
+    """The type of what is sent along, if that is said."""
+    response: IRI | None = None
+    """The type of what is answered, if that is said."""
+    optional: bool = False
+    """Of an operation that is needed: whether the component does without."""
+
+
+@dataclass(frozen=True, slots=True)
 class Profile:
     """What a component is. Parameters are sorted by name, properties by predicate and value."""
 
@@ -138,6 +151,10 @@ class Profile:
     properties: tuple[tuple[IRI, Term], ...] = ()
     ports: Ports = NO_PORTS
     parameters: tuple[OperationalParameter, ...] = ()
+    operations: tuple[Operation, ...] = ()
+    """What it does when it is asked, sorted by name."""
+    needed_operations: tuple[Operation, ...] = ()
+    """What it asks of others, sorted by name."""
     preference: Decimal = NO_PREFERENCE
     shareable: bool | None = None
     """Whether several tasks may hold it, if it says so; `is_shareable` is what holds."""

@@ -211,6 +211,9 @@ OUTPUT = Subject(
     SC.Output,
 )
 PARAMETER = Subject((PORT_NAME, PARAMETER_TYPE), SC.OperationalParameter)
+REQUEST, RESPONSE = Field(SC.request, RESOURCE), Field(SC.response, RESOURCE)
+OPERATION = Subject((PORT_NAME, REQUEST, RESPONSE, Field(SC.optional, TRUE_OR_FALSE, most=0)), SC.Operation)
+NEEDED_OPERATION = Subject((PORT_NAME, REQUEST, RESPONSE, Field(SC.optional, TRUE_OR_FALSE)), SC.Operation)
 GROUNDING = Subject((Field(SC.command, COMMAND_LINE),), SC.Grounding)
 COMPONENT = Subject(
     (
@@ -218,6 +221,8 @@ COMPONENT = Subject(
         Field(SC.hasInput, NODE, most=None, into=INPUT),
         Field(SC.hasOutput, NODE, most=None, into=OUTPUT),
         Field(SC.hasParameter, NODE, most=None, into=PARAMETER),
+        Field(SC.hasOperation, NODE, most=None, into=OPERATION),
+        Field(SC.needsOperation, NODE, most=None, into=NEEDED_OPERATION),
         Field(SC.preference, NUMBER),
         Field(SC.shareable, TRUE_OR_FALSE),
         Field(SC.tolerates, NODE, into=DURATION),
@@ -228,8 +233,8 @@ COMPONENT = Subject(
     SC.Component,
 )
 
-PORTS = tuple(field for field in COMPONENT.fields if PORT_NAME in field.into.fields)
-"""The fields of a component that lead to what has a name: inputs, outputs, operational parameters."""
+PORTS = tuple(COMPONENT[link] for link in (SC.hasInput, SC.hasOutput, SC.hasParameter))
+"""The fields of a component that lead to what most components have: inputs, outputs, operational parameters."""
 SETTINGS = {
     SC.preference: "preference",
     SC.shareable: "shareable",

@@ -30,8 +30,10 @@ from selfconf.rdf.permitted_fields import (
     INPUT,
     MOST,
     NAMED_OR_TEXT,
+    NEEDED_OPERATION,
     NODE,
     NUMBER,
+    OPERATION,
     OUTPUT,
     PARAMETER,
     PORTS,
@@ -61,6 +63,8 @@ TARGETS: dict[Node, tuple[Subject, ...]] = {
     URIRef(SC.hasOutput): (OUTPUT,),
     URIRef(SC.hasParameter): (PARAMETER,),
     URIRef(SC.rate): (RATE,),
+    URIRef(SC.hasOperation): (OPERATION,),
+    URIRef(SC.needsOperation): (NEEDED_OPERATION,),
     URIRef(SC.tolerates): (DURATION,),
     URIRef(SC.deadline): (DURATION,),
     URIRef(SC.grounding): (GROUNDING,),
@@ -150,11 +154,21 @@ def test_the_table_and_the_shape_state_one_set_of_constraints() -> None:
 def test_the_names_that_have_to_differ_are_those_of_the_shape() -> None:
     queries = [str(query) for query in SHAPE.objects(None, SH.select)]
     distinct = {link.predicate.short for link in COMPONENT.fields if any(field.distinct for field in link.into.fields)}
-    assert distinct == {word for word in ("hasInput", "hasOutput", "hasParameter") if any(word in q for q in queries)}
+    assert distinct == {
+        word
+        for word in ("hasInput", "hasOutput", "hasParameter", "hasOperation", "needsOperation")
+        if any(word in q for q in queries)
+    }
 
 
 def test_every_field_of_a_component_is_a_type_a_port_or_a_member_of_its_profile() -> None:
-    assert COMPONENT.predicates == {str(RDF.type), *(link.predicate for link in PORTS), *SETTINGS}
+    assert COMPONENT.predicates == {
+        str(RDF.type),
+        SC.hasOperation,
+        SC.needsOperation,
+        *(link.predicate for link in PORTS),
+        *SETTINGS,
+    }
     assert set(SETTINGS.values()) <= set(Profile.__dataclass_fields__)
 
 

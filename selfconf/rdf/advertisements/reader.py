@@ -15,6 +15,7 @@ from selfconf.model.profile import (
     NO_PREFERENCE,
     Condition,
     Input,
+    Operation,
     OperationalParameter,
     Output,
     Place,
@@ -37,6 +38,8 @@ from selfconf.rdf.permitted_fields import (
     OUTPUT,
     PARAMETER_TYPE,
     PORT_NAME,
+    REQUEST,
+    RESPONSE,
     SIGNAL_TYPE,
     STRUCTURE,
     Field,
@@ -44,6 +47,13 @@ from selfconf.rdf.permitted_fields import (
 )
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
+
+_COUNTERPARTS = {
+    SC.hasInput: ("an input", "an output"),
+    SC.hasOutput: ("an output", "an input"),
+    SC.hasOperation: ("an operation that is offered", "one that is needed"),
+}
+"""What a link leads to, and what says what it may not say."""
 
 
 def read_document(document: Document) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
@@ -98,6 +108,8 @@ class _Reader:
                 tuple(sorted(outputs, key=lambda port: port.name)),
             ),
             parameters=tuple(sorted(parameters, key=lambda parameter: parameter.name)),
+            operations=self._operations(COMPONENT[SC.hasOperation]),
+            needed_operations=self._operations(COMPONENT[SC.needsOperation]),
             preference=self._preference(),
             shareable=self._shareable(),
             tolerates=self._quantity(self.component, COMPONENT[SC.tolerates], "what a component sc:tolerates"),
@@ -133,8 +145,8 @@ class _Reader:
         """Note what only a port of the other direction says."""
         for field in link.into.fields:
             if field.most == 0 and self.document.values(node, field.predicate):
-                here, there = ("input", "output") if link.into is INPUT else ("output", "input")
-                self._problem(f"only an {there} has a {_word(field.predicate)}, and {name!r} is an {here}")
+                here, there = _COUNTERPARTS[link.predicate]
+                self._problem(f"only {there} has a {_word(field.predicate)}, and {name!r} is {here}")
 
     def _parameter_type(self, name: str, node: Term) -> IRI | None:
         type_ = self._required(node, PARAMETER_TYPE)
@@ -142,6 +154,21 @@ class _Reader:
             return type_
         self._problem(f"{_word(SC.hasParameter)} {name!r} needs {_one_of(PARAMETER_TYPE)}")
         return None
+
+    def _operations(self, link: Field) -> tuple[Operation, ...]:
+        found = []
+        for name, node in self._named(link):
+            request, response = (self._field_of_port(node, name, field) for field in (REQUEST, RESPONSE))
+            optional = self._field_of_port(node, name, link.into[SC.optional])
+            found.append(
+                Operation(
+                    name,
+                    request if isinstance(request, IRI) else None,
+                    response if isinstance(response, IRI) else None,
+                    isinstance(optional, Literal) and optional.lexical == "true",
+                )
+            )
+        return tuple(sorted(found, key=lambda operation: operation.name))
 
     def _input(self, name: str, node: Term) -> Input:
         unit, frame = self._unit(node, name), self._field_of_port(node, name, INPUT[SC.frame])

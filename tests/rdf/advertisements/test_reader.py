@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.candidate_order import candidate_order
-from selfconf.model.profile import Input, OperationalParameter, Output
+from selfconf.model.profile import Condition, Input, Operation, OperationalParameter, Output
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.advertisements import loader
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.vocabulary import RDFS, ROB, SC
+from selfconf.rdf.vocabulary import RDFS, ROB, SC, UNIT
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 BAD = Path(__file__).resolve().parents[2] / "bad"
@@ -96,6 +96,25 @@ def test_how_a_component_is_run_is_read() -> None:
     ).profile
     assert profile.inputs == (Input("velocity", (iri("S"),), 3),)
     assert (profile.tolerates, profile.deadline, profile.restarts, profile.shareable) == (0.5, 3.0, 0, False)
+
+
+def test_operations_are_read_with_their_types() -> None:
+    profile = one(
+        ':x a sc:Component, :L ; sc:hasOperation [ sc:name "photo" ; sc:response :Image ] , [ sc:name "move" ;'
+        ' sc:request :Pose ] ; sc:needsOperation [ sc:name "light" ; sc:optional true ] .'
+    ).profile
+    assert profile.operations == (Operation("move", request=iri("Pose")), Operation("photo", response=iri("Image")))
+    assert profile.needed_operations == (Operation("light", optional=True),)
+
+
+def test_units_frames_and_several_types_are_read() -> None:
+    profile = one(
+        ':x a sc:Component, :L ; sc:hasOutput [ sc:name "o" ; sc:signalType :T , :S ; sc:unit unit:M ; sc:frame "map"'
+        ' ] ; sc:hasInput [ sc:name "i" ; sc:optional true ; sc:frame :base ] .'
+    ).profile
+    assert profile.outputs == (Output("o", (iri("S"), iri("T")), None, UNIT.M, Literal("map")),)
+    assert profile.inputs == (Input("i", (), None, True, Condition(frame=iri("base"))),)
+    assert profile.required == ()
 
 
 def test_what_is_not_said_of_how_a_component_is_run_is_none() -> None:
