@@ -88,7 +88,7 @@ MISTAKES: dict[str, Change] = {
     "a name that is a number": _put(r'sc:name ("[^"]*") ; sc:signalType', "5", "SC-A07", group=1),
     "a name in a language": _put(r'sc:name ("[^"]*") ; sc:signalType', r'"x"@en', "SC-A07", group=1),
     "a signal type in quotation marks": _put(r"sc:signalType (rob:\w+)", r'"rob:Audio"', "SC-A08", group=1),
-    "a signal type forgotten": _put(r"\[ sc:name \"[^\"]*\"( ; sc:signalType rob:\w+)", "", "SC-A08", group=1),
+    "a signal type forgotten": _put(r"\[ sc:name \"[^\"]*\"( ; sc:signalType rob:\w+)", "", "SC-L18", group=1),
     "a preference in words": _put(r"sc:preference (\d+)", r'"high"', "SC-A04", group=1),
     "two preferences": _put(r"sc:preference (\d+)", r"\1 , 99", "SC-A04", group=1),
     "a port that nothing has": _put(r"\Z", '_:x sc:name "x" ; sc:signalType rob:Audio .\n', "SC-L17"),

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from selfconf.model.configuration import Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import Candidate, Partition
-from selfconf.model.profile import Input, Output
+from selfconf.model.profile import Input, Output, Profile
 from selfconf.model.template import Task
 from selfconf.model.term import IRI, Term
 
@@ -81,8 +81,11 @@ class _Check:
     def _connections(self, players: Players) -> Iterator[str]:
         possible = self._possible_connections(players)
         actual = Counter(self.configuration.connections)
-        for connection in sorted(set(actual) - possible):
-            yield f"{_words(connection)}: no interaction makes this connection"
+        extra = sorted(set(actual) - possible)
+        if self.configuration.recruits:
+            yield from self._recruits(players, extra)
+        else:
+            yield from (f"{_words(connection)}: no interaction makes this connection" for connection in extra)
         for connection in sorted(possible - set(actual)):
             yield f"{_words(connection)}: this connection is missing"
         for connection, times in actual.items():
@@ -93,6 +96,52 @@ class _Check:
             for wanted in candidate.profile.inputs:
                 if not wanted.optional and (candidate.profile.component, wanted.name) not in fed:
                     yield f"the input {wanted.name!r} of {candidate.profile.component.short} is not fed"
+
+    def _recruits(self, players: Players, extra: Sequence[Connection]) -> Iterator[str]:
+        """Yield what is wrong with the recruits: `extra` are the connections that no interaction makes."""
+        known = {recruit.component: recruit for recruit in self.partition.recruits}
+        recruits, playing = self.configuration.recruits, self.configuration.players
+        for component, times in Counter(recruits).items():
+            if component not in known or component in playing or times > 1:
+                yield f"{component.short} cannot be recruited"
+                return
+        profiles = {c.profile.component: c.profile for some in players.values() for c in some}
+        profiles |= {component: known[component].profile for component in recruits}
+        fed = Counter((connection.sink, connection.input) for connection in self.configuration.connections)
+        yield from _idle(recruits, extra)
+        for component in recruits:
+            lacking = [wanted.name for wanted in profiles[component].required if not fed[component, wanted.name]]
+            yield from (f"the input {name!r} of {component.short} is not fed" for name in lacking)
+        yield from self._badly_joined(profiles, fed, extra)
+        yield from self._of_other_roles(players, extra)
+        yield from _cycle(recruits, extra)
+
+    def _badly_joined(
+        self, profiles: Mapping[IRI, Profile], fed: Mapping[tuple[IRI, str], int], extra: Sequence[Connection]
+    ) -> Iterator[str]:
+        """Yield the connections to which types or conditions do not allow, and those of inputs with another source."""
+        for connection in extra:
+            if not self._may_connect(profiles, connection):
+                yield f"{_words(connection)}: the output cannot feed the input"
+            elif fed[connection.sink, connection.input] > 1:
+                yield f"{_words(connection)}: the input has a source besides"
+
+    def _of_other_roles(self, players: Players, extra: Sequence[Connection]) -> Iterator[str]:
+        """Yield the connections by which a player gets from a recruit what its role does not allow."""
+        roles = {recruit.component: recruit.roles for recruit in self.partition.recruits}
+        place = {c.profile.component: number for number, some in enumerate(players.values()) for c in some}
+        for connection in extra:
+            role = place.get(connection.sink)
+            if role is not None and (connection.source in place or role not in roles.get(connection.source, ())):
+                yield f"{_words(connection)}: no recruit of this role feeds it"
+
+    def _may_connect(self, profiles: Mapping[IRI, Profile], connection: Connection) -> bool:
+        """Return whether a connection joins ports of the configuration that may be joined, names or no names."""
+        if connection.source not in profiles or connection.sink not in profiles:
+            return False
+        output = profiles[connection.source].output(connection.output)
+        wanted = next((port for port in profiles[connection.sink].inputs if port.name == connection.input), None)
+        return output is not None and wanted is not None and self._may_feed(output, wanted, by_name=False)
 
     def _possible_connections(self, players: Players) -> set[Connection]:
         """Return every pair of an output and an input that match along an interaction."""
@@ -164,6 +213,23 @@ class _Check:
             if actual.count(one) != expected.count(one):
                 fault = "is missing" if one not in actual else "is not asked for"
                 yield f"setting {one.name!r} of {one.component.short} to {one.value} {fault}"
+
+
+def _idle(recruits: Sequence[IRI], connections: Sequence[Connection]) -> Iterator[str]:
+    """Yield the recruits that feed nothing."""
+    feeding = {connection.source for connection in connections}
+    yield from (f"{one.short} is recruited and feeds nothing" for one in recruits if one not in feeding)
+
+
+def _cycle(recruits: Sequence[IRI], connections: Sequence[Connection]) -> Iterator[str]:
+    """Yield that recruits feed each other in a cycle, if they do."""
+    left = set(recruits)
+    while left:
+        free = {one for one in left if not any(c.sink == one and c.source in left for c in connections)}
+        if not free:
+            yield f"the recruits {', '.join(sorted(one.short for one in left))} feed each other in a cycle"
+            return
+        left -= free
 
 
 def _words(connection: Connection) -> str:

@@ -20,9 +20,11 @@ SESSION = re.compile(r"^```pycon\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 PAGE = (ROOT / "docs" / "search.md").read_text("utf-8")
 EXAMPLES = BLOCK.findall(PAGE)
 """Each command of the page on the search, and what it prints."""
+PATTERNS = BLOCK.findall((ROOT / "docs" / "patterns.md").read_text("utf-8"))
+"""Each command of the page of patterns."""
 
 
-@pytest.mark.parametrize(("command", "output"), EXAMPLES, ids=lambda text: text.partition("\n")[0])
+@pytest.mark.parametrize(("command", "output"), [*EXAMPLES, *PATTERNS], ids=lambda text: text.partition("\n")[0])
 def test_a_command_says_what_its_page_says(
     command: str, output: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -41,6 +43,7 @@ def test_nothing_is_said_to_come_from_an_index_on_which_it_is_not() -> None:
 
 def test_the_page_has_examples() -> None:
     assert len(EXAMPLES) == 5
+    assert len(PATTERNS) == 2
 
 
 def test_the_instance_on_the_page_goes_through_the_stages_as_printed() -> None:

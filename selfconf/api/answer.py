@@ -126,7 +126,9 @@ class Answer(Configuration):
     @property
     def plain(self) -> Configuration:
         """The configuration by itself."""
-        return Configuration(self.template, self.assignments, self.connections, self.settings, dict(self.bindings))
+        return Configuration(
+            self.template, self.assignments, self.connections, self.settings, dict(self.bindings), self.recruits
+        )
 
     def to_turtle(self) -> str:
         """The configuration in RDF, as Turtle."""
@@ -242,6 +244,7 @@ class Inquiry:
             plain.connections,
             plain.settings,
             plain.bindings,
+            plain.recruits,
             task=self.task.document,
             optimum=optimum,
             unknown=() if optimum is None else self._unknown(optimum),

@@ -195,7 +195,7 @@ class EndpointEcology(Ecology):
         """The advertisements of the components that some role of a task may want. Raises NetworkError."""
         from selfconf.query import read_endpoint
 
-        found, left_out = read_endpoint(self.url, partitioner.roles, wider)
+        found, left_out = read_endpoint(self.url, (*partitioner.roles, *partitioner.suppliers.values()), wider)
         self.left_out = tuple(left_out)
         return found
 

@@ -18,7 +18,8 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
-from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
+from selfconf.model.refusal import Conflict, Outcome, Refusal, TooFewEligible, Undecided
+from selfconf.model.requirement import RolePlayed
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
@@ -27,6 +28,7 @@ from selfconf.rdf.tasks import TaskDocument
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
+from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, recruited
 from selfconf.search.relaxations import NEAR, with_relaxations
 from selfconf.search.strategies import BEST_STEPS, algorithm_1, answers, best_configuration, possible
 from selfconf.search.what_if import consequences
@@ -114,7 +116,7 @@ class Composer:
         partition = self.partition(ecology)
         problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
-        for answer in self._search(problem, running):
+        for answer in self._with_recruits(problem, self._search(problem, running), running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
             if isinstance(outcome, Configuration):
                 wrong = certificate.broken_conditions(self.task.task, problem.partition, outcome, self.hierarchy)
@@ -128,6 +130,29 @@ class Composer:
                 yield replace(outcome, near_misses=misses[short])
             else:
                 yield outcome
+
+    def _with_recruits(
+        self, problem: Problem, found: Iterator[Optimum | Outcome], running: Configuration | None
+    ) -> Iterator[Optimum | Outcome]:
+        """Answers with the recruits that they need; where there are none, the first answer that has some."""
+        kept = () if running is None else running.recruits
+        for answer in found:
+            outcome = answer.configuration if isinstance(answer, Optimum) else answer
+            if not isinstance(outcome, Configuration) or not any(role.recruits for role in problem.roles):
+                yield answer
+                continue
+            steps = RECRUIT_STEPS if self.steps is None else self.steps
+            whole = recruited(problem, outcome, kept, steps)
+            other = first_recruited(problem, steps) if whole is None else whole[0]
+            if other is None:
+                roles = tuple(role.iri for role in problem.roles)
+                yield Refusal(
+                    self.task.task.template.iri, (Conflict(roles, requirements=tuple(map(RolePlayed, roles))),)
+                )
+            elif isinstance(answer, Optimum) and isinstance(other, Configuration):
+                yield replace(answer, configuration=other, proved=answer.proved and whole is not None)
+            else:
+                yield other
 
     def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         if self.strategy is Strategy.BEST:
@@ -193,10 +218,11 @@ class Composer:
     def _after(self, problem: Problem, running: Configuration) -> Configuration | Refusal:
         """What comes after a configuration that runs."""
         if self.strategy is Strategy.BEST:
-            *_, found = self._best(problem, running)
+            *_, found = self._with_recruits(problem, self._best(problem, running), running)
             if not isinstance(found, Undecided):
                 return found.configuration if isinstance(found, Optimum) else found
-        return nearest_configuration(problem, running)
+        (near,) = self._with_recruits(problem, iter([nearest_configuration(problem, running)]), running)
+        return Refusal(self.task.task.template.iri, ()) if isinstance(near, Optimum | Undecided) else near
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
         """For each component and input of a configuration, the outputs of the next candidates that could feed it.

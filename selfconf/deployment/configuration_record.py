@@ -19,6 +19,7 @@ def configuration_record(configuration: Configuration) -> dict[str, Any]:
         "connections": [[one.source, one.output, one.sink, one.input] for one in configuration.connections],
         "parameters": [[one.component, one.name, encode_term(one.value)] for one in configuration.settings],
         "bindings": {name: encode_term(value) for name, value in configuration.bindings.items()},
+        **({"recruits": list(configuration.recruits)} if configuration.recruits else {}),
     }
 
 
@@ -31,6 +32,7 @@ def recorded_configuration(record: Mapping[str, Any]) -> Configuration:
             tuple(Connection(IRI(a), output, IRI(b), port) for a, output, b, port in record["connections"]),
             tuple(ParameterSetting(IRI(c), name, decode_term(value)) for c, name, value in record["parameters"]),
             {name: decode_term(value) for name, value in record["bindings"].items()},
+            tuple(map(IRI, record.get("recruits", ()))),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise PeerError(f"not the record of a configuration: {error!r}") from None

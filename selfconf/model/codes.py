@@ -407,6 +407,13 @@ CODES: tuple[Code, ...] = (
         Severity.WARNING,
     ),
     Code(
+        "SC-T17", "A role recruits or does not, or states one shape of its suppliers.",
+        "Recruits are components outside of the roles; they feed what no role feeds.",
+        f'{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits "yes" .',
+        f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits true .",
+        ("Recruits",),
+    ),
+    Code(
         "SC-C01", "A configuration has exactly one template, and at most one task, epoch and time.",
         "These say which question it answers, and when it was the answer.",
         ":now a sc:Configuration ; sc:epoch 3 .", ":now a sc:Configuration ; sc:template :radio ; sc:epoch 3 .",

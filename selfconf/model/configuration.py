@@ -49,11 +49,18 @@ class Configuration:
     connections: tuple[Connection, ...] = ()
     settings: tuple[ParameterSetting, ...] = ()
     bindings: Mapping[str, Term] = field(default_factory=dict, hash=False)
+    recruits: tuple[IRI, ...] = field(default=(), repr=False)
+    """The components that feed players or each other without playing a role, in the order of preference."""
+
+    @property
+    def players(self) -> tuple[IRI, ...]:
+        """The components that play a role, in the order of the roles."""
+        return tuple(component for assignment in self.assignments for component in assignment.components)
 
     @property
     def components(self) -> tuple[IRI, ...]:
-        """B, the components of the configuration, in the order of the roles."""
-        return tuple(component for assignment in self.assignments for component in assignment.components)
+        """B, the components of the configuration: its players in the order of the roles, then its recruits."""
+        return (*self.players, *self.recruits)
 
     def role_of(self, component: IRI) -> IRI | None:
         """The role that a component plays, if it plays one."""

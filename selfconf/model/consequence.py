@@ -15,7 +15,8 @@ class Consequence:
     """A component that may fail, the role it plays, and the configuration after that, or why there is none."""
 
     component: IRI
-    role: IRI
+    role: IRI | None
+    """None for a recruit, which plays none."""
     after: Configuration | Refusal
     started: tuple[IRI, ...] = ()
     """Components that would begin to play a part, in the order of the roles."""
@@ -39,4 +40,5 @@ class Consequence:
         return f"{instead}, and {', '.join(map(name, self.stopped))} would stop" if self.stopped else instead
 
     def __str__(self) -> str:
-        return f"{self.component.short} ({self.role.short}): {self.told(lambda iri: iri.short)}"
+        part = "recruit" if self.role is None else self.role.short
+        return f"{self.component.short} ({part}): {self.told(lambda iri: iri.short)}"

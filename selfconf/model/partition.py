@@ -44,6 +44,20 @@ class Candidate:
 
 
 @dataclass(frozen=True, slots=True)
+class Recruit:
+    """A component that may feed players without playing a role itself."""
+
+    profile: Profile
+    roles: frozenset[int]
+    """The roles, by number, whose players it may feed; other recruits it may feed in any case."""
+
+    @property
+    def component(self) -> IRI:
+        """The IRI of the component."""
+        return self.profile.component
+
+
+@dataclass(frozen=True, slots=True)
 class NearMiss:
     """A component that a role would take, but for one thing."""
 
@@ -65,13 +79,16 @@ class Partition:
 
     candidates: tuple[tuple[Candidate, ...], ...]
     variables: tuple[Variable, ...] = ()
+    recruits: tuple[Recruit, ...] = ()
+    """The components that may be recruited, in the order in which they are preferred; none where no role recruits."""
 
     def without(self, lost: frozenset[IRI]) -> Partition:
         """The partition once some components, and with them the values that no other states, have left the ecology."""
+        recruits = tuple(recruit for recruit in self.recruits if recruit.component not in lost)
         left = tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates)
         kept = [_places_stated(variable, number, left) for number, variable in enumerate(self.variables)]
         if all(len(places) == len(variable.domain) for places, variable in zip(kept, self.variables, strict=True)):
-            return Partition(left, self.variables)
+            return Partition(left, self.variables, recruits)
         numbers = [number for number, places in enumerate(kept) if places]
 
         def narrowed(candidate: Candidate) -> Candidate:
@@ -80,7 +97,7 @@ class Partition:
 
         domains = ((self.variables[n], tuple(self.variables[n].domain[place] for place in kept[n])) for n in numbers)
         variables = tuple(replace(variable, domain=domain) for variable, domain in domains)
-        return Partition(tuple(tuple(map(narrowed, role)) for role in left), variables)
+        return Partition(tuple(tuple(map(narrowed, role)) for role in left), variables, recruits)
 
 
 def _places_stated(variable: Variable, number: int, roles: Iterable[Iterable[Candidate]]) -> list[int]:

@@ -100,19 +100,25 @@ class DerivationStep:
     sources: tuple[IRI, ...]
     optional: tuple[IRI, ...] = ()
     """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
+    recruits: bool = False
+    """Whether the role recruits, so that components outside of the roles could have fed it."""
 
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
         none_issues = f"nobody left in {{}} issues a {self.wanted}"
-        lack = _lack(self.sources, self.optional, none_issues, f"no interaction feeds its input {self.input!r}")
+        no_role = (
+            f"no recruit issues a {self.wanted}" if self.recruits else f"no interaction feeds its input {self.input!r}"
+        )
+        lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
 
 
-def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str, no_role: str) -> str:
+def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str, no_role: str, recruits: bool) -> str:
     """Why an input is not fed: `none_issues` is said of the sources that ask for at least one component."""
     asked = [source.short for source in sources if source not in optional]
     said = [none_issues.format(listed(asked))] if asked else [] if optional else [no_role]
-    return ", and ".join([*said, *(f"the role {role.short} asks for nobody (sc:minCount 0)" for role in optional)])
+    said += [f"the role {role.short} asks for nobody (sc:minCount 0)" for role in optional]
+    return ", and ".join([*said, *(["no recruit does"] if recruits and sources else [])])
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,13 +136,18 @@ class InputUnfed:
     """What follows from it, up to the role that has no candidate left."""
     optional: tuple[IRI, ...] = ()
     """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
+    recruits: bool = False
+    """Whether the role recruits, so that components outside of the roles could have fed it."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the role or component that it speaks of is described, if that is known."""
 
     def __str__(self) -> str:
         name = f"the input {self.input!r} ({self.wanted}) of {self.component.short}"
         none_issues = f"no candidate of {{}} issues a {self.wanted} for it"
-        lack = _lack(self.sources, self.optional, none_issues, f"no interaction feeds it in the role {self.role.short}")
+        no_role = f"no interaction feeds it in the role {self.role.short}"
+        if self.recruits:
+            no_role = f"no recruit that can be fed itself issues a {self.wanted}"
+        lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
         return "; so ".join([f"{name} cannot be fed: {lack}", *map(str, self.consequences)])
 
 

@@ -32,6 +32,8 @@ class Role:
     settings: tuple[Setting, ...] = ()
     types: tuple[IRI, ...] = ()
     """The component types that the shape asks for by `sh:class`, for people to read."""
+    recruits: bool = False
+    """Whether components outside of the roles may feed the inputs of its players that no role feeds."""
     place: Place | None = field(default=None, compare=False)
 
 

@@ -23,7 +23,7 @@ def moment(seconds: float) -> Literal:
 def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
     """A name for a deployed configuration: what it is and when."""
     plain = replace(configuration, bindings=dict(configuration.bindings))  # whatever kind of mapping it holds
-    digest = hashlib.blake2s(repr((plain, epoch)).encode(), digest_size=8).hexdigest()
+    digest = hashlib.blake2s(repr((plain, epoch, *configuration.recruits)).encode(), digest_size=8).hexdigest()
     return IRI(f"urn:selfconf:configuration:{digest}")
 
 
@@ -81,6 +81,8 @@ def configuration_triples(
                 yield node, SC.replaces, replaced[component]
             for other in passed_over.get(assignment.role, ()):
                 yield node, SC.passedOver, other
+    for component in configuration.recruits:
+        yield name, SC.recruited, component
     for connection in configuration.connections:
         node = blank()
         yield name, SC.connection, node

@@ -36,6 +36,7 @@ def configuration_body(configuration: Configuration) -> dict[str, Any]:
         "parameters": [
             {"component": s.component, "name": s.name, "value": value_body(s.value)} for s in configuration.settings
         ],
+        **({"recruits": list(configuration.recruits)} if configuration.recruits else {}),
     }
 
 
@@ -44,7 +45,7 @@ def consequences_body(consequences: Sequence[Consequence]) -> list[dict[str, Any
     return [
         {
             "component": one.component,
-            "role": one.role,
+            **({} if one.role is None else {"role": one.role}),
             "single_point_of_failure": one.fatal,
             "started": list(one.started),
             "stopped": list(one.stopped),

@@ -83,7 +83,8 @@ def _node(configuration: Configuration, component: IRI, x: int, y: int, name: Na
     role = configuration.role_of(component)
     shown = name(component)
     shown = shown if len(shown) <= CHARACTERS else f"{shown[: CHARACTERS - 1]}…"
-    below = "" if role is None else f"<tspan x='{x + 10}' dy='15' fill='#64748b'>{escape(role.short)}</tspan>"
+    part = "recruit" if role is None else role.short
+    below = f"<tspan x='{x + 10}' dy='15' fill='#64748b'>{escape(part)}</tspan>"
     return (
         f"<g><title>{escape(component)}</title><rect x='{x}' y='{y}' width='{WIDTH}' height='{HEIGHT}' rx='8' "
         f"fill='#eff6ff' stroke='#3b82f6'/><text x='{x + 10}' y='{y + 19}' fill='#0f172a'>{escape(shown)}{below}</text>"

@@ -12,7 +12,8 @@ def mermaid(configuration: Configuration, name: Name) -> str:
     lines = ["flowchart LR"]
     for component, node in nodes.items():
         role = configuration.role_of(component)
-        lines.append(f'    {node}["{_quoted(name(component))}<br/><i>{_quoted(role.short if role else "")}</i>"]')
+        part = role.short if role else "recruit"
+        lines.append(f'    {node}["{_quoted(name(component))}<br/><i>{_quoted(part)}</i>"]')
     for c in configuration.connections:
         label = _quoted(f"{c.output} → {c.input}")
         lines.append(f'    {nodes[c.source]} -->|"{label}"| {nodes[c.sink]}')

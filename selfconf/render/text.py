@@ -28,6 +28,8 @@ def configuration_text(configuration: Configuration, name: Name) -> str:
     lines = [f"configured {name(configuration.template)}"]
     for role, assignment in zip(roles, configuration.assignments, strict=True):
         lines.append(f"  {role:<{width}}  {', '.join(map(name, assignment.components)) or '(nobody)'}")
+    if configuration.recruits:
+        lines += ["recruits", *(f"  {name(component)}" for component in configuration.recruits)]
     return "\n".join([*lines, *_connections(configuration, name), *_values(configuration, name)])
 
 

@@ -322,6 +322,7 @@ class _Wording:
             self.requirements,
             tuple(consequences),
             cause.optional,
+            cause.recruits,
         )
 
     def _too_few_distinct(self) -> TooFewDistinct:
@@ -358,7 +359,10 @@ class _Wording:
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
         signatures = {one for kind in kinds for one in kind.signatures}
         others = sum(map(signatures.__contains__, map(signature, problem.candidates[role]))) - 1
-        return DerivationStep(problem.roles[role].iri, profile.component, others, unfed, need.wanted, sources, optional)
+        asked = problem.roles[role]
+        return DerivationStep(
+            asked.iri, profile.component, others, unfed, need.wanted, sources, optional, asked.recruits
+        )
 
     def _requirement(self, constraint: Constraint) -> model.Requirement:
         """Return a constraint in the words of the template."""

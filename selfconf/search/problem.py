@@ -17,16 +17,17 @@ of its required inputs is matched, and the free parameters still have a value. A
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from heapq import heappop, heappush
 from typing import NamedTuple
 
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
-from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.profile import Input, Output, Profile, WantedSignal
 from selfconf.model.template import Role, Task
 from selfconf.model.term import IRI, Term
+from selfconf.search.supply import Supply
 
 Playing = Sequence[Sequence[Candidate]]
 """For each role, in order, the candidates that play it so far."""
@@ -76,6 +77,9 @@ class Problem:
             tuple(dict.fromkeys(link.source for link in links)) for links in self.links
         )
         """For each role, the roles that feed it."""
+        self.supply = Supply(partition.recruits, hierarchy)
+        self.spared: tuple[Set[WantedSignal], ...] = self._spared()
+        """For each role the signals that recruits may supply to its players, so that no role has to."""
         self.open_values: tuple[int, ...] = tuple(self._open(variable) for variable in self.variables)
         """The values that each variable may have before any slot is filled, as a mask.
 
@@ -101,6 +105,19 @@ class Problem:
     def valueless(self) -> bool:
         """Whether a role that has to be played sets something to a parameter that can get no value."""
         return any(self.roles[position].minimum for position, _ in self.unvalued)
+
+    def _spared(self) -> tuple[Set[WantedSignal], ...]:
+        """What recruits could supply if every candidate played: an upper bound of what they can supply in the end."""
+        recruiting = [number for number, role in enumerate(self.roles) if role.recruits]
+        found: list[Set[WantedSignal]] = [frozenset()] * len(self.roles)
+        if recruiting and self.partition.recruits:
+            outputs = {output for some in self.candidates for c in some for output in c.profile.outputs}
+            usable = self.supply.usable(outputs)
+            for role in recruiting:
+                available = self.supply.available(usable, role)
+                wanted = {port.wanted for c in self.candidates[role] for port in c.profile.required}
+                found[role] = frozenset(filter(available.serves, wanted))
+        return tuple(found)
 
     def _open(self, variable: Variable) -> int:
         is_set = any(p.is_set for p in self.task.template.parameters if p.iri == variable.parameter)
@@ -134,12 +151,16 @@ class Problem:
                     if self.matches(output, link, wanted):
                         yield candidate.profile, output
 
-    def compatible(self, role: int, profile: Profile, playing: Playing) -> bool:
-        """Return whether each required input of a sink is matched by an output: the mutual compatibility rule."""
+    def compatible(self, role: int, profile: Profile, playing: Playing, alone: bool = False) -> bool:
+        """Return whether each required input of a sink is matched by an output: the mutual compatibility rule.
+
+        Recruits may feed what no role feeds, unless the players have to be enough `alone`.
+        """
         lacking: dict[IRI, list[str]] = {}
+        spared = frozenset() if alone else self.spared[role]
         for wanted in profile.inputs:
             name, signals, _, optional, condition = wanted
-            if optional:
+            if optional or (spared and wanted.wanted in spared):
                 continue
             if condition is None and len(signals) == 1:
                 lacking.setdefault(signals[0], []).append(name)
@@ -303,7 +324,8 @@ class _Extension:
         if ports in self.unfed.get(role, ()):
             return False
         self.playing[role].append(candidate)
-        if self.problem.compatible(role, profile, self.playing):
+        # A component that is added to a solution brings no recruits of its own.
+        if self.problem.compatible(role, profile, self.playing, alone=True):
             return True
         self.playing[role].pop()
         self.unfed.setdefault(role, set()).add(ports)

@@ -18,13 +18,17 @@ def consequences(
     search: Callable[[Problem, Configuration], Configuration | Refusal] = reconfigure.nearest_configuration,
 ) -> Iterator[Consequence]:
     """Yield what the loss of each component of a configuration would bring, one by one, in the order of the roles."""
-    for assignment in running.assignments:
-        for component in assignment.components:
-            left = Problem(problem.task, problem.partition.without(frozenset((component,))), problem.hierarchy)
-            yield _consequence(component, assignment.role, running, search(left, running))
+    players = [
+        (component, assignment.role) for assignment in running.assignments for component in assignment.components
+    ]
+    for component, role in (*players, *((component, None) for component in running.recruits)):
+        left = Problem(problem.task, problem.partition.without(frozenset((component,))), problem.hierarchy)
+        yield _consequence(component, role, running, search(left, running))
 
 
-def _consequence(component: IRI, role: IRI, running: Configuration, after: Configuration | Refusal) -> Consequence:
+def _consequence(
+    component: IRI, role: IRI | None, running: Configuration, after: Configuration | Refusal
+) -> Consequence:
     if isinstance(after, Refusal):
         return Consequence(component, role, after)
     before, now = running.components, after.components

@@ -64,6 +64,23 @@ def test_a_task_runs_and_goes_on_when_a_component_crashes() -> None:
     assert not screen.active
 
 
+def test_a_recruit_that_crashes_is_replaced_by_another() -> None:
+    ecology = MemoryEcology()
+    first = ecology.add(Clock("first"), CLOCK.replace("NAME", "a"))
+    ecology.add(Clock("second"), CLOCK.replace("NAME", "b"))
+    screen = ecology.add(Screen(), SCREEN)
+    template = ":show a sc:Template ; sc:roles ( :sink ) . :sink a sc:Role ; sh:class :Screen ; sc:recruits true ."
+    run = ecology.run(sc.template(PREFIXES + template)).started()
+    assert run.configuration is not None
+    assert [one.short for one in run.configuration.recruits] == ["a"]
+    assert ecology.until(lambda: screen.shown == ["first"])
+    ecology.crash(first)
+    assert ecology.until(lambda: "second" in screen.shown)
+    assert [one.short for one in run.configuration.recruits] == ["b"]
+    run.stop()
+    assert not screen.active
+
+
 def test_a_component_that_is_cut_off_comes_back() -> None:
     ecology = MemoryEcology(seed=3, faults=Faults(loss=0.05, doubling=0.05))
     clock = ecology.add(Clock("only"), CLOCK.replace("NAME", "a"))

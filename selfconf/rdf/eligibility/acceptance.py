@@ -9,15 +9,15 @@ component whose input states it; an output that cannot be judged does not confor
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from operator import attrgetter
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import NotJudged
-from selfconf.model.partition import Candidate, Partition
+from selfconf.model.partition import Candidate, Partition, Recruit
 from selfconf.model.profile import Input, Output, Ports, Profile, shared_ports
 from selfconf.model.template import Template
 from selfconf.model.term import IRI, Term, sort_key
@@ -33,6 +33,7 @@ _PORTS = attrgetter("profile.ports")
 _SHAPE = IRI("urn:selfconf:acceptance:shape")
 _OUTPUT = IRI("urn:selfconf:acceptance:output")
 _PATH = "urn:selfconf:acceptance:path:"
+_C = TypeVar("_C", Candidate, Recruit)
 Port = tuple[IRI, str]
 """A component, and the name of an output of it."""
 Seen = Callable[[IRI], Sequence[Triple]]
@@ -120,24 +121,29 @@ class Acceptance:
                 known[component] = seen(component)
             return known[component]
 
-        met = self._met(partition, asked, remembered)
+        roles, supplying = asked
+        outputs = [
+            *((c.profile, wanted) for some, wanted in zip(partition.candidates, roles, strict=True) for c in some),
+            *((recruit.profile, supplying) for recruit in partition.recruits),
+        ]
+        met = self._met(outputs, remembered)
         return replace(
             partition,
             candidates=tuple(
-                tuple(_told(one, met) if wanted else one for one in some if self._can_be_judged(one.profile))
-                for some, wanted in zip(partition.candidates, asked, strict=True)
+                tuple(_told(one, met) for one in some if self._can_be_judged(one.profile))
+                for some in partition.candidates
             ),
+            recruits=tuple(_told(one, met) for one in partition.recruits if self._can_be_judged(one.profile)),
         )
 
-    def _met(self, partition: Partition, asked: Sequence[Sequence[_Asked]], seen: Seen) -> dict[Port, set[str]]:
+    def _met(self, profiles: Iterable[tuple[Profile, Sequence[_Asked]]], seen: Seen) -> dict[Port, set[str]]:
         """For each output the shapes to which it conforms, of the inputs that it could feed by its types."""
         pairs: dict[str, dict[Port, Node]] = {}
-        for some, wanted in zip(partition.candidates, asked, strict=True):
-            for profile in (candidate.profile for candidate in some if wanted):
-                for output in profile.outputs:
-                    for text in self._could_feed(output, wanted):
-                        node = _node(seen(profile.component), profile.component, output.name)
-                        pairs.setdefault(text, {})[profile.component, output.name] = node
+        for profile, wanted in profiles:
+            for output in profile.outputs if wanted else ():
+                for text in self._could_feed(output, wanted):
+                    node = _node(seen(profile.component), profile.component, output.name)
+                    pairs.setdefault(text, {})[profile.component, output.name] = node
         met: dict[Port, set[str]] = {}
         began = time.process_time()
         for text, outputs in pairs.items():
@@ -184,20 +190,27 @@ def _cannot_be_judged(error: TemplateError) -> NotJudged:
     return NotJudged(f"what its input accepts cannot be judged: {error.message}")
 
 
-def _asked_of(template: Template, partition: Partition) -> list[list[_Asked]] | None:
-    """For each role the inputs that it may feed which ask for more than a type; None if there are none at all."""
+def _asked_of(template: Template, partition: Partition) -> tuple[list[list[_Asked]], list[_Asked]] | None:
+    """The inputs that ask for more than a type: for each role those that it may feed, and those that recruits may feed.
+
+    None if there are no such inputs at all.
+    """
     stating = [[*_stating(candidates)] for candidates in partition.candidates]
-    if not any(stating):
+    recruiting = [*_stating(partition.recruits)]
+    if not any(stating) and not recruiting:
         return None
     place = {role.iri: number for number, role in enumerate(template.roles)}
-    asked: list[dict[_Asked, None]] = [{} for _ in template.roles]
+    of_recruits = dict.fromkeys(one for ports in recruiting for one in _asked(ports))
+    asked = [dict(of_recruits) for _ in template.roles]
     for interaction in template.interactions:
         for ports in stating[place[interaction.sink]]:
             asked[place[interaction.source]].update(dict.fromkeys(_asked(ports)))
-    return [*map(list, asked)]
+    for role, some in zip(template.roles, stating, strict=True):
+        of_recruits.update(dict.fromkeys(one for ports in some if role.recruits for one in _asked(ports)))
+    return [*map(list, asked)], list(of_recruits)
 
 
-def _stating(candidates: Sequence[Candidate]) -> Iterator[Ports]:
+def _stating(candidates: Sequence[Candidate | Recruit]) -> Iterator[Ports]:
     """The ports, each once, of candidates of which an input asks for more than a type."""
     # One look at each candidate in C, then one at each choice of ports that they share.
     for ports in {id(ports): ports for ports in map(_PORTS, candidates)}.values():
@@ -211,8 +224,8 @@ def _asked(ports: Ports) -> Iterator[_Asked]:
             yield _Asked(port, port.condition.accepts)
 
 
-def _told(candidate: Candidate, met: dict[Port, set[str]]) -> Candidate:
-    """A candidate whose outputs tell to which shapes they conform."""
+def _told(candidate: _C, met: dict[Port, set[str]]) -> _C:
+    """A candidate, or a recruit, whose outputs tell to which shapes they conform."""
     profile = candidate.profile
     outputs = tuple(
         output._replace(conforms=frozenset(met.get((profile.component, output.name), ()))) for output in profile.outputs

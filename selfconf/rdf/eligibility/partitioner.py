@@ -15,9 +15,10 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from selfconf.errors import TemplateError
+from selfconf.model.candidate_order import candidate_order
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
-from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable, ordered
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Recruit, Variable, ordered
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
@@ -31,6 +32,7 @@ from selfconf.rdf.eligibility.advertisement_index import (
 )
 from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
 from selfconf.rdf.eligibility.role_tests import CompiledRole
+from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import RDFS, SC, TYPE
@@ -72,19 +74,25 @@ class Partitioner:
     """Partitions ecologies for one task; compile once, use for each new set of advertisements."""
 
     def __init__(self, given: TaskDocument, hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
-        self.task, self.document, self.hierarchy = given.task, given.document, hierarchy
+        self.task, self.document, self.hierarchy = given.task, with_named_suppliers(given.document), hierarchy
         self.free = free_parameters(given.task.template, given.task.bindings)
         self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
         self.roles = tuple(
-            compile_role(given.document, role.iri, tuple(s.type for s in role.settings), given.task.bindings, self.free)
+            compile_role(self.document, role.iri, tuple(s.type for s in role.settings), given.task.bindings, self.free)
             for role in given.task.template.roles
         )
+        self.suppliers = {
+            number: suppliers_of(self.document, role.iri, given.task.bindings)
+            for number, role in enumerate(given.task.template.roles)
+            if role.recruits
+        }
+        """For each role that recruits, by number, the tests of who may supply its players."""
         self._above = ClassClosure(hierarchy)
         self.not_judged: dict[IRI, NotJudged] = {}
         """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""
         self._given_up: dict[Advertisement, dict[IRI, NotJudged]] = {}
         self._acceptance = Acceptance(hierarchy)
-        self.suitable = free_values.Suitable(self._parameters, given.document)
+        self.suitable = free_values.Suitable(self._parameters, self.document)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
@@ -107,13 +115,29 @@ class Partitioner:
             return masks.setdefault(allowed, allowed)  # shared, so that a search tells by identity which are alike
 
         found = Partition(
-            tuple(ordered([Candidate(one.profile, admits(one)) for one in role]) for role in eligible), variables
+            tuple(ordered([Candidate(one.profile, admits(one)) for one in role]) for role in eligible),
+            variables,
+            self._recruits(ecology),
         )
         judged = self._acceptance.judged(
             self.task.template, found, lambda component: tuple(self.visible([ecology[component]]))
         )
         self.not_judged |= self._acceptance.not_judged
         return judged
+
+    def _recruits(self, ecology: AdvertisementIndex) -> tuple[Recruit, ...]:
+        """The components that may supply the players of each role that recruits, in the order of preference."""
+        roles: dict[IRI, set[int]] = {}
+        for number, tests in self.suppliers.items():
+            passed = [advertisement for advertisement, _ in self._passed(tests, ecology)]
+            outside = (
+                {} if tests.complete else self.violations(tests, passed, list(ecology.values()), {}, detailed=False)
+            )
+            for advertisement in passed:
+                if advertisement.component not in outside:
+                    roles.setdefault(advertisement.component, set()).add(number)
+        profiles = sorted((ecology[component].profile for component in roles), key=candidate_order)
+        return tuple(Recruit(profile, frozenset(roles[profile.component])) for profile in profiles)
 
     def akin(self, role: CompiledRole, ecology: AdvertisementIndex) -> Iterator[TypeSet]:
         """The kinds that are of the classes that a role asks for."""

@@ -8,7 +8,7 @@ from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
 
-ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount))
+ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits))
 """What is said of a role besides its shape."""
 
 
@@ -27,7 +27,7 @@ def shape_statements(document: Document, role: IRI) -> Iterator[tuple[IRI, Term]
         yield predicate, value
 
 
-def shape_triples(document: Document, role: IRI) -> Iterator[Triple]:
+def shape_triples(document: Document, role: Node) -> Iterator[Triple]:
     """Each statement of a role's shape, nested and named shapes included."""
     waiting: list[Node] = [role]
     seen: set[Term] = {role}

@@ -29,7 +29,7 @@ _COUNT = re.compile(r"\+?[0-9]{1,18}")
 _PRIORITY = re.compile(r"[+-]?[0-9]{1,300}")
 _MOST_PRIORITY = 1_000_000
 _SAID_OF = {
-    **dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount), (SC.Role,)),
+    **dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits), (SC.Role,)),
     SC.cost: (SC.Template,),
     SC.priority: (SC.Template, SC.Task),
 }
@@ -163,7 +163,7 @@ class _Reader(DocumentReader):
             problem = f"the role {worded(name)} asks for at least {least} and at most {most} components"
             raise self.mistake(problem, name, SC.minCount, *self.document.values(name, SC.minCount))
         types = tuple(value for value in self.document.values(name, SH["class"]) if isinstance(value, IRI))
-        return Role(name, least, most, self._settings(name), types, Place(self.document.source))
+        return Role(name, least, most, self._settings(name), types, self._recruits(name), Place(self.document.source))
 
     def _settings(self, role: IRI) -> tuple[Setting, ...]:
         """What a role sets, each once; two values for one type of parameter are a mistake."""
@@ -178,6 +178,24 @@ class _Reader(DocumentReader):
                 again = [node for setting, node in nodes.items() if setting.type == kind][1]
                 raise self.mistake(problem, role, SC.sets, again)
         return tuple(nodes)
+
+    def _recruits(self, role: IRI) -> bool:
+        """Whether a role recruits: it says so, or states the shape that its suppliers have to conform to."""
+        values = self.document.values(role, SC.recruits)
+        if not values:
+            return False
+        value = values[0]
+        truth = isinstance(value, Literal) and value.datatype == XSD.boolean and value.lexical in ("true", "false")
+        if len(values) > 1 or (isinstance(value, Literal) and not truth):
+            problem = f"sc:recruits of the role {worded(role)} is true, false, or one shape of its suppliers"
+            raise self.mistake(problem, role, SC.recruits, values[-1])
+        if not isinstance(value, Literal):
+            wrong = misfit(self.document, shape_triples(self.document, value), self._variables)
+            if wrong is not None:
+                problem = f"the shape of what the role {worded(role)} recruits is not well-formed: {wrong[1]}"
+                raise self.mistake(problem, *wrong[0])
+            return True
+        return value.lexical == "true"
 
     def _shape(self, role: IRI) -> None:
         """Raises where the shape of a role is certainly no shape."""

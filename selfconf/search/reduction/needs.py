@@ -57,6 +57,7 @@ class Wiring:
             numbered = self._numbered(role, dict.fromkeys(chain.from_iterable(inputs)))
             return [tuple(dict.fromkeys([numbered[one] for one in some if one in numbered])) for some in inputs]
         sources, known = self.problem.feeding(role, None), dict[WantedSignal, int]()
+        spared = self.problem.spared[role]
         if self._fed_later(sources):
             return [()] * len(inputs)
         found: list[tuple[int, ...]] = []
@@ -66,6 +67,8 @@ class Wiring:
                 if optional:
                     continue
                 wanted = WantedSignal(signals, condition)
+                if wanted in spared:
+                    continue
                 number = known.get(wanted)
                 if number is None:
                     number = known[wanted] = self._new(Need(role, wanted, sources))
@@ -110,6 +113,8 @@ class Wiring:
             if sources is None:
                 continue
             signal = WantedSignal(signals, condition)
+            if signal in self.problem.spared[role]:
+                continue
             number = same.get((signal, sources))
             if number is None:
                 number = same[signal, sources] = self._new(Need(role, signal, sources, name))

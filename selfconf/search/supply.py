@@ -1,0 +1,90 @@
+"""What an ecology can supply beyond the roles of a task: which components could be recruited.
+
+*Usable* is a least fixpoint. A component is usable if each of its required inputs is fed by an output of a player or of
+a usable component; so a chain of suppliers ends at components that need nothing, or at players, and a cycle among
+recruits never feeds itself. Forward chaining finds it in time linear in the ports (Dowling and Gallier, 1984).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence, Set
+from dataclasses import dataclass, field
+
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.partition import Recruit
+from selfconf.model.profile import Output, WantedSignal
+from selfconf.model.term import IRI
+
+
+@dataclass(slots=True)
+class Available:
+    """Outputs by each signal that they serve."""
+
+    hierarchy: Hierarchy
+    by_signal: dict[IRI, list[Output]] = field(default_factory=dict)
+
+    def add(self, output: Output) -> None:
+        """Note an output."""
+        for signal in self.hierarchy.served(output.signals):
+            self.by_signal.setdefault(signal, []).append(output)
+
+    def serves(self, wanted: WantedSignal) -> bool:
+        """Whether some output serves an input that wants this."""
+        signals, condition = wanted
+        return any(
+            condition is None or condition.met_by(output)
+            for signal in signals
+            for output in self.by_signal.get(signal, ())
+        )
+
+
+class Supply:
+    """The components that may be recruited, in the order in which they are preferred."""
+
+    def __init__(self, recruits: Sequence[Recruit], hierarchy: Hierarchy) -> None:
+        self.recruits, self.hierarchy = recruits, hierarchy
+        self._lacking = [len(recruit.profile.required) for recruit in recruits]
+        self._waiting: dict[IRI, list[tuple[int, int]]] = {}
+        """For each signal the inputs that wait for it: the number of the recruit, and that of the required input."""
+        for number, recruit in enumerate(recruits):
+            for place, port in enumerate(recruit.profile.required):
+                for signal in port.signals:
+                    self._waiting.setdefault(signal, []).append((number, place))
+
+    def usable(self, outputs: Iterable[Output], without: Set[IRI] = frozenset()) -> list[int]:
+        """Return the numbers of the recruits that are usable beside some outputs, each after those that feed it."""
+        lacking, met = list(self._lacking), set[tuple[int, int]]()
+        found = [
+            number
+            for number, recruit in enumerate(self.recruits)
+            if not lacking[number] and recruit.component not in without
+        ]
+        waiting = [*outputs, *(output for number in found for output in self.recruits[number].profile.outputs)]
+        while waiting:
+            output = waiting.pop()
+            for one in self._fed_by(output):
+                number, place = one
+                recruit = self.recruits[number]
+                if one in met or recruit.component in without:
+                    continue
+                condition = recruit.profile.required[place].condition
+                if condition is not None and not condition.met_by(output):
+                    continue
+                met.add(one)
+                lacking[number] -= 1
+                if not lacking[number]:
+                    found.append(number)
+                    waiting += recruit.profile.outputs
+        return found
+
+    def _fed_by(self, output: Output) -> Iterable[tuple[int, int]]:
+        return (one for signal in self.hierarchy.served(output.signals) for one in self._waiting.get(signal, ()))
+
+    def available(self, numbers: Iterable[int], role: int | None = None) -> Available:
+        """Return what some recruits issue; with a role, those that may supply it."""
+        found = Available(self.hierarchy)
+        for recruit in (self.recruits[number] for number in numbers):
+            if role is None or role in recruit.roles:
+                for output in recruit.profile.outputs:
+                    found.add(output)
+        return found

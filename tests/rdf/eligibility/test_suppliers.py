@@ -1,0 +1,59 @@
+"""Who may supply the players of a role: anybody, or who conforms to the shape that the role states."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf import configure, read, template
+from selfconf.errors import TemplateError
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
+from tests.lab import PREFIXES
+
+ECOLOGY = (
+    PREFIXES
+    + """
+:user a sc:Component, :User ; sc:hasInput [ sc:name "i" ; sc:signalType :S ] .
+:bad a sc:Component, :Maker ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ] ; sc:preference 5 .
+:good a sc:Component, :Maker, :Good ; :power 3 ; sc:hasInput [ sc:name "i" ; sc:signalType :T ] ;
+    sc:hasOutput [ sc:name "o" ; sc:signalType :S ] .
+:base a sc:Component, :Maker, :Good ; :power 9 ; sc:hasOutput [ sc:name "o" ; sc:signalType :T ] .
+"""
+)
+
+
+def recruited(recruits: str) -> list[str]:
+    """The recruits of the answer, by their short names; nothing where there is no configuration."""
+    task = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :User ; sc:recruits {recruits} ."
+    answer = configure(template(PREFIXES + task), read(ECOLOGY))
+    assert isinstance(answer, Configuration | Refusal)
+    return [one.short for one in answer.recruits] if isinstance(answer, Configuration) else []
+
+
+@pytest.mark.parametrize(
+    ("recruits", "found"),
+    [
+        ("true", ["bad"]),
+        ("false", []),
+        ("[ sh:class :Good ]", ["base", "good"]),
+        ("[ sh:property [ sh:path :power ; sh:minInclusive 2 ; sh:minCount 1 ] ]", ["base", "good"]),
+        ("[ sh:property [ sh:path :power ; sh:maxInclusive 5 ; sh:minCount 1 ] ]", []),
+        ('[ sh:class :Good ; sh:property [ sh:path ( sc:hasOutput sc:name ) ; sh:hasValue "o" ] ]', ["base", "good"]),
+        (":named . :named a sh:NodeShape ; sh:class :Good", ["base", "good"]),
+    ],
+)
+def test_only_who_conforms_is_recruited(recruits: str, found: list[str]) -> None:
+    assert recruited(recruits) == found
+
+
+@pytest.mark.parametrize(
+    ("recruits", "problem"),
+    [
+        ('"yes"', "true, false, or one shape"),
+        ("true , false", "true, false, or one shape"),
+        ("[ sh:pattern 5 ]", "well-formed"),
+    ],
+)
+def test_what_says_neither_is_a_mistake_of_the_template(recruits: str, problem: str) -> None:
+    with pytest.raises(TemplateError, match=problem):
+        recruited(recruits)

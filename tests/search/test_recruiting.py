@@ -1,0 +1,202 @@
+"""Recruits against enumeration: the first players for whom there are any, then the fewest, then the first of these."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations, product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf import certificate
+from selfconf.model.configuration import Configuration
+from selfconf.model.partition import Candidate, Recruit
+from selfconf.model.profile import Profile, WantedSignal
+from selfconf.model.refusal import Refusal
+from selfconf.search.engines import clause_learning
+from selfconf.search.problem import Problem
+from selfconf.search.recruiting import first_recruited, recruited
+from selfconf.search.strategies import first
+from tests.search.oracle import World
+from tests.search.worlds import agreement, component, iri, problem, problems
+
+Players = tuple[tuple[Candidate, ...], ...]
+
+
+@st.composite
+def recruiting(draw: st.DrawFn) -> Problem:
+    """Problems some of whose roles recruit, with recruits that may be candidates as well and may feed each other."""
+    given_ = draw(problems(roles=3, components=4))
+    others = draw(problems(roles=1, components=4))
+    everybody = {c.profile.component: c.profile for some in given_.candidates for c in some}
+    pool = [
+        *(replace(c.profile, component=iri(f"extra{k}")) for k, c in enumerate(others.candidates[0])),
+        *(profile for profile in everybody.values() if draw(st.booleans())),
+    ]
+    numbers = st.frozensets(st.integers(0, len(given_.roles) - 1))
+    recruits = tuple(Recruit(profile, draw(numbers)) for profile in draw(st.permutations(pool)))
+    roles = tuple(replace(role, recruits=draw(st.booleans()), maximum=role.minimum) for role in given_.roles)
+    template = replace(given_.task.template, roles=roles)
+    partition = replace(given_.partition, recruits=recruits)
+    return Problem(replace(given_.task, template=template), partition, given_.hierarchy)
+
+
+class RecruitingWorld(World):
+    """The rules of the contract with recruits, as plain loops."""
+
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(problem.task, problem.partition, problem.hierarchy)
+        self.recruits = problem.partition.recruits
+
+    def lacking(self, players: Players) -> list[tuple[int, WantedSignal]] | None:
+        """The needs that recruits have to feed, each with its role; None where a role that lacks does not recruit."""
+        fed = {(c.sink, c.input) for c in self.connections(players)}
+        found = []
+        for number, some in enumerate(players):
+            for candidate in some:
+                for port in candidate.profile.required:
+                    if (candidate.profile.component, port.name) not in fed:
+                        if not self.roles[number].recruits:
+                            return None
+                        found.append((number, port.wanted))
+        return found
+
+    def enough(self, players: Players, needs: Sequence[tuple[int, WantedSignal]], chosen: Sequence[Recruit]) -> bool:
+        """Whether chosen recruits feed all needs and are fed themselves, without a cycle among them."""
+        names = {c.profile.component for some in players for c in some}
+        if any(recruit.component in names for recruit in chosen):
+            return False
+        sources = [c.profile for some in players for c in some]
+        waiting = list(chosen)
+        while waiting:
+            ready = [
+                one for one in waiting if all(self.feeds_one(sources, port.wanted) for port in one.profile.required)
+            ]
+            if not ready:
+                return False
+            sources += [one.profile for one in ready]
+            waiting = [one for one in waiting if one not in ready]
+        return all(
+            self.feeds_one([one.profile for one in chosen if number in one.roles], wanted) for number, wanted in needs
+        )
+
+    def feeds_one(self, sources: Sequence[Profile], wanted: WantedSignal) -> bool:
+        """Whether an output of some components feeds an input that wants this."""
+        port = component("x", "i:S").inputs[0]._replace(signals=wanted.signals, condition=wanted.condition)
+        return any(self.feeds(output, port, False) for profile in sources for output in profile.outputs)
+
+    def answer(self) -> tuple[Players, tuple[Recruit, ...]] | None:
+        """The first players for whom there are recruits, with the fewest of these, the first."""
+        choices = [combinations(c, role.minimum) for c, role in zip(self.candidates, self.roles, strict=True)]
+        for players in product(*map(list, choices)):
+            names = [c.profile.component for some in players for c in some]
+            needs = self.lacking(players)
+            if (
+                needs is None
+                or len(set(names)) < len(names)
+                or self.unset(players)
+                or not all(allowed is None or allowed for allowed in self.values(players))
+            ):
+                continue
+            for size in range(len(self.recruits) + 1):
+                for chosen in combinations(self.recruits, size):
+                    if self.enough(players, needs, chosen):
+                        return players, chosen
+        return None
+
+
+def answered(problem: Problem) -> Configuration | None:
+    """The configuration that the search finds."""
+    outcome = first.search(problem)
+    if isinstance(outcome, Refusal):
+        return None
+    found = recruited(problem, outcome)
+    if found is None:
+        other = first_recruited(problem)
+        assert other is None or isinstance(other, Configuration)
+        return other
+    configuration, proved = found
+    assert proved
+    return configuration
+
+
+def check(problem: Problem) -> None:
+    """Hold the search against enumeration, and its answer against the certificate."""
+    expected, found = RecruitingWorld(problem).answer(), answered(problem)
+    if expected is None or found is None:
+        assert expected == found
+        return
+    players, recruits = expected
+    assert [a.components for a in found.assignments] == [tuple(c.profile.component for c in some) for some in players]
+    assert found.recruits == tuple(recruit.component for recruit in recruits)
+    assert not certificate.broken_conditions(problem.task, problem.partition, found, problem.hierarchy)
+
+
+@given(recruiting())
+@agreement()
+def test_recruits_are_those_that_enumeration_finds_first(problem: Problem) -> None:
+    pytest.importorskip("pysat")
+    check(problem)
+
+
+@given(recruiting())
+@agreement(0.3)
+def test_without_a_solver_recruits_are_enough_and_none_of_them_can_be_spared(problem: Problem) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(clause_learning, "find_spec", lambda name: None)
+        outcome = first.search(problem)
+        found = None if isinstance(outcome, Refusal) else recruited(problem, outcome)
+    if found is not None:
+        configuration, _ = found
+        assert not certificate.broken_conditions(problem.task, problem.partition, configuration, problem.hierarchy)
+
+
+def with_recruits(problem: Problem, *profiles: Profile) -> Problem:
+    """A problem whose roles all recruit any of some components."""
+    roles = tuple(replace(role, recruits=True) for role in problem.roles)
+    everywhere = frozenset(range(len(roles)))
+    partition = replace(problem.partition, recruits=tuple(Recruit(profile, everywhere) for profile in profiles))
+    template = replace(problem.task.template, roles=roles)
+    return Problem(replace(problem.task, template=template), partition, problem.hierarchy)
+
+
+def test_recruits_that_only_feed_each_other_feed_nobody() -> None:
+    user = problem({"user": [component("user", "s:S")]})
+    cycle = with_recruits(user, component("a", "t:T", "s:S"), component("b", "s:S", "t:T"))
+    assert isinstance(first.search(cycle), Refusal)
+
+
+def test_a_recruit_may_be_fed_by_the_player_that_it_feeds() -> None:
+    user = problem({"user": [component("user", "s:S", "t:T")]})
+    found = recruited(helped := with_recruits(user, component("a", "t:T", "s:S")), first.search(helped))
+    assert found is not None
+    assert found[0].recruits == (iri("a"),)
+    assert {(c.source.short, c.sink.short) for c in found[0].connections} == {("user", "a"), ("a", "user")}
+
+
+def test_of_equally_few_recruits_those_that_run_are_kept() -> None:
+    user = problem({"user": [component("user", "s:S")]})
+    helped = with_recruits(user, component("a", "", "s:S"), component("b", "", "s:S"))
+    found = recruited(helped, first.search(helped), running=[iri("b")])
+    assert found is not None
+    assert found[0].recruits == (iri("b"),)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda c: replace(c, recruits=()), "no interaction makes this connection"),
+        (lambda c: replace(c, recruits=(*c.recruits, iri("idle"))), "feeds nothing"),
+        (lambda c: replace(c, recruits=(*c.recruits, iri("nobody"))), "cannot be recruited"),
+        (lambda c: replace(c, connections=c.connections[1:]), "is not fed"),
+    ],
+)
+def test_the_certificate_names_what_is_wrong_with_recruits(change: object, words: str) -> None:
+    user = problem({"user": [component("user", "s:S")]})
+    helped = with_recruits(user, component("a", "t:T", "s:S"), component("b", "", "t:T"), component("idle"))
+    found = recruited(helped, first.search(helped))
+    assert found is not None
+    wrong = change(found[0])  # type: ignore[operator]  # a table of functions
+    assert any(words in said for said in certificate.broken_conditions(helped.task, helped.partition, wrong))

@@ -1,0 +1,51 @@
+"""Which recruits are usable, and in which order they become so."""
+
+from __future__ import annotations
+
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.partition import Recruit
+from selfconf.model.profile import Condition, Profile, WantedSignal
+from selfconf.search.supply import Supply
+from tests.search.worlds import component, iri
+
+
+def supply(*profiles: Profile, hierarchy: Hierarchy = NOTHING_ABOVE) -> Supply:
+    """A supply of components that may feed any player of role 0."""
+    return Supply([Recruit(profile, frozenset((0,))) for profile in profiles], hierarchy)
+
+
+def test_each_usable_recruit_comes_after_what_feeds_it() -> None:
+    found = supply(component("c", "t:T", "u:U"), component("b", "s:S", "t:T"), component("a", "", "s:S"))
+    assert found.usable([]) == [2, 1, 0]
+
+
+def test_a_cycle_is_usable_only_once_something_else_feeds_it() -> None:
+    found = supply(component("a", "t:T", "s:S"), component("b", "s:S", "t:T"))
+    assert found.usable([]) == []
+    assert sorted(found.usable(component("player", "", "t:T").outputs)) == [0, 1]
+
+
+def test_what_plays_is_no_recruit() -> None:
+    found = supply(component("a", "", "s:S"), component("b", "s:S", "t:T"))
+    assert found.usable([], without={iri("a")}) == []
+
+
+def test_an_optional_input_is_not_waited_for_and_a_condition_is() -> None:
+    eager = component("a", "s:S", "t:T")
+    port = eager.inputs[0]._replace(optional=True)
+    strict = component("b", "s:S", "t:T")
+    asking = strict.inputs[0]._replace(condition=Condition(unit=iri("M")))
+    some = [
+        Profile(one.component, ports=one.ports._replace(inputs=(wanted,)))
+        for one, wanted in ((eager, port), (strict, asking))
+    ]
+    centimetres = component("player", "", "s:S").outputs[0]._replace(unit=iri("CM"))
+    assert supply(*some).usable([centimetres]) == [0]
+    assert sorted(supply(*some).usable([centimetres._replace(unit=iri("M"))])) == [0, 1]
+
+
+def test_a_signal_serves_every_class_above_it() -> None:
+    above = Hierarchy([(iri("S"), iri("A"))])
+    found = supply(component("a", "", "s:S"), hierarchy=above)
+    assert found.available([0], role=0).serves(WantedSignal((iri("A"),)))
+    assert not found.available([0], role=1).serves(WantedSignal((iri("A"),)))
