@@ -28,7 +28,7 @@ from selfconf.rdf.tasks import TaskDocument
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
-from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, recruited
+from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, priced, recruited
 from selfconf.search.relaxations import NEAR, with_relaxations
 from selfconf.search.strategies import BEST_STEPS, algorithm_1, answers, best_configuration, possible
 from selfconf.search.what_if import consequences
@@ -150,7 +150,9 @@ class Composer:
                     self.task.task.template.iri, (Conflict(roles, requirements=tuple(map(RolePlayed, roles))),)
                 )
             elif isinstance(answer, Optimum) and isinstance(other, Configuration):
-                yield replace(answer, configuration=other, proved=answer.proved and whole is not None)
+                # Where these players have no recruits, others have, of whom nothing is known but that they come first.
+                found_for = answer if whole is not None else replace(answer, proved=False)
+                yield priced(problem, found_for, other)
             else:
                 yield other
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import combinations, product
 
 import pytest
@@ -12,13 +13,16 @@ from hypothesis import strategies as st
 
 from selfconf import certificate
 from selfconf.model.configuration import Configuration
+from selfconf.model.cost import CostTerm
+from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate, Recruit
 from selfconf.model.profile import Profile, WantedSignal
 from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import first_recruited, recruited
-from selfconf.search.strategies import first
+from selfconf.search.recruiting import first_recruited, priced, recruited
+from selfconf.search.strategies import best, first
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -200,3 +204,21 @@ def test_the_certificate_names_what_is_wrong_with_recruits(change: object, words
     assert found is not None
     wrong = change(found[0])  # type: ignore[operator]  # a table of functions
     assert any(words in said for said in certificate.broken_conditions(helped.task, helped.partition, wrong))
+
+
+def test_recruits_cost_as_players_do_and_then_nothing_is_proved() -> None:
+    user = problem({"user": [component("user", "s:S")]})
+    cheap = replace(
+        component("a", "", "s:S"), properties=((iri("watts"), Literal("5", IRI(XSD_NAMESPACE + "integer"))),)
+    )
+    helped = with_recruits(user, cheap)
+    template = replace(helped.task.template, cost=((CostTerm(iri("watts"), otherwise=Fraction(1)),),))
+    stated = Problem(replace(helped.task, template=template), helped.partition)
+    optimum = best.best_configuration(stated)
+    assert isinstance(optimum, Optimum)
+    found = recruited(stated, optimum.configuration)
+    assert found is not None
+    whole = priced(stated, optimum, found[0])
+    assert (optimum.cost, whole.cost) == ((Fraction(1),), (Fraction(6),))
+    assert optimum.proved
+    assert not whole.proved

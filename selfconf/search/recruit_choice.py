@@ -1,0 +1,173 @@
+"""The recruits among which there is a choice: who is usable, what leads to a need, and what some are enough for."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.partition import Recruit
+from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.term import IRI
+from selfconf.search.problem import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class UnfedInput:
+    """An input that recruits have to feed."""
+
+    component: IRI
+    port: Input
+    suppliers: tuple[int, ...]
+    """The numbers of the recruits that could."""
+
+
+class RecruitChoice:
+    """The recruits that matter to the players of one configuration, and what they could feed."""
+
+    def __init__(self, problem: Problem, configuration: Configuration, running: Collection[IRI]) -> None:
+        self.problem, self.plain, self.running = problem, configuration, running
+        self.players = dict(players_of(problem, configuration))
+        self.recruits: Sequence[Recruit] = problem.supply.recruits
+        outputs = [output for _, profile in self.players.values() for output in profile.outputs]
+        self.usable = problem.supply.usable(outputs, without=self.players.keys())
+        self._by_signal = self._suppliers_by_signal()
+        self.wanted = list(self._wanted())
+        self.needs = dict(self._needs_of_recruits())
+        """For each recruit that matters, the inputs that other recruits have to feed."""
+
+    @property
+    def possible(self) -> bool:
+        """Whether each need of the players has a usable supplier; then each need of these has one, too."""
+        return all(need.suppliers for need in self.wanted)
+
+    def _suppliers_by_signal(self) -> Mapping[IRI, list[tuple[int, Output]]]:
+        found: dict[IRI, list[tuple[int, Output]]] = {}
+        for number in sorted(self.usable):
+            for output in self.recruits[number].profile.outputs:
+                for signal in self.problem.hierarchy.served(output.signals):
+                    found.setdefault(signal, []).append((number, output))
+        return found
+
+    def _suppliers(self, port: Input, role: int | None = None) -> tuple[int, ...]:
+        """The usable recruits that could feed an input, of a player of a role or of a recruit."""
+        pairs = (pair for signal in port.signals for pair in self._by_signal.get(signal, ()))
+        found = {
+            number
+            for number, output in pairs
+            if (port.condition is None or port.condition.met_by(output))
+            and (role is None or role in self.recruits[number].roles)
+        }
+        return tuple(sorted(found))
+
+    def _wanted(self) -> Iterator[UnfedInput]:
+        """The required inputs of players that no role feeds."""
+        fed = {(connection.sink, connection.input) for connection in self.plain.connections}
+        for component, (role, profile) in self.players.items():
+            for port in profile.required:
+                if (component, port.name) not in fed:
+                    yield UnfedInput(component, port, self._suppliers(port, role))
+
+    def _needs_of_recruits(self) -> Iterator[tuple[int, list[UnfedInput]]]:
+        """The recruits from which a chain of suppliers leads to a player, each with what it needs of others."""
+        waiting = [number for need in self.wanted for number in need.suppliers]
+        seen = set(waiting)
+        while waiting:
+            number = waiting.pop()
+            profile = self.recruits[number].profile
+            ports = [port for port in profile.required if self._source_among_players(port) is None]
+            needs = [UnfedInput(profile.component, port, self._suppliers(port)) for port in ports]
+            yield number, needs
+            for supplier in {one for need in needs for one in need.suppliers} - seen:
+                seen.add(supplier)
+                waiting.append(supplier)
+
+    def _source_among_players(self, port: Input) -> tuple[IRI, Output] | None:
+        """The first output of a player that could feed an input."""
+        for component, (_, profile) in self.players.items():
+            for output in profile.outputs:
+                if self.problem.hierarchy.pairs(output, port):
+                    return component, output
+        return None
+
+    def ordered(self, numbers: Iterable[int]) -> list[int]:
+        """Recruits in the order in which they are chosen: those that run, then by preference and IRI."""
+        return sorted(numbers, key=lambda number: (self.recruits[number].component not in self.running, number))
+
+    def placed(self, chosen: Collection[int]) -> list[int]:
+        """The chosen recruits that are fed without a cycle among them, each after those that feed it."""
+        found: dict[int, None] = {}
+        waiting = self.ordered(chosen)
+        while waiting:
+            ready = [n for n in waiting if all(any(s in found for s in need.suppliers) for need in self.needs[n])]
+            if not ready:
+                break
+            found[ready[0]] = None
+            waiting.remove(ready[0])
+        return list(found)
+
+    def sufficient(self, chosen: Collection[int]) -> bool:
+        """Whether chosen recruits feed all needs, their own included."""
+        placed = set(self.placed(chosen))
+        return len(placed) == len(chosen) and all(placed.intersection(need.suppliers) for need in self.wanted)
+
+    def chain(self) -> list[int]:
+        """Recruits that are enough: for each need the supplier that forward chaining finds first.
+
+        Forward chaining finds what feeds a recruit before that recruit, so there is no cycle among them.
+        """
+        place = {number: at for at, number in enumerate(self.usable)}
+        chosen: set[int] = set()
+        waiting = list(self.wanted)
+        while waiting:
+            number = min(waiting.pop().suppliers, key=place.__getitem__)
+            if number not in chosen:
+                chosen.add(number)
+                waiting += self.needs[number]
+        return sorted(chosen)
+
+    def without_spare(self, chosen: Sequence[int]) -> list[int]:
+        """Recruits without those that can be spared, the last by preference first."""
+        left = self.ordered(chosen)
+        for number in reversed(left):
+            fewer = [other for other in left if other != number]
+            if self.sufficient(fewer):
+                left = fewer
+        return left
+
+    def configuration(self, chosen: Collection[int]) -> Configuration:
+        """The configuration with chosen recruits; each input has the first source, players coming before recruits."""
+        placed: list[int] = []
+        found: list[Connection] = []
+        for number in self.placed(chosen):
+            profile = self.recruits[number].profile
+            for port in profile.required:
+                source = self._source_among_players(port) or self._source(port, placed, None)
+                found.append(Connection(source[0], source[1].name, profile.component, port.name))
+            placed.append(number)
+        for need in self.wanted:
+            role, _ = self.players[need.component]
+            component, output = self._source(need.port, placed, role)
+            found.append(Connection(component, output.name, need.component, need.port.name))
+        recruits = tuple(self.recruits[number].component for number in sorted(placed))
+        whole = replace(self.plain, recruits=recruits)
+        order = {component: place for place, component in enumerate(whole.components)}
+        every = sorted(
+            (*self.plain.connections, *found), key=lambda c: (order[c.source], c.output, order[c.sink], c.input)
+        )
+        return replace(whole, connections=tuple(every))
+
+    def _source(self, port: Input, placed: Sequence[int], role: int | None) -> tuple[IRI, Output]:
+        """The first recruit of those placed, by preference, that feeds an input, with its output."""
+        suppliers = set(self._suppliers(port, role))
+        profile = self.recruits[self.ordered(suppliers.intersection(placed))[0]].profile
+        output = next(output for output in profile.outputs if self.problem.hierarchy.pairs(output, port))
+        return profile.component, output
+
+
+def players_of(problem: Problem, configuration: Configuration) -> Iterator[tuple[IRI, tuple[int, Profile]]]:
+    """Each player of a configuration with the number of its role and its profile."""
+    for role, assignment in enumerate(configuration.assignments):
+        profiles = {candidate.profile.component: candidate.profile for candidate in problem.candidates[role]}
+        for component in assignment.components:
+            yield component, (role, profiles[component])

@@ -1,0 +1,32 @@
+"""What some recruits are enough for: placed one after another, and without what can be spared."""
+
+from __future__ import annotations
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.profile import Profile
+from selfconf.search.recruit_choice import RecruitChoice
+from selfconf.search.strategies import first
+from tests.search.test_recruiting import with_recruits
+from tests.search.worlds import component, problem
+
+
+def choice(*recruits: Profile) -> RecruitChoice:
+    """The choice for a user that wants a signal S."""
+    given = with_recruits(problem({"user": [component("user", "s:S")]}), *recruits)
+    found = first.search(given)
+    assert isinstance(found, Configuration)
+    return RecruitChoice(given, found, ())
+
+
+def test_what_only_feeds_itself_has_no_place() -> None:
+    given = choice(component("a", "t:T", "s:S"), component("b", "s:S", "t:T"), component("c", "", "s:S"))
+    assert given.placed([0, 1]) == []
+    assert given.placed([0, 1, 2]) == [2, 1, 0]
+    assert not given.sufficient([0, 1])
+    assert given.sufficient([2])
+
+
+def test_a_chain_is_enough_and_what_can_be_spared_leaves_it() -> None:
+    given = choice(component("a", "t:T u:U", "s:S"), component("b", "", "t:T"), component("c", "", "t:T u:U"))
+    assert given.sufficient(given.chain())
+    assert given.without_spare([0, 1, 2]) == [0, 2]
