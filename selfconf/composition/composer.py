@@ -6,7 +6,7 @@ a failure only the lost components leave it and the search alone runs again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import Enum
 
@@ -25,6 +25,7 @@ from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner, near_misses
 from selfconf.rdf.tasks import TaskDocument
+from selfconf.search.additions import with_additions
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
@@ -64,6 +65,16 @@ def _admitted(near: NearMiss, variables: Sequence[Variable]) -> tuple[int, ...]:
         of_its_own = allowed is not None and not allowed <= set(variable.domain)
         masks.append(ANY_VALUE if allowed is None else known | of_its_own << len(variable.domain))
     return tuple(masks)
+
+
+def _nearest(problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
+    """What keeps most of a configuration that runs."""
+    assert running is not None
+    yield nearest_configuration(problem, running)
+
+
+AnswersOf = Callable[[Problem, Configuration | None], Iterator[Optimum | Outcome]]
+"""Answers to a problem, with a configuration that runs or without; the last one holds."""
 
 
 class Composer:
@@ -116,7 +127,7 @@ class Composer:
         partition = self.partition(ecology)
         problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
-        for answer in self._with_recruits(problem, self._search(problem, running), running):
+        for answer in self._with_recruits(problem, self._with_additions(self._search, problem, running), running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
             if isinstance(outcome, Configuration):
                 wrong = certificate.broken_conditions(self.task.task, problem.partition, outcome, self.hierarchy)
@@ -155,6 +166,17 @@ class Composer:
                 yield priced(problem, found_for, other)
             else:
                 yield other
+
+    def _with_additions(
+        self, search: AnswersOf, problem: Problem, running: Configuration | None
+    ) -> Iterator[Optimum | Outcome]:
+        """The answers of a search; where there is no configuration, with the optional roles that it takes."""
+        for answer in search(problem, running):
+            raised = with_additions(problem) if isinstance(answer, Refusal) else None
+            if raised is not None:
+                yield from search(raised, running)
+                return
+            yield answer
 
     def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         if self.strategy is Strategy.BEST:
@@ -220,11 +242,12 @@ class Composer:
     def _after(self, problem: Problem, running: Configuration) -> Configuration | Refusal:
         """What comes after a configuration that runs."""
         if self.strategy is Strategy.BEST:
-            *_, found = self._with_recruits(problem, self._best(problem, running), running)
+            *_, found = self._with_recruits(problem, self._with_additions(self._best, problem, running), running)
             if not isinstance(found, Undecided):
                 return found.configuration if isinstance(found, Optimum) else found
-        (near,) = self._with_recruits(problem, iter([nearest_configuration(problem, running)]), running)
-        return Refusal(self.task.task.template.iri, ()) if isinstance(near, Optimum | Undecided) else near
+        answers = self._with_additions(_nearest, problem, running)
+        *_, near = self._with_recruits(problem, answers, running)
+        return near if isinstance(near, Configuration | Refusal) else Refusal(self.task.task.template.iri, ())
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
         """For each component and input of a configuration, the outputs of the next candidates that could feed it.

@@ -126,7 +126,7 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool =
     With `plain` each port has one type, each input must be fed, and none states a condition.
     """
     solvable = draw(st.booleans())
-    kinds_of_port = PLAIN[:1] if plain else SOLVABLE if solvable else ODD
+    kinds_of_port = () if plain else SOLVABLE if solvable else ODD
     shared: dict[Ports, Ports] | None = {} if draw(st.booleans()) else None
     count = draw(st.integers(1, roles))
     signals = st.sampled_from(SIGNALS[: draw(st.integers(1, 4))])
@@ -183,7 +183,9 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool =
 
 
 def _input(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Input:
-    """Return an input that takes a signal, perhaps others, perhaps nothing, and perhaps on a condition."""
+    """Return an input that takes a signal; of a kind, perhaps others, perhaps nothing, and perhaps on a condition."""
+    if not kinds:
+        return Input(name, (signal,))
     kind = draw(st.sampled_from(kinds))
     unit, frame = _stated(draw, kind)
     condition = Condition(unit, frame, SHAPE if kind == "shape" else None)
@@ -198,7 +200,9 @@ def _input(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Inp
 
 
 def _output(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Output:
-    """Return an output of a signal, perhaps of others too, which states a unit or a frame or not."""
+    """Return an output of a signal; of a kind, perhaps of others too, with a unit, a frame or neither."""
+    if not kinds:
+        return Output(name, (signal,))
     kind = draw(st.sampled_from(kinds))
     unit, frame = _stated(draw, kind)
     conforms = frozenset((SHAPE,) if "other" not in kinds or draw(st.booleans()) else ())
