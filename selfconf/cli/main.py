@@ -11,6 +11,7 @@ import logging
 import sys
 import traceback
 from collections.abc import Collection, Sequence
+from keyword import iskeyword
 from types import ModuleType
 from typing import NoReturn
 
@@ -19,6 +20,7 @@ from selfconf.errors import SelfconfError, SiteMisusedError, reason
 
 COMMANDS = {
     "new": "write the first files of a component, a template or an ontology, to be changed to what you want",
+    "import": "write advertisements from Thing Descriptions and other descriptions of components",
     "validate": "check advertisements, templates, tasks and ontologies",
     "partition": "show who could play each role of a template, and what keeps the others out",
     "configure": "compute a configuration for a template, or say why there is none; changes nothing",
@@ -56,7 +58,7 @@ class Version(argparse.Action):
 
 def command(name: str) -> ModuleType:
     """The module of a command: EXAMPLE, add_arguments, run."""
-    return importlib.import_module(f"selfconf.cli.{name}")
+    return importlib.import_module(f"selfconf.cli.{name}{'_' if iskeyword(name) else ''}")
 
 
 def command_parser(name: str, subparsers: argparse._SubParsersAction[Parser]) -> None:

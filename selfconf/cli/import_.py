@@ -1,0 +1,110 @@
+"""`import`: writes advertisements from descriptions in other formats."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from selfconf.cli.terminal import complain
+
+if TYPE_CHECKING:
+    from selfconf.importing import ImportedFile, ImportReport
+
+EXAMPLE = """  selfconf import wot things/ --out ads
+  selfconf import wot http://192.0.2.7/.well-known/wot --out ads"""
+FORM_NAMES = ("wot",)
+# Those of `selfconf.importing.IMPORT_FORMATS`, which is not loaded to parse arguments; a test compares them.
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument("form", metavar="FORMAT", choices=FORM_NAMES, help=f"{', '.join(FORM_NAMES)}")
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="+",
+        help="a file, a folder with all files of the format below it, or an http or https URL, which is fetched",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        required=True,
+        help="where the Turtle files go; those of an earlier import are replaced, other files are left alone",
+    )
+    parser.add_argument(
+        "--namespace",
+        metavar="IRI",
+        help="what the IRIs begin with of components to which their source gives none (default: urn:selfconf:FORMAT:)",
+    )
+    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 if all was imported that can be read, 1 if there was nothing to import, 2 if some source cannot be read."""
+    from selfconf.importing import import_descriptions
+
+    report = import_descriptions(given.form, given.sources, given.out, given.namespace)
+    for each in (*report.unreadable, *report.renamed, *report.left_out):
+        complain(str(each))
+    if given.format == "json":
+        print(json.dumps(_body(report), indent=2, ensure_ascii=False))
+    else:
+        _print_table(report)
+    return 2 if report.unreadable else 0 if report.files else 1
+
+
+def _print_table(report: ImportReport) -> None:
+    from selfconf.render import count, table
+
+    rows = [[str(file.path), file.state.value, str(len(_components(file)))] for file in report.files]
+    if rows:
+        print(table(["file", "is", "components"], rows))
+    components = sum(len(_components(file)) for file in report.files)
+    print(f"{count(components, 'component')} in {count(len(rows), 'file')}")
+
+
+def _components(file: ImportedFile) -> list[dict[str, Any]]:
+    """The components of a file, with how much they take and give."""
+    from selfconf.rdf.vocabulary import SC
+
+    counted = {
+        "inputs": SC.hasInput,
+        "outputs": SC.hasOutput,
+        "parameters": SC.hasParameter,
+        "operations": SC.hasOperation,
+        "needed_operations": SC.needsOperation,
+    }
+    return [
+        {"component": str(each.subject), **{name: len(each.values(link)) for name, link in counted.items()}}
+        for each in file.document.subjects(SC.Component)
+    ]
+
+
+def _body(report: ImportReport) -> dict[str, Any]:
+    from selfconf.rdf.vocabulary import SC
+
+    return {
+        "format": report.form,
+        "files": [
+            {
+                "file": str(file.path),
+                "state": file.state.value,
+                "source": file.document.source,
+                "components": _components(file),
+                "templates": [str(each.subject) for each in file.document.subjects(SC.Template)],
+            }
+            for file in report.files
+        ],
+        "renamed": [{"component": each.component, "was": each.was, "source": each.source} for each in report.renamed],
+        "left_out": [
+            {"what": each.what, "reason": each.reason, "count": each.number, "sources": list(each.sources)}
+            for each in report.left_out
+        ],
+        "unreadable": [
+            {"message": each.message, "source": each.file, "line": each.line, "column": each.column}
+            for each in report.unreadable
+        ],
+    }

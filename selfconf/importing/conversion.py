@@ -1,0 +1,78 @@
+"""One import from beginning to end: sources are gathered, read by the importer of their format, and written as Turtle.
+
+Each importer takes all sources at once, because those of one format may speak of each other: a system of its nodes, a
+model of what it extends. What it cannot read it hands over as an error and goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from selfconf.errors import AuthorError
+from selfconf.importing.folder import FileState, write_folder
+from selfconf.importing.imported import ImportedDocument, Omission, Renaming
+from selfconf.importing.ledger import ImportLedger
+from selfconf.importing.naming import absolute
+from selfconf.importing.sources import SourceDocument, gather
+from selfconf.importing.turtle_text import turtle
+from selfconf.importing.wot import import_things
+
+Importer = Callable[[Iterable[SourceDocument], ImportLedger], Iterable[ImportedDocument]]
+
+
+@dataclass(frozen=True, slots=True)
+class ImportFormat:
+    """A format that can be imported: its name, the endings of its files in a folder, and what reads it."""
+
+    name: str
+    endings: tuple[str, ...]
+    importer: Importer
+
+
+IMPORT_FORMATS = {each.name: each for each in (ImportFormat("wot", (".json", ".jsonld"), import_things),)}
+"""The formats, by their names."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedFile:
+    """A Turtle file that an import has written, or that was there as it would be written."""
+
+    path: Path
+    state: FileState
+    document: ImportedDocument
+
+
+@dataclass(frozen=True, slots=True)
+class ImportReport:
+    """What an import has written, what it has left out or renamed, and what it could not read."""
+
+    form: str
+    files: tuple[ImportedFile, ...]
+    left_out: tuple[Omission, ...]
+    renamed: tuple[Renaming, ...]
+    unreadable: tuple[AuthorError, ...] = field(default=())
+
+
+def convert(form: ImportFormat, given: Sequence[str], out: Path, namespace: str) -> ImportReport:
+    """Import sources into a folder. Raises AuthorError if the folder cannot be written to."""
+    unreadable: list[AuthorError] = []
+    ledger = ImportLedger(namespace, unreadable.append)
+    documents: dict[str, ImportedDocument] = {}
+    for document in form.importer(gather(given, form.endings, unreadable.append), ledger):
+        documents[f"{ledger.names.file(document.name)}.ttl"] = document
+    states = write_folder(out, {name: turtle(document, form.name) for name, document in documents.items()})
+    files = tuple(ImportedFile(out / name, states[name], document) for name, document in documents.items())
+    return ImportReport(form.name, files, ledger.omissions(), tuple(ledger.names.renamed), tuple(unreadable))
+
+
+def import_descriptions(form: str, given: Sequence[str], out: Path, namespace: str | None = None) -> ImportReport:
+    """Import files, folders and URLs of a format, which is a name of `IMPORT_FORMATS`, as Turtle files in a folder.
+
+    The namespace is what the IRIs of components begin with to which their source gives none. Raises AuthorError if the
+    folder cannot be written to, or the namespace cannot be one; what cannot be read is in the report.
+    """
+    if namespace is not None and (absolute(namespace) is None or namespace[-1] not in "#/:"):
+        raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with #, / or :")
+    return convert(IMPORT_FORMATS[form], given, out, namespace or f"urn:selfconf:{form}:")

@@ -1,0 +1,125 @@
+"""What is to be imported: files, the files below folders, and what a URL that the user has named answers.
+
+Nothing is fetched but such a URL, over http or https, without redirects, with a limit of bytes and of time. What is
+made of a source is named after its path below the folder that was given, so that it does not depend on the machine.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from http.client import HTTPException, HTTPResponse
+from pathlib import Path
+from time import monotonic
+from urllib.error import HTTPError
+from urllib.parse import urlsplit
+from urllib.request import (
+    HTTPDefaultErrorHandler,
+    HTTPErrorProcessor,
+    HTTPHandler,
+    HTTPSHandler,
+    OpenerDirector,
+    ProxyHandler,
+    Request,
+)
+
+from selfconf import files
+from selfconf.errors import AuthorError
+
+LARGEST_SOURCE = 16 << 20
+"""A document of more bytes is not read; the largest Thing Descriptions that are known have a few hundred kilobytes."""
+FETCH_SECONDS = 20.0
+"""How long a URL may take to answer in full."""
+ACCEPT = "application/td+json, application/tm+json, application/ld+json, application/json, text/turtle, */*;q=0.1"
+_URL = re.compile(r"https?://", re.IGNORECASE)
+Unreadable = Callable[[AuthorError], None]
+"""Receives what is wrong with a source that cannot be read; the others are imported all the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceDocument:
+    """A document: what messages call it, its name below the folder that was given, and its bytes."""
+
+    shown: str
+    name: str
+    octets: bytes
+
+    def text(self) -> str:
+        """Its text, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
+        try:
+            return self.octets.removeprefix(files.BYTE_ORDER_MARK).decode()
+        except UnicodeDecodeError as error:
+            before = self.octets[: error.start]
+            line, column = before.count(b"\n") + 1, error.start - before.rfind(b"\n")
+            raise AuthorError("this is not UTF-8", file=self.shown, line=line, column=column) from None
+
+
+def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadable) -> Iterator[SourceDocument]:
+    """The documents that some paths and URLs stand for: of a folder, all files below it that end so, sorted by name."""
+    for one in given:
+        if _URL.match(one):
+            found = _attempt(lambda url=one: _fetched(url), unreadable)  # type: ignore[misc]  # a default binds it now
+            if found is not None:
+                yield found
+            continue
+        for path in files.within(Path(one), unreadable, endings):
+            name = path.relative_to(one).as_posix() if path != Path(one) else path.name
+            found = _attempt(lambda path=path, name=name: _read(path, name), unreadable)  # type: ignore[misc]  # as above
+            if found is not None:
+                yield found
+
+
+def _attempt(reading: Callable[[], SourceDocument], unreadable: Unreadable) -> SourceDocument | None:
+    try:
+        return reading()
+    except AuthorError as error:
+        unreadable(error)
+        return None
+
+
+def _read(path: Path, name: str) -> SourceDocument:
+    try:
+        size = path.stat().st_size
+    except OSError:
+        size = 0  # reading it says what is wrong
+    if size > LARGEST_SOURCE:
+        raise _too_large(str(path))
+    return SourceDocument(str(path), name, files.octets(path))
+
+
+def _too_large(shown: str) -> AuthorError:
+    return AuthorError(f"it is over {LARGEST_SOURCE >> 20} MiB, which is more than is read", file=shown)
+
+
+def _fetched(url: str) -> SourceDocument:
+    """What a URL answers. Raises AuthorError."""
+    opener = OpenerDirector()
+    for each in (ProxyHandler, HTTPHandler, HTTPSHandler, HTTPDefaultErrorHandler, HTTPErrorProcessor):
+        opener.add_handler(each())
+    deadline = monotonic() + FETCH_SECONDS
+    try:
+        with opener.open(Request(url, headers={"Accept": ACCEPT}), timeout=FETCH_SECONDS) as reply:
+            octets = _body(url, reply, deadline)
+    except HTTPError as error:
+        error.close()
+        where = error.headers.get("Location")
+        moved = f", go to {where!r}; no redirect is followed, give the URL that is meant" if where else ""
+        raise AuthorError(f"{url} answers {error.code}{moved}") from None
+    except (OSError, HTTPException, ValueError) as error:
+        raise AuthorError(f"cannot fetch {url}: {getattr(error, 'reason', None) or error}") from None
+    parts = urlsplit(url)
+    return SourceDocument(url, parts.path.rstrip("/").rpartition("/")[2] or parts.hostname or "thing", octets)
+
+
+def _body(url: str, reply: HTTPResponse, deadline: float) -> bytes:
+    """The body of a reply, piece by piece, so that neither a long nor a slow one is waited for without end."""
+    pieces, size = [], 0
+    while piece := reply.read1(1 << 16):
+        size += len(piece)
+        if size > LARGEST_SOURCE:
+            raise _too_large(url)
+        if monotonic() > deadline:
+            raise AuthorError(f"{url} has not answered in full within {FETCH_SECONDS:.0f} s")
+        pieces.append(piece)
+    return b"".join(pieces)

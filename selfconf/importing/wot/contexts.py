@@ -1,0 +1,110 @@
+"""What the terms of a Thing Description stand for: the part of JSON-LD 1.1 that its `@type` and `unit` need.
+
+A term is expanded by the contexts in the document itself and by the W3C's, which ships with selfconf. Other contexts
+are on the web and are not fetched, so terms of theirs stay unknown; nothing is guessed from a prefix that looks known.
+That `@vocab` of the W3C's context would make `td:Lamp` of a bare "Lamp", which is no term of the W3C: such terms are
+unknown too, unless the document has an `@vocab` of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from selfconf.importing.naming import absolute
+from selfconf.model.term import IRI, STRING, Literal
+from selfconf.rdf.vocabulary import RDF
+
+W3C_CONTEXTS = frozenset(
+    f"http{secure}://www.w3.org/{path}"
+    for secure in ("", "s")
+    for path in ("2019/wot/td/v1", "2019/wot/td", "2022/wot/td/v1.1", "2022/wot/td", "ns/td", "ns/wot-next/td")
+)
+"""The contexts of versions 1.0 and 1.1, which agree about the terms that both have, and their earlier names."""
+_SCHEMES = frozenset(("http", "https", "urn", "did", "tag", "info", "file", "ftp", "coap", "coaps", "uuid", "oid"))
+"""What before a colon is taken for the scheme of an IRI, if no context says that it is a prefix."""
+_LANGUAGE = re.compile(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*")
+
+
+class TermMeanings:
+    """The terms that the contexts of one document define."""
+
+    def __init__(self, context: Any) -> None:
+        self.remote: list[str] = []
+        """The contexts that would have to be fetched."""
+        self.prefixes: dict[str, str] = {}
+        """What the document itself gives names to."""
+        self.language: str | None = None
+        self._defined: dict[str, str] = {}
+        self._vocabulary: str | None = None
+        for each in context if isinstance(context, list) else [context]:
+            self._add(each)
+
+    def _add(self, context: Any) -> None:
+        if isinstance(context, str):
+            if context.rstrip("/#") in W3C_CONTEXTS:
+                self._defined.update(_w3c())
+            else:
+                self.remote.append(context)
+        elif isinstance(context, dict):
+            for term, meaning in context.items():
+                if isinstance(meaning, dict):
+                    meaning = meaning.get("@id")
+                if not isinstance(meaning, str):
+                    continue
+                if term == "@vocab":
+                    self._vocabulary = meaning
+                elif term == "@language":
+                    self.language = meaning
+                elif not term.startswith("@"):
+                    self._defined[term] = meaning
+                    if absolute(meaning) and meaning.endswith(("#", "/", ":", "_")):
+                        self.prefixes[term] = meaning
+
+    def expanded(self, term: str, depth: int = 0) -> IRI | None:
+        """The IRI that a term stands for, or None if that is not known here."""
+        if term in self._defined and depth < len(self._defined) + 2:
+            return self.expanded(self._defined[term], depth + 1) if self._defined[term] != term else absolute(term)
+        prefix, colon, local = term.partition(":")
+        if not colon:
+            return absolute(self._vocabulary + term) if self._vocabulary else None
+        if prefix in self._defined and not local.startswith("//"):
+            base = self.expanded(prefix, depth + 1) if depth < len(self._defined) + 2 else None
+            return None if base is None else absolute(base + local)
+        return absolute(term) if prefix.lower() in _SCHEMES else None
+
+    def family(self, term: str) -> str:
+        """What terms such as an unknown one are called together."""
+        prefix, colon, _ = term.partition(":")
+        return f"terms with the prefix {prefix}:" if colon else "terms without a prefix"
+
+    def unknown(self) -> str:
+        """Why a term is unknown."""
+        if not self.remote:
+            return "its contexts do not define them"
+        return f"they may be defined by contexts on the web, which are not fetched: {', '.join(sorted(self.remote))}"
+
+
+def spoken(words: str, language: str | None) -> Literal:
+    """Words in a language, if that is said by a tag that can be one."""
+    if language and _LANGUAGE.fullmatch(language):
+        return Literal(words, RDF.langString, language)
+    return Literal(words, STRING)
+
+
+@cache
+def _w3c() -> dict[str, str]:
+    """The prefixes and classes of the W3C's context."""
+    text = (files("selfconf.importing.wot") / "td-context-1.1.json").read_text("utf-8")
+    return dict(_terms(json.loads(text)["@context"]))
+
+
+def _terms(context: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    for term, meaning in context.items():
+        iri = meaning.get("@id") if isinstance(meaning, dict) else meaning
+        if isinstance(iri, str) and not iri.startswith("@") and not term.startswith("@"):
+            yield term, iri

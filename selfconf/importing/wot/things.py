@@ -1,0 +1,164 @@
+"""Thing Descriptions and Thing Models as components.
+
+A description has an `id`, or gets a name from its title; a model is imported as the component that it is a model of,
+with what `tm:ref` takes from the same document. The two differ in their `@type` only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from selfconf.errors import AuthorError
+from selfconf.importing.imported import ImportedComponent, ImportedDocument
+from selfconf.importing.ledger import ImportLedger
+from selfconf.importing.naming import absolute, stem
+from selfconf.importing.sources import SourceDocument
+from selfconf.importing.wot.affordances import AffordanceReader
+from selfconf.importing.wot.contexts import TermMeanings, spoken
+from selfconf.importing.wot.json_text import parse_json
+from selfconf.importing.wot.thing_models import ModelReferences
+from selfconf.model.term import IRI, STRING, Literal, Term
+from selfconf.rdf.vocabulary import RDFS, SC, TYPE, XSD
+
+THING = IRI("https://www.w3.org/2019/wot/td#Thing")
+AFFORDANCES = ("properties", "events", "actions")
+_UNUSED = {
+    "forms": ("forms", "they say how a thing is reached, an advertisement says what it is"),
+    "security": ("security", "who may do what is not said by an advertisement"),
+    "securityDefinitions": ("security", "who may do what is not said by an advertisement"),
+    "links": ("links", "an advertisement speaks of its component alone"),
+    "schemaDefinitions": ("constraints of data schemas", "a signal type stands for what a signal consists of"),
+    "uriVariables": ("URI variables", "a port has none"),
+    "tm:optional": ("marks of affordances that a thing may lack", "a component has all that it advertises"),
+    **dict.fromkeys(
+        ("version", "created", "modified", "support", "base", "profile", "tm:required"),
+        ("facts about the document, such as its version", "an advertisement has no place for them"),
+    ),
+}
+"""The members of things that have no counterpart, in words, and why not."""
+_KNOWN = {"@context", "@type", "@id", "id", "title", "titles", "description", "descriptions", *AFFORDANCES}
+
+
+def import_things(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
+    """The things that JSON documents describe: each holds one, or an array of them as a directory answers with."""
+    parsed: list[tuple[SourceDocument, Any]] = []
+    for source in sources:
+        try:
+            found = parse_json(source)
+        except AuthorError as error:
+            ledger.unreadable(error)
+            continue
+        parsed.append((source, found.value))
+        for name in found.repeated:
+            ledger.leave_out(f"earlier values of {name[:40]!r}", "a JSON object has each name once", source)
+    references = ModelReferences({source.name: value for source, value in parsed}, ledger)
+    for source, value in parsed:
+        prefixes: dict[str, str] = {}
+        components = list(_components(value, source, ledger, references, prefixes))
+        if components:
+            descriptions = tuple(component.described() for component in components)
+            yield ImportedDocument(stem(source), source.name, descriptions, prefixes)
+
+
+def _components(
+    value: Any, source: SourceDocument, ledger: ImportLedger, references: ModelReferences, prefixes: dict[str, str]
+) -> Iterator[ImportedComponent]:
+    things = value if isinstance(value, list) else [value]
+    if not things:
+        ledger.leave_out("empty documents", "there is no thing in them", source)
+    for number, thing in enumerate(things, 1):
+        if not isinstance(thing, dict) or not _describes_a_thing(thing):
+            ledger.leave_out("documents that describe no thing", "they have neither a title nor an affordance", source)
+            continue
+        meanings = TermMeanings(thing.get("@context"))
+        prefixes.update(meanings.prefixes)
+        position = (str(number),) if len(things) > 1 else ()
+        yield _ThingReader(references.resolved(thing, source), meanings, source, ledger).component(position)
+
+
+def _describes_a_thing(thing: dict[str, Any]) -> bool:
+    return any(member in thing for member in ("title", "titles", "securityDefinitions", *AFFORDANCES))
+
+
+class _ThingReader:
+    """Reads one thing."""
+
+    def __init__(
+        self, thing: dict[str, Any], meanings: TermMeanings, source: SourceDocument, ledger: ImportLedger
+    ) -> None:
+        self.thing, self.meanings, self.source, self.ledger = thing, meanings, source, ledger
+        self.affordances = AffordanceReader(meanings, ledger, source)
+
+    def component(self, position: tuple[str, ...]) -> ImportedComponent:
+        ports = list(self.affordances.ports(self.thing))
+        types = dict.fromkeys((THING, *self.affordances.types(self.thing, "thing")))
+        for member, (what, why) in _UNUSED.items():
+            if member in self.thing:
+                self.ledger.leave_out(what, why, self.source)
+        return ImportedComponent(
+            self.ledger.names.component(self._iri(position), self.source),
+            tuple(types),
+            labels=self._words("title"),
+            properties=(*((RDFS.comment, words) for words in self._words("description")), *self._properties()),
+            inputs=tuple(port for kind, port in ports if kind == "input"),
+            outputs=tuple(port for kind, port in ports if kind == "output"),
+            operations=tuple(self.affordances.operations(self.thing)),
+        )
+
+    def _iri(self, position: tuple[str, ...]) -> IRI:
+        for member in ("id", "@id"):
+            said = self.thing.get(member)
+            if isinstance(said, str) and (found := absolute(said)) is not None and "{{" not in said:
+                return found
+            if member in self.thing:
+                self.ledger.leave_out("identifiers that are no absolute IRIs", "the thing is named here", self.source)
+        return self.ledger.minted(stem(self.source).replace("/", "-"), *position)
+
+    def _words(self, member: str) -> tuple[Literal, ...]:
+        """A title or description, in its languages."""
+        several = self.thing.get(f"{member}s")
+        found = {}
+        if isinstance(several, dict):
+            found = {language: words for language, words in several.items() if isinstance(words, str) and words}
+        if found:
+            return tuple(spoken(words, language) for language, words in found.items())
+        words = self.thing.get(member)
+        return (spoken(words, self.meanings.language),) if isinstance(words, str) and words else ()
+
+    def _properties(self) -> Iterator[tuple[IRI, Term]]:
+        """What the thing says in terms of other vocabularies, as far as it is a plain value or an IRI."""
+        for member, value in self.thing.items():
+            if member in _KNOWN or member in _UNUSED or member.startswith("@"):
+                continue
+            predicate = self.meanings.expanded(member)
+            if predicate in SC or predicate == TYPE:
+                self.ledger.leave_out("terms of selfconf", "an import states those itself", self.source)
+                continue
+            if predicate is None:
+                self.ledger.leave_out(self.meanings.family(member), self.meanings.unknown(), self.source)
+                continue
+            for each in value if isinstance(value, list) else [value]:
+                term = _plain(each)
+                if term is None:
+                    self.ledger.leave_out(
+                        "nested values of other vocabularies", "only plain values are kept", self.source
+                    )
+                else:
+                    yield predicate, term
+
+
+def _plain(value: Any) -> Term | None:
+    """A JSON value as a term: a string, number or truth value, or an object that is only an `@id`."""
+    if isinstance(value, bool):
+        return Literal(str(value).lower(), XSD.boolean)
+    if isinstance(value, int):
+        return Literal(str(value), XSD.integer)
+    if isinstance(value, float):
+        return Literal(repr(value), XSD.double) if math.isfinite(value) else None
+    if isinstance(value, str):
+        return Literal(value, STRING)
+    if isinstance(value, dict) and set(value) == {"@id"} and isinstance(value["@id"], str):
+        return absolute(value["@id"])
+    return None

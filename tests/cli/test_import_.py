@@ -1,0 +1,86 @@
+"""`selfconf import`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+from referencing import Registry, Resource
+
+from selfconf import library
+from tests.cli.command import run
+
+SCHEMAS = {path.name: json.loads(path.read_text("utf-8")) for path in library.schemas()}
+JUDGE = jsonschema.Draft202012Validator(
+    SCHEMAS["import.schema.json"],
+    registry=Registry().with_resources((s["$id"], Resource.from_contents(s)) for s in SCHEMAS.values()),
+)
+LAMP = """{
+  "@context": ["https://www.w3.org/2022/wot/td/v1.1", { "saref": "https://w3id.org/saref#" }],
+  "id": "urn:dev:lamp", "title": "Lamp", "properties": { "on": { "@type": "saref:OnOffState", "forms": [{}] } }
+}"""
+
+
+@pytest.fixture
+def things(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a lamp, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "things").mkdir()
+    (tmp_path / "things" / "lamp.json").write_text(LAMP)
+    return tmp_path / "things"
+
+
+def test_what_is_imported_is_listed_and_what_is_left_out_is_named(
+    things: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    outcome = run(capsys, "import", "wot", "things", "--out", "ads")
+    assert outcome.code == 0
+    assert outcome.out.splitlines()[2:] == ["ads/lamp.ttl  new  1", "1 component in 1 file"]
+    why = "they say how a thing is reached, an advertisement says what it is"
+    assert outcome.err == f"left out forms (1): {why}; in things/lamp.json\n"
+    again = run(capsys, "import", "wot", "things", "--out", "ads")
+    assert "ads/lamp.ttl  unchanged  1" in again.out
+
+
+def test_the_summary_as_json_keeps_to_its_schema(things: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, text in {"lamp2.json": LAMP, "bad.json": "{", "none.json": "5"}.items():
+        (things / name).write_text(text)
+    outcome = run(capsys, "import", "wot", "things", "--out", "ads", "--format", "json")
+    assert outcome.code == 2
+    JUDGE.validate(outcome.body)
+    assert [file["components"][0]["outputs"] for file in outcome.body["files"]] == [1, 1]
+    assert outcome.body["renamed"][0]["component"] == "urn:dev:lamp-lamp2"
+    assert outcome.body["unreadable"][0] | {"message": ""} == {
+        "message": "", "source": "things/bad.json", "line": 1, "column": 2,
+    }  # fmt: skip
+
+
+def test_the_example_of_the_schema_is_what_the_command_prints(things: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = SCHEMAS["import.schema.json"]["examples"]
+    assert run(capsys, "import", "wot", "things", "--out", "ads", "--format", "json").body == example
+
+
+def test_nothing_to_import_is_an_honest_no(things: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (things / "lamp.json").unlink()
+    outcome = run(capsys, "import", "wot", "things", "--out", "ads")
+    assert (outcome.code, outcome.out, outcome.err) == (1, "0 components in 0 files\n", "")
+
+
+def test_a_document_that_cannot_be_read_is_named_with_its_place_and_the_rest_is_imported(
+    things: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (things / "bad.json").write_text('{\n "a": ]')
+    outcome = run(capsys, "import", "wot", "things", "nowhere", "--out", "ads")
+    assert outcome.code == 2
+    assert outcome.err.startswith("things/bad.json:2:7: this is not JSON")
+    assert "there is no file or folder nowhere" in outcome.err
+    assert (things.parent / "ads" / "lamp.ttl").is_file()
+
+
+def test_a_file_of_somebody_else_stops_the_import(things: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (things.parent / "ads").mkdir()
+    (things.parent / "ads" / "lamp.ttl").write_text("# mine\n")
+    outcome = run(capsys, "import", "wot", "things", "--out", "ads")
+    assert outcome.is_one_sentence("ads/lamp.ttl is not from an import", "--out")
