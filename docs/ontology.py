@@ -33,6 +33,7 @@ PREFIXES = {
     "sc": "https://w3id.org/selfconf#",
     "rob": str(ROB),
     "home": "https://w3id.org/selfconf/peis-home#",
+    "ros2": "https://w3id.org/selfconf/ros2#",
     "sosa": "http://www.w3.org/ns/sosa/",
     "ssn": "http://www.w3.org/ns/ssn/",
     "prov": "http://www.w3.org/ns/prov#",

@@ -15,6 +15,7 @@ from selfconf.importing.folder import FileState, write_folder
 from selfconf.importing.imported import ImportedDocument, Omission, Renaming
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import absolute
+from selfconf.importing.ros2 import import_nodes
 from selfconf.importing.sources import SourceDocument, gather
 from selfconf.importing.turtle_text import turtle
 from selfconf.importing.wot import import_things
@@ -31,7 +32,13 @@ class ImportFormat:
     importer: Importer
 
 
-IMPORT_FORMATS = {each.name: each for each in (ImportFormat("wot", (".json", ".jsonld"), import_things),)}
+IMPORT_FORMATS = {
+    each.name: each
+    for each in (
+        ImportFormat("wot", (".json", ".jsonld"), import_things),
+        ImportFormat("ros2", (".ros2", ".rossystem", ".nodl.xml"), import_nodes),
+    )
+}
 """The formats, by their names."""
 
 

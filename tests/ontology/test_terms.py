@@ -13,6 +13,7 @@ from selfconf import library
 
 SC = Namespace("https://w3id.org/selfconf#")
 ROB = Namespace("https://w3id.org/selfconf/robotics#")
+ROS2 = Namespace("https://w3id.org/selfconf/ros2#")
 VANN = Namespace("http://purl.org/vocab/vann/")
 ROOT = Path(__file__).resolve().parents[2]
 GRAPHS = {path.stem: Graph().parse(path) for path in library.ontologies()}
@@ -27,6 +28,7 @@ PREFIXES = "".join(
         "sc": SC,
         "rob": ROB,
         "home": f"{OURS}/peis-home#",
+        "ros2": f"{OURS}/ros2#",
         "rdfs": RDFS,
         "sh": SH,
         "xsd": XSD,
@@ -47,7 +49,7 @@ NAMED_IN_THE_MANUAL = re.findall(
 )
 
 
-@pytest.mark.parametrize(("stem", "namespace"), [("selfconf", SC), ("robotics", ROB)])
+@pytest.mark.parametrize(("stem", "namespace"), [("selfconf", SC), ("robotics", ROB), ("ros2", ROS2)])
 def test_every_term_is_declared_labelled_and_defined(stem: str, namespace: Namespace) -> None:
     graph = GRAPHS[stem]
     terms = {term for term in graph.subjects() if isinstance(term, URIRef) and term.startswith(namespace)}
@@ -62,7 +64,7 @@ def test_every_term_is_declared_labelled_and_defined(stem: str, namespace: Names
         assert list(graph.objects(term, RDFS.isDefinedBy)) == [URIRef(str(namespace).rstrip("#"))]
 
 
-@pytest.mark.parametrize(("stem", "prefix"), [("selfconf", "sc"), ("robotics", "rob")])
+@pytest.mark.parametrize(("stem", "prefix"), [("selfconf", "sc"), ("robotics", "rob"), ("ros2", "ros2")])
 def test_an_ontology_says_who_made_it_and_how_to_speak_of_it(stem: str, prefix: str) -> None:
     graph = GRAPHS[stem]
     (ontology,) = graph.subjects(RDF.type, OWL.Ontology)

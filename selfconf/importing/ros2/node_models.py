@@ -1,0 +1,63 @@
+"""Models of ROS 2 packages (`.ros2`): which nodes their executables are, and the interfaces of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from selfconf.importing.ledger import ImportLedger
+from selfconf.importing.ros2.interfaces import InterfaceKind, NodeInterface
+from selfconf.importing.ros2.model_text import ModelEntry, unquoted
+from selfconf.importing.sources import SourceDocument
+
+BLOCKS = {kind.value: kind for kind in InterfaceKind}
+
+
+@dataclass(frozen=True, slots=True)
+class NodeModel:
+    """A kind of node: where it comes from, its interfaces, and the names and types of its parameters."""
+
+    source: SourceDocument
+    package: str
+    artifact: str
+    name: str
+    interfaces: tuple[NodeInterface, ...]
+    parameters: tuple[tuple[str, str], ...] = ()
+
+
+def node_models(entries: list[ModelEntry], source: SourceDocument, ledger: ImportLedger) -> Iterator[NodeModel]:
+    """The nodes of the packages of a model."""
+    for package in entries:
+        for each in package.below:
+            if each.key != "artifacts":
+                ledger.leave_out(f"entries {each.key!r} of packages", "they say where the code is", source)
+        artifacts = package.child("artifacts")
+        if artifacts is None:
+            ledger.leave_out("packages without artifacts", "there is no node in them", source)
+        for artifact in artifacts.below if artifacts is not None else ():
+            yield _node(package.key, artifact, source, ledger)
+
+
+def _node(package: str, artifact: ModelEntry, source: SourceDocument, ledger: ImportLedger) -> NodeModel:
+    interfaces: list[NodeInterface] = []
+    parameters: list[tuple[str, str]] = []
+    for block in artifact.below:
+        if block.key in BLOCKS:
+            interfaces += (_interface(BLOCKS[block.key], each, source, ledger) for each in block.below)
+        elif block.key == "parameters":
+            parameters += ((each.key, each.value("type")) for each in block.below)
+        elif block.key != "node":
+            ledger.leave_out(f"entries {block.key!r} of nodes", "a model of a node has no such part", source)
+    name = artifact.value("node") or artifact.key
+    return NodeModel(source, package, artifact.key, name, tuple(interfaces), tuple(parameters))
+
+
+def _interface(kind: InterfaceKind, entry: ModelEntry, source: SourceDocument, ledger: ImportLedger) -> NodeInterface:
+    qualities = entry.child("qos")
+    for each in entry.below:
+        if each.key == "ns":
+            ledger.leave_out("namespaces of interfaces", "ports are connected by their names", source)
+        elif each.key not in ("type", "qos"):
+            ledger.leave_out(f"entries {each.key!r} of interfaces", "an interface has type, ns and qos", source)
+    said = tuple((each.key, unquoted(each.text)) for each in qualities.below) if qualities is not None else ()
+    return NodeInterface(kind, entry.key, entry.value("type") or None, said)

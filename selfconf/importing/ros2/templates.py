@@ -1,0 +1,61 @@
+"""A system of ROS 2 nodes as a template: a role for each node, and an interaction for each connection.
+
+A role asks for the node that plays it in the system: by its kind, its name and the name of the system. An interaction
+names both ports, because by type alone a system has about half as many connections again that nobody meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from selfconf.importing.imported import DescribedStatement, Description, NestedNode, TermList
+from selfconf.importing.naming import slug
+from selfconf.importing.ros2.interfaces import ROS2, node_class
+from selfconf.importing.ros2.wiring import NodeInstance, WiredPair
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE, XSD
+
+
+def role_of(template: IRI, instance: NodeInstance, system: str) -> IRI:
+    """The role of a node in a template; a node of a subsystem is named after that too."""
+    path = [] if instance.system == system else [slug(instance.system)]
+    return IRI("/".join([f"{template}/role", *path, slug(instance.node.name)]))
+
+
+def system_template(
+    template: IRI, system: str, members: Iterable[NodeInstance], pairs: Iterable[WiredPair]
+) -> list[Description]:
+    """The template of a system, its roles, and its interactions."""
+    roles = {instance.key: role_of(template, instance, system) for instance in members}
+    found = [
+        Description(
+            template,
+            (
+                (TYPE, (SC.Template,)),
+                (LABEL, (Literal(f"ROS 2 system {system}"),)),
+                (SC.roles, (TermList(tuple(roles.values())),)),
+            ),
+        )
+    ]
+    for instance in members:
+        facts = (_fact(ROS2.nodeName, instance.node.name), _fact(ROS2.system, instance.system))
+        package, _, kind = instance.node.model.partition(".")
+        kind = instance.model.name if instance.model else kind
+        role = ((TYPE, (SC.Role,)), (SH["class"], (node_class(package, kind) or ROS2.Node,)), (SH.property, facts))
+        found.append(Description(roles[instance.key], role))
+    for number, pair in enumerate(pairs, 1):
+        interaction: tuple[DescribedStatement, ...] = (
+            (TYPE, (SC.Interaction,)),
+            (SC["from"], (roles[pair.source.key],)),
+            (SC.output, (Literal(pair.output.name),)),
+            (SC.to, (roles[pair.sink.key],)),
+            (SC.input, (Literal(pair.input.name),)),
+        )
+        found.append(Description(IRI(f"{template}/connection/{number}"), interaction))
+    return found
+
+
+def _fact(path: IRI, value: str) -> NestedNode:
+    """What a component has to say of itself."""
+    said = TermList((Literal(value),))
+    return NestedNode(((SH.path, (path,)), (SH["in"], (said,)), (SH.minCount, (Literal("1", XSD.integer),))))

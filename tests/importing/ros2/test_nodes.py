@@ -1,0 +1,77 @@
+"""One import of ROS 2 models: what comes of systems, and whether their connections are found again."""
+
+from __future__ import annotations
+
+import pytest
+
+import selfconf as sc
+from selfconf.model.configuration import Configuration
+from selfconf.rdf.permitted_fields import INPUT
+from selfconf.rdf.vocabulary import SC
+from tests.effort import examples
+from tests.importing.imports import Workshop, left_out
+from tests.importing.ros2.look_alikes import system
+
+NODL = '<interface version="1"><node name="n" executable="e"><parameter name="p" type="int"/></node></interface>'
+
+
+@pytest.mark.skipif(SC.optional not in INPUT.predicates, reason="an input of an advertisement cannot be optional yet")
+@pytest.mark.parametrize("seed", range(examples(25)))
+def test_the_configuration_of_a_system_has_its_connections_and_no_others(workshop: Workshop, seed: int) -> None:
+    look_alike = system(seed)
+    report = workshop.imported("ros2", look_alike.texts)
+    assert report.unreadable == ()
+    assert "connections" not in left_out(report)
+    answer = sc.configure(sc.template(workshop.out / "robot.template.ttl"), sc.read(workshop.out))
+    assert isinstance(answer, Configuration), answer
+    found = {(each.source.short, each.output, each.sink.short, each.input) for each in answer.connections}
+    assert found == look_alike.connections
+
+
+def test_nodes_of_a_system_are_components_and_the_models_that_they_are_instances_of_are_not(workshop: Workshop) -> None:
+    texts = system(3).texts
+    report = workshop.imported("ros2", texts)
+    assert [file.path.name for file in report.files] == [
+        "base.ttl", "base.template.ttl", "robot.ttl", "robot.template.ttl",
+    ]  # fmt: skip
+    nodes = texts["robot.rossystem"].count("      from:") + texts["base.rossystem"].count("      from:")
+    assert sum(1 for file in report.files for _ in file.document.subjects(SC.Component)) == nodes
+
+
+def test_models_that_no_system_uses_and_nodl_are_components_of_their_own(workshop: Workshop) -> None:
+    report = workshop.imported("ros2", {"nodes.ros2": system(3).texts["nodes.ros2"], "a/n.nodl.xml": NODL})
+    assert [file.path.relative_to(workshop.out).as_posix() for file in report.files] == ["a/n.ttl", "nodes.ttl"]
+    assert "<urn:selfconf:ros2:a-n/n> a sc:Component, ros2:Node ;" in workshop.texts()["a/n.ttl"]
+
+
+def test_importing_again_writes_the_same_bytes(workshop: Workshop) -> None:
+    workshop.imported("ros2", system(5).texts)
+    before = workshop.texts()
+    assert {file.state.value for file in workshop.imported("ros2", {}).files} == {"unchanged"}
+    assert workshop.texts() == before
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("old.rossystem", "RosSystem { Name 'x' }", "old.rossystem:1:1: this is in the notation of before 2022"),
+        ("bad.ros2", "a:\n  b c\n", "bad.ros2:2:3: a line is"),
+        ("bad.nodl.xml", "<interface", "bad.nodl.xml:1:1: this is not XML"),
+    ],
+)
+def test_what_cannot_be_read_is_named_and_the_rest_is_imported(
+    workshop: Workshop, name: str, text: str, words: str
+) -> None:
+    report = workshop.imported("ros2", {name: text, "n.nodl.xml": NODL})
+    assert words in str(report.unreadable[0])
+    assert len(report.files) == 1
+
+
+def test_a_system_without_nodes_is_no_template(workshop: Workshop) -> None:
+    report = workshop.imported("ros2", {"x.rossystem": "a:\n  nodes:\n"})
+    assert report.files == ()
+    assert left_out(report) == {"templates of systems without nodes": 1}
+
+
+def test_a_document_without_nodes_is_named(workshop: Workshop) -> None:
+    assert left_out(workshop.imported("ros2", {"x.ros2": "a:\n  b: c\n"})) == {"documents without nodes": 1}
