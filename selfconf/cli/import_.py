@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 EXAMPLE = """  selfconf import wot things/ --out ads
   selfconf import ros2 robot.rossystem nodes/ --out ads
   selfconf import wot http://192.0.2.7/.well-known/wot --out ads"""
-FORM_NAMES = ("wot", "ros2")
+FORM_NAMES = ("wot", "ros2", "owl-s", "peis", "rdf")
 # Those of `selfconf.importing.IMPORT_FORMATS`, which is not loaded to parse arguments; a test compares them.
 
 

@@ -10,11 +10,15 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from selfconf import files
 from selfconf.errors import AuthorError
 from selfconf.importing.folder import FileState, write_folder
 from selfconf.importing.imported import ImportedDocument, Omission, Renaming
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import absolute
+from selfconf.importing.owl_s import import_services
+from selfconf.importing.peis import import_peis
+from selfconf.importing.rdf_documents import import_rdf
 from selfconf.importing.ros2 import import_nodes
 from selfconf.importing.sources import SourceDocument, gather
 from selfconf.importing.turtle_text import turtle
@@ -37,6 +41,9 @@ IMPORT_FORMATS = {
     for each in (
         ImportFormat("wot", (".json", ".jsonld"), import_things),
         ImportFormat("ros2", (".ros2", ".rossystem", ".nodl.xml"), import_nodes),
+        ImportFormat("owl-s", (".owls", ".owl", ".rdf", ".ttl"), import_services),
+        ImportFormat("peis", (".cmp",), import_peis),
+        ImportFormat("rdf", files.ONTOLOGY, import_rdf),
     )
 }
 """The formats, by their names."""

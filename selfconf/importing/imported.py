@@ -127,10 +127,19 @@ def _nested(*pairs: tuple[IRI, Term | None]) -> NestedNode:
 
 
 def grouped(pairs: Iterable[tuple[IRI, DescribedValue]]) -> tuple[DescribedStatement, ...]:
-    """Statements with the values of each predicate together, in the order in which both come first."""
-    values: dict[IRI, dict[DescribedValue, None]] = {}
+    """Statements with the values of each predicate together, in the order in which both come first.
+
+    A term is stated once; two nodes without a name are two, even if the same is said of both.
+    """
+    values: dict[IRI, list[DescribedValue]] = {}
+    stated: set[tuple[IRI, Term]] = set()
     for predicate, value in pairs:
-        values.setdefault(predicate, {})[value] = None
+        each = values.setdefault(predicate, [])
+        if isinstance(value, NestedNode | TermList):
+            each.append(value)
+        elif (predicate, value) not in stated:
+            stated.add((predicate, value))
+            each.append(value)
     return tuple((predicate, tuple(each)) for predicate, each in values.items())
 
 

@@ -40,31 +40,42 @@ def stem(source: SourceDocument) -> str:
     return "/".join([*map(slug, folders), slug(_DESCRIBES.sub("", last) or last)])
 
 
-class DistinctNames:
-    """Gives each name out once; the second one of a name gets the stem of its source, then a number."""
+class NumberedNames:
+    """Gives each name out once, and then with a number; each costs the same, however often it is asked for."""
 
     def __init__(self) -> None:
-        self._components: set[str] = set()
-        self._files: set[str] = set()
+        self._taken: set[str] = set()
+        self._last: dict[str, int] = {}
+
+    def free(self, name: str) -> str:
+        """The name, or the name with the first number from two on that makes it another one than all before."""
+        found, number = name, self._last.get(name, 1)
+        while found in self._taken:
+            number += 1
+            found = f"{name}-{number}"
+        self._last[name] = number
+        self._taken.add(found)
+        return found
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._taken
+
+
+class DistinctNames:
+    """The names of components and files of one import: the second component of a name gets the stem of its source."""
+
+    def __init__(self) -> None:
+        self._components, self._files = NumberedNames(), NumberedNames()
         self.renamed: list[Renaming] = []
 
     def component(self, iri: IRI, source: SourceDocument) -> IRI:
         """The name of a component that its source calls by this IRI."""
-        name = iri
-        if iri in self._components:
-            name = IRI(_free(f"{iri}-{slug(stem(source))}", self._components))
+        wanted = f"{iri}-{slug(stem(source))}" if iri in self._components else iri
+        name = IRI(self._components.free(wanted))
+        if name != iri:
             self.renamed.append(Renaming(name, iri, source.shown))
-        self._components.add(name)
         return name
 
     def file(self, name: str) -> str:
         """The name of a file; on some systems upper and lower case are the same."""
-        found = _free(name, self._files)
-        self._files.add(found.lower())
-        return found
-
-
-def _free(name: str, taken: set[str]) -> str:
-    """A name that is not taken, with a number if it has to be."""
-    candidates = (name, *(f"{name}-{number}" for number in range(2, len(taken) + 3)))
-    return next(each for each in candidates if each not in taken and each.lower() not in taken)
+        return name + self._files.free(name.lower())[len(name) :]

@@ -26,6 +26,7 @@ from urllib.request import (
 
 from selfconf import files
 from selfconf.errors import AuthorError
+from selfconf.importing.turtle_text import MARK
 
 LARGEST_SOURCE = 16 << 20
 """A document of more bytes is not read; the largest Thing Descriptions that are known have a few hundred kilobytes."""
@@ -56,26 +57,26 @@ class SourceDocument:
 
 
 def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadable) -> Iterator[SourceDocument]:
-    """The documents that some paths and URLs stand for: of a folder, all files below it that end so, sorted by name."""
+    """The documents that some paths and URLs stand for: of a folder, all files below it that end so, sorted by name.
+
+    What an import has written is no source, so that the folder it goes to may lie in the folder that it comes from.
+    """
     for one in given:
         if _URL.match(one):
-            found = _attempt(lambda url=one: _fetched(url), unreadable)  # type: ignore[misc]  # a default binds it now
-            if found is not None:
-                yield found
+            try:
+                yield _fetched(one)
+            except AuthorError as error:
+                unreadable(error)
             continue
         for path in files.within(Path(one), unreadable, endings):
             name = path.relative_to(one).as_posix() if path != Path(one) else path.name
-            found = _attempt(lambda path=path, name=name: _read(path, name), unreadable)  # type: ignore[misc]  # as above
-            if found is not None:
+            try:
+                found = _read(path, name)
+            except AuthorError as error:
+                unreadable(error)
+                continue
+            if path == Path(one) or not found.octets.startswith(MARK.encode()):
                 yield found
-
-
-def _attempt(reading: Callable[[], SourceDocument], unreadable: Unreadable) -> SourceDocument | None:
-    try:
-        return reading()
-    except AuthorError as error:
-        unreadable(error)
-        return None
 
 
 def _read(path: Path, name: str) -> SourceDocument:

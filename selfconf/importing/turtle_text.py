@@ -63,17 +63,18 @@ class _Writer:
     def block(self, description: Description) -> str:
         """The statements about one subject."""
         first, *rest = description.statements
-        lines = [f"{self.flat(description.subject)} {self.statement(first, _STEP)}"]
+        subject = self.flat(description.subject)
+        lines = [f"{subject} {self.statement(first, _STEP, len(subject) + 1)}"]
         lines += [f"{_STEP}{self.statement(each, _STEP)}" for each in rest]
         return " ;\n".join(lines) + " .\n"
 
-    def statement(self, statement: tuple[IRI, Sequence[DescribedValue]], indent: str) -> str:
+    def statement(self, statement: tuple[IRI, Sequence[DescribedValue]], indent: str, before: int = 0) -> str:
         """A predicate with its values: on its line if there is room, else each value on a line of its own."""
         predicate, values = statement
         name = "a" if predicate == TYPE else self.flat(predicate)
         flat = f"{name} {', '.join(map(self.flat, values))}"
         several = len(values) > 1 and any(isinstance(value, NestedNode) for value in values)
-        if len(indent) + len(flat) + 2 <= WIDTH and not several:
+        if max(len(indent), before) + len(flat) + 2 <= WIDTH and not several:
             return flat
         deeper = indent + _STEP
         return f"{name}\n{deeper}" + f" ,\n{deeper}".join(self.value(value, deeper) for value in values)

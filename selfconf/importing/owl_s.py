@@ -1,0 +1,149 @@
+"""Services of OWL-S, versions 1.1 and 1.2, as components: what the profile says goes in and out, by type.
+
+The inputs and outputs of a service are ports, typed by their `process:parameterType`; a service whose profile lists
+none has those of its process. How a service works inside, what has to hold before it, and how it is reached is left
+out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from selfconf.errors import AuthorError
+from selfconf.importing.imported import ImportedComponent, ImportedDocument, ImportedPort
+from selfconf.importing.ledger import ImportLedger
+from selfconf.importing.naming import NumberedNames, absolute, stem
+from selfconf.importing.rdf_documents import read_rdf
+from selfconf.importing.sources import SourceDocument
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.turtle import Document, Node
+from selfconf.rdf.vocabulary import RDFS, TYPE, Namespace
+
+VERSIONS = ("1.1", "1.2")
+PARTS_OF_OWL_S = ("Service", "Profile", "Process")
+_BASES = {
+    (version, part): Namespace(f"http://www.daml.org/services/owl-s/{version}/{part}.owl#")
+    for version in VERSIONS
+    for part in PARTS_OF_OWL_S
+}
+_PREFIXES = {f"{part.lower()}{version.replace('.', '')}": base.base for (version, part), base in _BASES.items()}
+_UNUSED = {
+    "hasPrecondition": ("preconditions", "an advertisement says what a component is, not when it may act"),
+    "hasResult": ("results and effects", "an advertisement says what a component gives, not what it brings about"),
+    "serviceCategory": ("categories", "the types of a component say what kind it is"),
+    "contactInformation": ("contacts", "an advertisement has no place for them"),
+    "qualityRating": ("ratings", "an advertisement has no place for them"),
+}
+"""Properties of profiles without a counterpart, in words, and why not."""
+
+
+def import_services(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
+    """The services that documents of RDF describe, one after the other."""
+    for source in sources:
+        try:
+            document = read_rdf(source, ledger)
+        except AuthorError as error:
+            ledger.unreadable(error)
+            continue
+        components = [
+            component
+            for version in VERSIONS
+            for component in _ServiceReader(document, version, source, ledger).components()
+        ]
+        if components:
+            described = tuple(component.described() for component in components)
+            yield ImportedDocument(stem(source), source.name, described, {**_PREFIXES, **document.prefixes})
+        else:
+            ledger.leave_out("documents without a profile", "there is no service of OWL-S 1.1 or 1.2 in them", source)
+
+
+class _ServiceReader:
+    """Reads the services of one document in one version."""
+
+    def __init__(self, document: Document, version: str, source: SourceDocument, ledger: ImportLedger) -> None:
+        self.document, self.source, self.ledger = document, source, ledger
+        self.service, self.profile, self.process = (_BASES[version, part] for part in PARTS_OF_OWL_S)
+        self._presenting: dict[Term, Node] = {}
+        for subject, statements in document.statements.items():
+            for predicate, value in statements:
+                if predicate == self.service.presents:
+                    self._presenting.setdefault(value, subject)
+
+    def components(self) -> Iterator[ImportedComponent]:
+        for profile in self._profiles():
+            service = self._service(profile)
+            if isinstance(service, IRI):
+                yield self._component(service, profile)
+            else:
+                self.ledger.leave_out("services without an IRI", "a component has an IRI", self.source)
+
+    def _profiles(self) -> list[Node]:
+        speaks = {self.profile[name] for name in ("hasInput", "hasOutput", "serviceName")}
+        found = dict.fromkeys(self.document.instances(self.profile.Profile))
+        for subject, statements in self.document.statements.items():
+            if any(predicate in speaks for predicate, _ in statements):
+                found[subject] = None
+        return list(found)
+
+    def _service(self, profile: Node) -> Term:
+        """The service that presents a profile, or else the profile itself."""
+        said = self.document.value(profile, self.service.presentedBy)
+        return said or self._presenting.get(profile, profile)
+
+    def _component(self, service: IRI, profile: Node) -> ImportedComponent:
+        for name, (what, why) in _UNUSED.items():
+            number = len(self.document.values(profile, self.profile[name]))
+            if number:
+                self.ledger.leave_out(what, why, self.source, number)
+        if self.document.values(service, self.service.supports):
+            reason = "they say how a service is reached, an advertisement says what it is"
+            self.ledger.leave_out("groundings", reason, self.source)
+        own = [kind for kind in self.document.values(profile, TYPE) if isinstance(kind, IRI)]
+        kinds = (kind for kind in own if kind not in self.profile and not kind.startswith("http://www.w3.org/"))
+        inputs, outputs = (self._parameters(service, profile, link) for link in ("hasInput", "hasOutput"))
+        known = {*inputs, *outputs}
+        further = [each for each in self.document.values(profile, self.profile.hasParameter) if each not in known]
+        return ImportedComponent(
+            self.ledger.names.component(service, self.source),
+            tuple(dict.fromkeys((self.service.Service, *kinds))),
+            labels=tuple(self._words(profile, self.profile.serviceName)),
+            properties=tuple((RDFS.comment, words) for words in self._words(profile, self.profile.textDescription)),
+            inputs=tuple(self._ports(inputs)),
+            outputs=tuple(self._ports(outputs)),
+            parameters=tuple(self._operational(further)),
+        )
+
+    def _words(self, subject: Node, predicate: IRI) -> Iterator[Literal]:
+        """Texts with their languages; that a text is typed as xsd:string makes no difference."""
+        for value in self.document.values(subject, predicate):
+            if isinstance(value, Literal) and value.lexical.strip():
+                yield Literal(" ".join(value.lexical.split()), value.datatype, value.language)
+
+    def _parameters(self, service: IRI, profile: Node, link: str) -> list[Term]:
+        """The parameters of a profile, or else of the process of its service."""
+        found = self.document.values(profile, self.profile[link])
+        for process in self.document.values(service, self.service.describedBy) if not found else ():
+            found += self.document.values(process, self.process[link])
+        return found
+
+    def _typed(self, parameters: Iterable[Term]) -> Iterator[tuple[str, IRI | None]]:
+        """The name and the type of each parameter; a name that is taken gets a number."""
+        names = NumberedNames()
+        for parameter in parameters:
+            name = parameter.short if isinstance(parameter, IRI) else "parameter"
+            said = self.document.value(parameter, self.process.parameterType)
+            kind = absolute(said.lexical.strip()) if isinstance(said, Literal) else said
+            if said is not None and not isinstance(kind, IRI):
+                self.ledger.leave_out("types that are no IRIs", "the parameter is kept without one", self.source)
+            yield names.free(name), kind if isinstance(kind, IRI) else None
+
+    def _ports(self, parameters: Iterable[Term]) -> Iterator[ImportedPort]:
+        for name, kind in self._typed(parameters):
+            yield ImportedPort(name, () if kind is None else (kind,))
+
+    def _operational(self, parameters: Iterable[Term]) -> Iterator[tuple[str, IRI]]:
+        for name, kind in self._typed(parameters):
+            if kind is None:
+                self.ledger.leave_out("parameters without a type", "an operational parameter has one", self.source)
+            else:
+                yield name, kind
