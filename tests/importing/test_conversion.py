@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from selfconf import read, validate
 from selfconf.cli.import_ import FORM_NAMES
 from selfconf.errors import AuthorError
 from selfconf.importing import IMPORT_FORMATS, FileState, import_descriptions
+from selfconf.rdf.permitted_fields import COMPONENT
+from selfconf.rdf.vocabulary import SC
 from tests.importing.imports import Workshop
+from tests.importing.ros2.look_alikes import system
 
 LAMP = '{ "title": "Lamp", "properties": { "on": {} } }'
 
@@ -55,3 +59,24 @@ def test_components_without_a_name_get_one_in_the_namespace(workshop: Workshop) 
 def test_what_cannot_be_a_namespace_is_refused(workshop: Workshop, namespace: str) -> None:
     with pytest.raises(AuthorError, match="cannot be a namespace"):
         import_descriptions("wot", [str(workshop.sources)], workshop.out, namespace)
+
+
+THING = """{
+  "@context": ["https://www.w3.org/2022/wot/td/v1.1", { "saref": "https://w3id.org/saref#" }],
+  "id": "urn:dev:lamp", "title": "Lamp", "@type": "saref:LightSwitch",
+  "properties": { "on": { "@type": ["saref:OnOffState", "saref:State"] }, "level": { "unit": "percent" } },
+  "events": { "hot": { "data": { "@type": "saref:Temperature", "unit": "degree celsius" } } },
+  "actions": { "toggle": {}, "fade": { "input": { "@type": "saref:Level" }, "output": { "@type": "saref:State" } } }
+}"""
+
+
+@pytest.mark.skipif(SC.hasOperation not in COMPONENT.predicates, reason="an advertisement has no operations yet")
+def test_what_is_written_is_accepted_by_validate_and_read_without_a_complaint(workshop: Workshop) -> None:
+    workshop.imported("wot", {"lamp.json": THING, "bare.json": LAMP})
+    workshop.imported("ros2", system(7).texts)
+    report = validate([workshop.out])
+    assert report.errors == 0, report
+    assert len(report.files) > 5
+    ecology = read(workshop.out)
+    assert ecology.left_out == ()
+    assert len(ecology) > 5

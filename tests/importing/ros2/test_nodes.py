@@ -67,6 +67,43 @@ def test_what_cannot_be_read_is_named_and_the_rest_is_imported(
     assert len(report.files) == 1
 
 
+def test_a_connection_of_services_is_left_out_of_the_template_and_counted(workshop: Workshop) -> None:
+    nodes = """p:
+  artifacts:
+    a:
+      node: a
+      serviceservers:
+        s:
+          type: "std_srvs/srv/Trigger"
+    b:
+      node: b
+      serviceclients:
+        s:
+          type: "std_srvs/srv/Trigger"
+"""
+    whole = """w:
+  nodes:
+    a:
+      from: "p.a"
+      interfaces:
+        - server: ss-> "a::s"
+    b:
+      from: "p.b"
+      interfaces:
+        - client: sc-> "b::s"
+  connections:
+    - [ server, client ]
+"""
+    report = workshop.imported("ros2", {"p.ros2": nodes, "w.rossystem": whole})
+    assert left_out(report) == {"connections of services and actions": 1}
+    assert "sc:Interaction" not in workshop.texts()["w.template.ttl"]
+    text = " ".join(workshop.texts()["w.ttl"].split())
+    trigger = "sc:request std_srvs-srv:Trigger_Request ; sc:response std_srvs-srv:Trigger_Response ] ."
+    assert f'sc:hasOperation [ sc:name "server" ; {trigger}' in text
+    assert f'sc:needsOperation [ sc:name "client" ; {trigger}' in text
+    assert "sc:optional" not in text
+
+
 def test_a_system_without_nodes_is_no_template(workshop: Workshop) -> None:
     report = workshop.imported("ros2", {"x.rossystem": "a:\n  nodes:\n"})
     assert report.files == ()
