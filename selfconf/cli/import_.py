@@ -12,8 +12,8 @@ from selfconf.cli.terminal import complain
 if TYPE_CHECKING:
     from selfconf.importing import ImportedFile, ImportReport
 
-EXAMPLE = """  selfconf import wot things/ --out ads
-  selfconf import ros2 robot.rossystem nodes/ --out ads
+EXAMPLE = """  selfconf import wot examples/imports/lamp.td.json --out ads
+  selfconf import ros2 examples/imports --out ads
   selfconf import wot http://192.0.2.7/.well-known/wot --out ads"""
 FORM_NAMES = ("wot", "ros2", "owl-s", "peis", "rdf")
 # Those of `selfconf.importing.IMPORT_FORMATS`, which is not loaded to parse arguments; a test compares them.

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.wording import listed
 from selfconf.rdf.vocabulary import LABEL, SC, TYPE, XSD
 
 
@@ -87,6 +88,8 @@ class ImportedOperation:
         )
 
 
+FEW = 2
+"""How many sources a sentence names; the rest become a number."""
 TRUE = Literal("true", XSD.boolean)
 
 
@@ -168,9 +171,9 @@ class Omission:
     number: int = 1
 
     def __str__(self) -> str:
-        from selfconf.model.wording import listed
-
-        return f"left out {self.what} ({self.number}): {self.reason}; in {listed(self.sources)}"
+        first, others = self.sources[:FEW], len(self.sources) - FEW
+        where = listed([*first, f"{others} others"] if others > 1 else self.sources)
+        return f"left out {self.what} ({self.number}): {self.reason}; in {where}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,8 @@ def import_rdf(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Itera
 
 def read_rdf(source: SourceDocument, ledger: ImportLedger) -> Document:
     """A document of RDF; relative IRIs count from its name in the namespace, wherever it lies. Raises AuthorError."""
-    return read_ontology(source.octets, source.shown, f"{ledger.namespace}{stem(source)}")
+    namespace = ledger.namespace.removesuffix("#") + "/" * ledger.namespace.endswith("#")  # a base has no fragment
+    return read_ontology(source.octets, source.shown, namespace + stem(source))
 
 
 def _refused(document: Document, source: SourceDocument, ledger: ImportLedger) -> set[Node]:

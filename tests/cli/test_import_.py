@@ -10,6 +10,8 @@ import pytest
 from referencing import Registry, Resource
 
 from selfconf import library
+from selfconf.rdf.permitted_fields import INPUT
+from selfconf.rdf.vocabulary import SC
 from tests.cli.command import run
 
 SCHEMAS = {path.name: json.loads(path.read_text("utf-8")) for path in library.schemas()}
@@ -17,6 +19,7 @@ JUDGE = jsonschema.Draft202012Validator(
     SCHEMAS["import.schema.json"],
     registry=Registry().with_resources((s["$id"], Resource.from_contents(s)) for s in SCHEMAS.values()),
 )
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "imports"
 LAMP = """{
   "@context": ["https://www.w3.org/2022/wot/td/v1.1", { "saref": "https://w3id.org/saref#" }],
   "id": "urn:dev:lamp", "title": "Lamp", "properties": { "on": { "@type": "saref:OnOffState", "forms": [{}] } }
@@ -84,3 +87,20 @@ def test_a_file_of_somebody_else_stops_the_import(things: Path, capsys: pytest.C
     (things.parent / "ads" / "lamp.ttl").write_text("# mine\n")
     outcome = run(capsys, "import", "wot", "things", "--out", "ads")
     assert outcome.is_one_sentence("ads/lamp.ttl is not from an import", "--out")
+
+
+def test_the_examples_are_imported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for form, number in (("wot", 1), ("ros2", 4)):
+        outcome = run(capsys, "import", form, str(EXAMPLES), "--out", str(tmp_path / form), "--format", "json")
+        assert outcome.code == 0
+        assert sum(len(file["components"]) for file in outcome.body["files"]) == number
+    assert (tmp_path / "ros2" / "teleoperation.template.ttl").read_text().count("a sc:Interaction") == 3
+
+
+@pytest.mark.skipif(SC.optional not in INPUT.predicates, reason="an input of an advertisement cannot be optional yet")
+def test_an_imported_system_is_configured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run(capsys, "import", "ros2", str(EXAMPLES), "--out", str(tmp_path))
+    template = str(tmp_path / "teleoperation.template.ttl")
+    outcome = run(capsys, "configure", template, "--ads", str(tmp_path), "--format", "json")
+    assert outcome.code == 0, outcome
+    assert len(outcome.body["connections"]) == 3

@@ -56,4 +56,6 @@ def test_what_is_left_out_and_what_is_renamed_are_sentences() -> None:
     assert str(Omission("forms", "they are not needed", ("a", "b"), 3)) == (
         "left out forms (3): they are not needed; in a and b"
     )
+    assert str(Omission("forms", "why", ("a", "b", "c"), 3)).endswith("in a, b and c")
+    assert str(Omission("forms", "why", ("a", "b", "c", "d"), 4)).endswith("in a, b and 2 others")
     assert "urn:x:lamp-2" in str(Renaming(IRI("urn:x:lamp-2"), LAMP, "b.json"))
