@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, TurtleError
 from selfconf.importing.imported import DescribedValue, Description, ImportedDocument, NestedNode, TermList, grouped
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import stem
@@ -51,7 +51,11 @@ def import_rdf(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Itera
 def read_rdf(source: SourceDocument, ledger: ImportLedger) -> Document:
     """A document of RDF; relative IRIs count from its name in the namespace, wherever it lies. Raises AuthorError."""
     namespace = ledger.namespace.removesuffix("#") + "/" * ledger.namespace.endswith("#")  # a base has no fragment
-    return read_ontology(source.octets, source.shown, namespace + stem(source))
+    try:
+        return read_ontology(source.octets, source.shown, namespace + stem(source))
+    except TurtleError as error:  # which quotes the source, line breaks and all
+        message = " ".join(error.message.split())
+        raise AuthorError(message, file=error.file, line=error.line, column=error.column) from None
 
 
 def _refused(document: Document, source: SourceDocument, ledger: ImportLedger) -> set[Node]:

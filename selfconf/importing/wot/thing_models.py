@@ -15,7 +15,11 @@ from selfconf.importing.sources import SourceDocument
 
 DEEPEST_REFERENCE = 10
 """How many references may lead on to each other; more are a circle, or as good as one."""
+MOST_REFERENCES = 1000
+"""How many references are followed for one thing: few that lead on to several each would come to very many."""
 _AFFORDANCES = ("properties", "events", "actions")
+_OWN = ("id", "@id", "links", *_AFFORDANCES)
+"""What a model does not hand on as it is to those that extend it."""
 
 
 class ModelReferences:
@@ -24,50 +28,71 @@ class ModelReferences:
     def __init__(self, documents: Mapping[str, Any], ledger: ImportLedger) -> None:
         self.documents, self.ledger = documents, ledger
 
-    def resolved(self, thing: dict[str, Any], source: SourceDocument, depth: int = 0) -> dict[str, Any]:
-        """A thing with the affordances that it takes from others."""
-        found = dict(thing)
+    def resolved(self, thing: dict[str, Any], source: SourceDocument) -> dict[str, Any]:
+        """A thing of a source with the affordances that it takes from others; what is not at hand is noted."""
+        follower = _Follower(self.documents)
+        found = follower.thing(thing, source.name, 0)
+        if follower.missed:
+            reason = "what they refer to is not among the sources, is too far away, or is a circle; nothing is fetched"
+            self.ledger.leave_out("references to other models", reason, source, follower.missed)
+        return found
+
+
+class _Follower:
+    """Follows the references of one thing. A name is that of the document in which a reference stands."""
+
+    def __init__(self, documents: Mapping[str, Any]) -> None:
+        self.documents = documents
+        self.followed = self.missed = 0
+
+    def thing(self, thing: dict[str, Any], name: str, depth: int) -> dict[str, Any]:
+        """A thing with what its links and its affordances refer to."""
+        inherited: dict[str, Any] = {}
         links = thing.get("links")
         for link in links if isinstance(links, list) else ():
             if isinstance(link, dict) and link.get("rel") == "tm:extends":
-                base = self._found(str(link.get("href")), thing, source, depth)
-                if base is not None:
-                    found = {**base, **{key: value for key, value in found.items() if key not in _AFFORDANCES}}
-                    kinds = (kind for kind in _AFFORDANCES if kind in base or kind in thing)
-                    found |= {kind: _patched(base.get(kind), thing.get(kind)) for kind in kinds}
-        for kind in _AFFORDANCES:
-            if isinstance(found.get(kind), dict):
-                found[kind] = {name: self._referred(each, found, source, depth) for name, each in found[kind].items()}
-        return found
+                found = self._found(str(link.get("href")), thing, name, depth)
+                if found is not None:
+                    base = self.thing(found[0], found[2], depth + 1)
+                    inherited = _patched(inherited, {key: value for key, value in base.items() if key != "links"})
+        own = {kind: self._affordances(thing, kind, name, depth) for kind in _AFFORDANCES if kind in thing}
+        taken = {key: value for key, value in inherited.items() if key not in _OWN}
+        kinds = {kind: _patched(inherited.get(kind), own.get(kind)) for kind in _AFFORDANCES if kind in inherited}
+        return {**taken, **thing, **own, **kinds}
 
-    def _referred(self, affordance: Any, thing: dict[str, Any], source: SourceDocument, depth: int) -> Any:
+    def _affordances(self, thing: dict[str, Any], kind: str, name: str, depth: int) -> Any:
+        found = thing[kind]
+        if not isinstance(found, dict):
+            return found
+        return {key: self._referred(each, thing, name, depth) for key, each in found.items()}
+
+    def _referred(self, affordance: Any, thing: dict[str, Any], name: str, depth: int) -> Any:
         """An affordance with what its `tm:ref` leads to."""
         if not isinstance(affordance, dict) or not isinstance(affordance.get("tm:ref"), str):
             return affordance
-        base = self._found(affordance["tm:ref"], thing, source, depth)
         rest = {key: value for key, value in affordance.items() if key != "tm:ref"}
-        return rest if base is None else _patched(base, rest)
+        found = self._found(affordance["tm:ref"], thing, name, depth)
+        return rest if found is None else _patched(self._referred(*found, depth + 1), rest)
 
     def _found(
-        self, reference: str, thing: dict[str, Any], source: SourceDocument, depth: int
-    ) -> dict[str, Any] | None:
-        """What a reference leads to, with its own references followed; None, noted, if that is not at hand."""
+        self, reference: str, thing: dict[str, Any], name: str, depth: int
+    ) -> tuple[dict[str, Any], dict[str, Any], str] | None:
+        """What a reference leads to, and the document that holds it with its name."""
         path, _, pointer = reference.partition("#")
         holder: Any = thing
         if path:
-            holder = self.documents.get(posixpath.normpath(posixpath.join(posixpath.dirname(source.name), path)))
+            name = posixpath.normpath(posixpath.join(posixpath.dirname(name), path))
+            holder = self.documents.get(name)
         target = holder
         for step in pointer.split("/")[1:]:
             step = step.replace("~1", "/").replace("~0", "~")
             target = target.get(step) if isinstance(target, dict) else None
-        if not isinstance(target, dict) or depth >= DEEPEST_REFERENCE:
-            reason = "what they refer to is not among the sources, and is not fetched"
-            self.ledger.leave_out("references to other models", reason, source)
+        self.followed += 1
+        near = depth < DEEPEST_REFERENCE and self.followed <= MOST_REFERENCES
+        if not near or not isinstance(target, dict) or not isinstance(holder, dict):
+            self.missed += 1
             return None
-        if pointer and "tm:ref" in target and isinstance(holder, dict):
-            followed = self._referred(target, holder, source, depth + 1)
-            return followed if isinstance(followed, dict) else None
-        return self.resolved(target, source, depth + 1) if path and not pointer else target
+        return target, holder, name
 
 
 def _patched(base: Any, change: Any) -> Any:

@@ -58,3 +58,25 @@ def test_a_circle_of_references_ends() -> None:
     assert missing > 0
     links = [{"rel": "tm:extends", "href": "lamp.json"}]
     assert resolved({"links": links}, {"rooms/lamp.json": {"title": "x", "links": links}})[1] > 0
+
+
+def test_a_model_may_extend_several_and_keeps_its_own_identifier() -> None:
+    others = {"a.json": {"id": "urn:a", "actions": {"x": {}}}, "b.json": {"actions": {"y": {}}, "@type": "x:B"}}
+    links = [{"rel": "tm:extends", "href": f"../{name}.json"} for name in "ab"]
+    found, missing = resolved({"links": links, "actions": {"z": {}}}, others)
+    assert found == {"links": links, "actions": {"x": {}, "y": {}, "z": {}}, "@type": "x:B"}
+    assert missing == 0
+
+
+def test_references_of_a_model_count_from_where_it_lies() -> None:
+    far = {"properties": {"a": {"tm:ref": "near.json#/properties/b"}}}
+    others = {"base/far.json": far, "base/near.json": {"properties": {"b": {"unit": "m"}}}}
+    found, missing = resolved({"properties": {"a": {"tm:ref": "../base/far.json#/properties/a"}}}, others)
+    assert (found["properties"], missing) == ({"a": {"unit": "m"}}, 0)
+
+
+def test_references_that_lead_to_ever_more_end() -> None:
+    links = [{"rel": "tm:extends", "href": "lamp.json"}] * 10
+    found, missing = resolved({"links": links}, {"rooms/lamp.json": {"links": links}})
+    assert found == {"links": links}
+    assert missing > 0
