@@ -10,8 +10,6 @@ import pytest
 from referencing import Registry, Resource
 
 from selfconf import library
-from selfconf.rdf.permitted_fields import INPUT
-from selfconf.rdf.vocabulary import SC
 from tests.cli.command import run
 
 SCHEMAS = {path.name: json.loads(path.read_text("utf-8")) for path in library.schemas()}
@@ -97,7 +95,6 @@ def test_the_examples_are_imported(tmp_path: Path, capsys: pytest.CaptureFixture
     assert (tmp_path / "ros2" / "teleoperation.template.ttl").read_text().count("a sc:Interaction") == 3
 
 
-@pytest.mark.skipif(SC.optional not in INPUT.predicates, reason="an input of an advertisement cannot be optional yet")
 def test_an_imported_system_is_configured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run(capsys, "import", "ros2", str(EXAMPLES), "--out", str(tmp_path))
     template = str(tmp_path / "teleoperation.template.ttl")

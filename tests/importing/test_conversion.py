@@ -8,8 +8,6 @@ from selfconf import read, validate
 from selfconf.cli.import_ import FORM_NAMES
 from selfconf.errors import AuthorError
 from selfconf.importing import IMPORT_FORMATS, FileState, import_descriptions
-from selfconf.rdf.permitted_fields import COMPONENT
-from selfconf.rdf.vocabulary import SC
 from tests.importing.imports import Workshop
 from tests.importing.ros2.look_alikes import system
 
@@ -70,7 +68,6 @@ THING = """{
 }"""
 
 
-@pytest.mark.skipif(SC.hasOperation not in COMPONENT.predicates, reason="an advertisement has no operations yet")
 def test_what_is_written_is_accepted_by_validate_and_read_without_a_complaint(workshop: Workshop) -> None:
     workshop.imported("wot", {"lamp.json": THING, "bare.json": LAMP})
     workshop.imported("ros2", system(7).texts)

@@ -6,7 +6,6 @@ import pytest
 
 import selfconf as sc
 from selfconf.model.configuration import Configuration
-from selfconf.rdf.permitted_fields import INPUT
 from selfconf.rdf.vocabulary import SC
 from tests.effort import examples
 from tests.importing.imports import Workshop, left_out
@@ -15,7 +14,6 @@ from tests.importing.ros2.look_alikes import system
 NODL = '<interface version="1"><node name="n" executable="e"><parameter name="p" type="int"/></node></interface>'
 
 
-@pytest.mark.skipif(SC.optional not in INPUT.predicates, reason="an input of an advertisement cannot be optional yet")
 @pytest.mark.parametrize("seed", range(examples(25)))
 def test_the_configuration_of_a_system_has_its_connections_and_no_others(workshop: Workshop, seed: int) -> None:
     look_alike = system(seed)
