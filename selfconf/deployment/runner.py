@@ -49,6 +49,7 @@ from selfconf.deployment.calls import Calls
 from selfconf.deployment.holders import ask_holders
 from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.liveness import Liveness
+from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.run_request import RunRequest
 from selfconf.discovery import Discovery, EcologyView
@@ -124,6 +125,7 @@ class TaskRunner:
         self._calls = Calls(self.ecology, self.identity, self.supervisor, self._now, self._step, self._report)
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
         self._record = DeploymentRecord(bus, self.keys, self.name, request, self.status, self.stop)
+        self._notices = RunNotices(bus, self.keys, self.name, task)
         self._watched: set[IRI] = set()
         self._left_out: set[IRI] = set()
         self._events: deque[Event] = deque()
@@ -295,6 +297,7 @@ class TaskRunner:
     def _report_all(self) -> None:
         unreported, self._unreported = self._unreported, []
         for event in unreported:
+            self._notices.put(event)
             self.request.report(event)
 
     # Effects.
@@ -343,6 +346,7 @@ class TaskRunner:
             for undo in self._subscriptions:
                 undo()
             self._record.close()
+            self._notices.close()
             self.ecology.unfollow()
             self.request.ended(effect.refusal)
 

@@ -24,6 +24,7 @@ from selfconf.protocol.messages import (
     Free,
     Known,
     Message,
+    Notice,
     Page,
     Release,
     Reserve,
@@ -49,6 +50,7 @@ KINDS: dict[type, str] = {
     Wake: "wake",
     End: "end",
     Known: "known",
+    Notice: "notice",
     Page: "page",
     Stamp: "stamp",
     Status: "status",
@@ -250,7 +252,8 @@ _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "epoch"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Fail, Status, TaskRecord)},
     **{(kind, "supervisor"): _text for kind in (Reserve, Apply, Release, CallAnswer)},
     **{
-        (kind, "task"): _text for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Fail, Free, Status, TaskRecord)
+        (kind, "task"): _text
+        for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Fail, Free, Notice, Status, TaskRecord)
     },
     **{(kind, "priority"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "beginning"): _moment for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
@@ -275,6 +278,9 @@ _READERS: dict[tuple[type, str], Any] = {
     (Page, "startable"): _truth,
     (Page, "life"): _text,
     (Known, "revisions"): _revisions,
+    (Notice, "configurator"): _text,
+    (Notice, "sequence"): _whole,
+    (Notice, "event"): _object,
     (Stamp, "sequence"): _whole,
     (Stamp, "time"): _number,
     (Stamp, "encoding"): _encoding,

@@ -15,6 +15,7 @@
     selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    reserve, apply, release, state (call)
     selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
     selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (queryable)
+    selfconf/{ecology}/conf/{name}/events                   what it does and notices (put; queryable: the latest)
     selfconf/{ecology}/conf/{name}/@ctl/{call}              status, stop (call)
 
 `{component}` is the base-32 of the ten-byte BLAKE2s of the component's IRI, `{shard}` the first byte of the same hash
@@ -159,6 +160,9 @@ class Keys:
 
     def configuration(self, name: str = "*") -> str:
         return self._configurator(name, "cfg")
+
+    def notices(self, name: str = "*") -> str:
+        return self._configurator(name, "events")
 
     def configurator_call(self, name: str, call: str = "*") -> str:
         return self._configurator(name, f"@ctl/{call}")

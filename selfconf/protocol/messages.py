@@ -251,6 +251,18 @@ class Status:
 
 
 @dataclass(frozen=True, slots=True)
+class Notice:
+    """An event of a run, for those who look on: nothing depends on its arrival."""
+
+    configurator: str
+    sequence: int
+    """Grows by one with each event of the configurator; a gap tells that one was lost."""
+    task: str
+    event: Mapping[str, Any]
+    """The event as `selfconf run --format json` prints it."""
+
+
+@dataclass(frozen=True, slots=True)
 class TaskRecord:
     """A task that lives in the ecology: what the sites keep of it, and by which one of them goes on with it."""
 
@@ -290,6 +302,7 @@ Message = (
     | Wake
     | End
     | Known
+    | Notice
     | Page
     | Stamp
     | Status

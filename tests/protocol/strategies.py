@@ -15,6 +15,7 @@ from selfconf.protocol.messages import (
     Fail,
     Free,
     Known,
+    Notice,
     Page,
     Release,
     Reserve,
@@ -71,6 +72,7 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
     Apply: st.builds(Apply, **claim, inputs=inputs, standby=inputs, values=values),
     Release: st.builds(Release, **claim),
     StateOf: st.builds(StateOf, texts),
+    Notice: st.builds(Notice, names, numbers, texts, st.dictionaries(texts, plain, max_size=3)),
     CallAnswer: st.builds(
         CallAnswer,
         st.sampled_from(Verdict),

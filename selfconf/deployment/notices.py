@@ -1,0 +1,63 @@
+"""What a configurator does and notices, told to those who look on.
+
+Nothing of a run depends on it: a notice is made only while somebody listens, and the network may drop it, so that an
+observer that is slow, frozen or gone holds nothing up. The latest events are kept, for one that comes late or has found
+a gap in the sequence.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from selfconf.bus.port import Bus, Request, Urgency
+from selfconf.model.run_event import RunEvent
+from selfconf.protocol.codec import LARGEST, encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Notice
+from selfconf.render.run_events import event_body
+
+LATEST = 64
+"""How many events are kept."""
+
+
+class RunNotices:
+    """Puts the events of one run on the bus, and answers which were the latest."""
+
+    def __init__(self, bus: Bus, keys: Keys, name: str, task: str) -> None:
+        self._keys, self._name, self._task = keys, name, task
+        self._latest: deque[tuple[int, RunEvent]] = deque(maxlen=LATEST)
+        self._sequence = 0
+        self._heard = False
+        # Urgency.SIGNAL is dropped where the network is short of room; EVENT would wait for a frozen observer.
+        self._publisher = bus.publisher(keys.notices(name), Urgency.SIGNAL, self._matched)
+        self._served = bus.serve(keys.notices(name), self._answer)
+
+    def close(self) -> None:
+        """Tell nothing any more."""
+        self._served()
+        self._publisher.undeclare()
+
+    def put(self, event: RunEvent) -> None:
+        """Tell an event."""
+        self._sequence += 1
+        self._latest.append((self._sequence, event))
+        if self._heard:
+            self._publisher.put(self._notice(self._sequence, event))
+
+    def _matched(self, heard: bool) -> None:
+        self._heard = heard
+
+    def _answer(self, request: Request) -> None:
+        try:
+            for sequence, event in self._latest:
+                request.reply(self._keys.notices(self._name), self._notice(sequence, event))
+        finally:
+            request.finish()
+
+    def _notice(self, sequence: int, event: RunEvent) -> bytes:
+        body = event_body(event)
+        notice = encode(Notice(self._name, sequence, self._task, body))
+        if len(notice) <= LARGEST:
+            return notice
+        short = {fact: body[fact] for fact in ("act", "time", "message")}
+        return encode(Notice(self._name, sequence, self._task, short))
