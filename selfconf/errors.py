@@ -67,6 +67,14 @@ class QueryError(AuthorError):
     """A SPARQL query cannot be read or is not allowed here."""
 
 
+class QueryTimeoutError(QueryError):
+    """A query takes longer, or more memory, than it may."""
+
+
+class NotAcceptableError(QueryError):
+    """An answer can be had in none of the media types that are wanted."""
+
+
 class ProgrammerError(SelfconfError):
     """A program uses the SDK in a way it does not allow, such as emitting on an output that was never advertised."""
 

@@ -41,6 +41,7 @@ REGISTRY: Registry[Any] = Registry().with_resources((s["$id"], Resource.from_con
 WITHOUT_SCHEMA = {
     "new": "prints no results",
     "site": "prints no results",
+    "serve": "prints no results",
     "demo": "shows the lines of `run` in words",
 }
 """Commands that print no JSON, and why."""

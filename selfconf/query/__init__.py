@@ -2,11 +2,27 @@
 
 `answer` puts a `Question` to a dataset or an endpoint and gives the answer as text (`Shown`) in one of
 `RESULT_FORMATS`, within `ANSWER_SECONDS` and `MOST_ROWS` unless told otherwise. `read_endpoint` fetches the
-advertisements that a task may want.
+advertisements that a task may want. A `StandingDataset` is a process that holds a dataset, for a server: each
+`StandingQuestion` is answered in a copy of it, in one of the media types of `RESULT_TYPES` or `TRIPLE_TYPES`.
 """
 
 from selfconf.query.endpoint import read_endpoint
 from selfconf.query.process import ANSWER_SECONDS, MOST_ROWS, Question, Shown, answer
 from selfconf.query.results import RESULT_FORMATS
+from selfconf.query.standing import StandingDataset, StandingQuestion, outcome
+from selfconf.query.standing_process import RESULT_TYPES, TRIPLE_TYPES
 
-__all__ = ["ANSWER_SECONDS", "MOST_ROWS", "RESULT_FORMATS", "Question", "Shown", "answer", "read_endpoint"]
+__all__ = [
+    "ANSWER_SECONDS",
+    "MOST_ROWS",
+    "RESULT_FORMATS",
+    "RESULT_TYPES",
+    "TRIPLE_TYPES",
+    "Question",
+    "Shown",
+    "StandingDataset",
+    "StandingQuestion",
+    "answer",
+    "outcome",
+    "read_endpoint",
+]

@@ -1,7 +1,10 @@
-"""`python -m selfconf.query`: the process that answers one SPARQL question, which comes in on standard input."""
+"""`python -m selfconf.query`: the process that answers one SPARQL question, which comes in on standard input.
+
+With the number of a socket as its argument it is a standing process, which answers many.
+"""
 
 import sys
 
-from selfconf.query.process import main
+from selfconf.query import process, standing_process
 
-sys.exit(main())
+sys.exit(standing_process.main(int(sys.argv[1])) if len(sys.argv) > 1 else process.main())

@@ -132,6 +132,10 @@ class Program:
                 return account
         raise AssertionError(f"no {act!r} before its end, or in {PATIENCE:.0f} s; stderr: {self.complaints}")
 
+    def line(self) -> str:
+        """The next line on stdout; empty if none comes."""
+        return (self._line(time.monotonic() + PATIENCE) or b"").decode()
+
     def send(self, number: int) -> None:
         """Send a signal to the process."""
         self._process.send_signal(number)

@@ -6,7 +6,7 @@ Oxigraph. They read the dataset and nothing else: SERVICE is refused, and FROM o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import pyoxigraph as ox
@@ -58,11 +58,38 @@ class Dataset:
         """Add what another dataset has dumped."""
         self._store.bulk_load(quads, format=ox.RdfFormat.N_QUADS)
 
-    def query(self, text: str, prefixes: Mapping[str, str] | None = None) -> QueryAnswer:
-        """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it."""
+    def replace(self, name: str, triples: bytes) -> None:
+        """Let a named graph hold these N-Triples and nothing else; without any it is gone."""
+        graph = ox.NamedNode(name)
+        self._store.remove_graph(graph)
+        if triples:
+            self._store.load(triples, format=ox.RdfFormat.N_TRIPLES, to_graph=graph)
+
+    def query(
+        self,
+        text: str,
+        prefixes: Mapping[str, str] | None = None,
+        default_graphs: Sequence[str] = (),
+        named_graphs: Sequence[str] = (),
+        base: str | None = None,
+    ) -> QueryAnswer:
+        """The answer to a SPARQL 1.1 query. Raises QueryError, with what is wrong with it.
+
+        The default graph is the union of all graphs, or what the query says by FROM; where graphs are given they are
+        the dataset, whatever the query says (SPARQL 1.1 Protocol, section 2.1.4).
+        """
         only_reads(text)
         lent = {**QUERY_PREFIXES, **(prefixes or {})}
         try:
-            return self._store.query(text, prefixes=lent, use_default_graph_as_union=not says(text, "FROM"))
+            if default_graphs or named_graphs:
+                return self._store.query(
+                    text,
+                    base_iri=base,
+                    prefixes=lent,
+                    default_graph=[ox.NamedNode(name) for name in default_graphs],
+                    named_graphs=[ox.NamedNode(name) for name in named_graphs],
+                )
+            union = not says(text, "FROM")
+            return self._store.query(text, base_iri=base, prefixes=lent, use_default_graph_as_union=union)
         except (SyntaxError, ValueError, OSError) as error:
             raise QueryError(f"not a SPARQL query: {mistake(text, str(error), lent)}") from None

@@ -1,0 +1,53 @@
+"""`serve`: the living ecology in a browser, by SPARQL over HTTP, and as W3C Things."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+
+from selfconf.cli.options import add_ecology_arguments, joined, seconds_option
+from selfconf.errors import InstallationError
+
+EXAMPLE = """  selfconf serve --port 8000"""
+LOCAL, PORT, QUERY_SECONDS = "127.0.0.1", 8000, 30.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument(
+        "--host", metavar="ADDRESS", default=LOCAL, help="where to listen (default: %(default)s, this machine alone)"
+    )
+    parser.add_argument(
+        "--port", metavar="N", type=_port, default=PORT, help="0 for any free one (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--seconds",
+        metavar="S",
+        type=seconds_option,
+        default=QUERY_SECONDS,
+        help="how long a SPARQL query may take (default: %(default)g)",
+    )
+    add_ecology_arguments(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 when it is ended by Ctrl-C or SIGTERM."""
+    missing = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
+    if missing:
+        raise InstallationError(f"{' and '.join(missing)} is missing; install the extra: pip install 'selfconf[serve]'")
+    from selfconf.serve import serve_ecology
+
+    with joined(given) as ecology:
+        name, endpoints = ecology.name, ecology.endpoints
+    serve_ecology(name, endpoints, given.host, given.port, given.seconds, lambda url: _tell(name, url))
+    return 0
+
+
+def _tell(ecology: str, url: str) -> None:
+    print(f"serving the ecology {ecology} at {url}; Ctrl-C ends it", flush=True)
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port; it takes a number from 0 to 65535")
+    return int(text)

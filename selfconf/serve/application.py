@@ -1,0 +1,136 @@
+"""The routes of the server, and what holds for every one of them: who may ask, and what a browser may do."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import mimetypes
+from collections.abc import Callable, Collection
+from importlib.resources import files
+
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from selfconf.serve.board import CHANGE, Board
+from selfconf.serve.directory import Directory, event_stream
+from selfconf.serve.metrics import PROMETHEUS, Metrics
+from selfconf.serve.problems import problem
+from selfconf.serve.sparql_endpoint import SparqlEndpoint
+
+LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
+"""The names under which a server on this machine may be asked: a page elsewhere may know it under another one."""
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
+"""The methods that reach the SPARQL endpoint, which itself says which of them it knows."""
+HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:;"
+    " connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
+"""What a browser is told with every answer: load nothing from elsewhere, run nothing that is not a file of the page."""
+
+
+def application(
+    board: Board,
+    metrics: Metrics,
+    sparql: SparqlEndpoint,
+    linked: Callable[[], bool],
+    hosts: Collection[str] = LOOPBACK,
+) -> ASGIApp:
+    """The server as an ASGI application; `linked` tells whether the ecology can be heard.
+
+    `hosts` are the names under which it may be asked; empty for any.
+    """
+    directory = Directory(board)
+    page = {name: _file(name) for name in _names()}
+
+    async def file(request: Request) -> Response:
+        found = page.get(request.path_params.get("name", "index.html"))
+        if found is None:
+            return problem(404, "there is no such page; / is the page, /sparql, /things and /metrics are for programs")
+        text, media, tag = found
+        if request.headers.get("if-none-match") == tag:
+            return Response(status_code=304, headers={"ETag": tag})
+        return Response(text, media_type=media, headers={"ETag": tag, "Cache-Control": "no-cache"})
+
+    async def state(_: Request) -> Response:
+        return Response(json.dumps(board.state(), ensure_ascii=False), media_type="application/json")
+
+    async def changes(request: Request) -> Response:
+        last = request.headers.get("last-event-id") or request.query_params.get("last", "")
+        return event_stream(board, (CHANGE,), last)
+
+    async def counted(_: Request) -> Response:
+        return Response(metrics.text(board.gauges(linked())), media_type=PROMETHEUS)
+
+    async def health(_: Request) -> Response:
+        if linked() and board.ready:
+            return Response('{"status": "ok"}', media_type="application/json")
+        return problem(503, "the ecology cannot be heard")
+
+    routes = [
+        Route("/", file),
+        Route("/page/{name}", file),
+        Route("/state", state),
+        Route("/changes", changes),
+        *(Route(path, sparql.respond, methods=METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
+        Route("/.well-known/wot", directory.itself),
+        Route("/things", directory.things),
+        Route("/things/{id:path}", directory.thing),
+        Route("/events", directory.events),
+        Route("/events/{kind}", directory.events),
+        Route("/metrics", counted),
+        Route("/healthz", health),
+    ]
+    return Guard(Starlette(routes=routes, exception_handlers={HTTPException: _refused}), hosts)
+
+
+class Guard:
+    """Refuses requests for another host, and gives every answer the headers of the house."""
+
+    def __init__(self, inner: ASGIApp, hosts: Collection[str]) -> None:
+        self._inner, self._hosts = inner, frozenset(hosts)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """One request."""
+
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
+                message["headers"] = [*message.get("headers", ()), *headers]
+            await send(message)
+
+        if scope["type"] != "http":
+            return
+        host = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), "")
+        if self._hosts and _without_port(host) not in self._hosts:
+            refused = problem(421, f"this server is not {host!r}; ask it under the address at which it listens")
+            await refused(scope, receive, sent)
+        else:
+            await self._inner(scope, receive, sent)
+
+
+def _without_port(host: str) -> str:
+    head, _, port = host.rpartition(":")
+    return (head if head and port.isdecimal() else host).lower()
+
+
+async def _refused(_: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    return problem(error.status_code, error.detail, error.headers)
+
+
+def _names() -> list[str]:
+    return [entry.name for entry in (files("selfconf.serve") / "page").iterdir() if entry.is_file()]
+
+
+def _file(name: str) -> tuple[bytes, str, str]:
+    """A file of the page, its media type and its tag."""
+    text = (files("selfconf.serve") / "page" / name).read_bytes()
+    media = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0] or "application/octet-stream"
+    return text, media, f'"{hashlib.blake2s(text, digest_size=8).hexdigest()}"'

@@ -1,0 +1,99 @@
+"""What is known of an ecology now, and what has happened lately, on the thread that serves."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Iterable, Mapping
+
+from selfconf.discovery import FoundAdvertisement
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys
+from selfconf.serve.change import Body, EcologyChange
+from selfconf.serve.event_stream import EventStream
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.things import thing_description
+
+REMEMBERED = 2000
+"""How many events of the ecology are remembered."""
+CHANGE = "change"
+"""The kind of the server-sent events of the page."""
+THING_EVENTS = ("thing_created", "thing_updated", "thing_deleted")
+"""The kinds of the events of the directory (W3C WoT Discovery, section 7.2.2.3)."""
+
+
+class Board:
+    """The components, sites, tasks and events of one ecology, and the streams that tell of their changes."""
+
+    def __init__(self, ecology: str, metrics: Metrics) -> None:
+        self.keys, self._metrics = Keys(ecology), metrics
+        self.stream = EventStream()
+        self.advertised: dict[IRI, FoundAdvertisement] = {}
+        self.ready = False
+        """Whether the first look at the ecology has come."""
+        self._components: dict[str, Body] = {}
+        self._sites: dict[str, Body] = {}
+        self._tasks: dict[str, Body] = {}
+        self._events: deque[Body] = deque(maxlen=REMEMBERED)
+
+    def apply(self, change: EcologyChange) -> None:
+        """Note a change, and tell of it."""
+        self._metrics.changes += 1
+        for event in change.events:
+            self._metrics.happened(str(event.get("act")), str(event.get("cause", "")))
+        for component, found in change.advertised.items():
+            self._advertise(component, found)
+        for known, new in (
+            (self._components, change.components),
+            (self._sites, change.sites),
+            (self._tasks, change.tasks),
+        ):
+            _merge(known, new)
+        self._events.extend(change.events)
+        self.ready = True
+        told = {"components": change.components, "sites": change.sites, "tasks": change.tasks, "events": change.events}
+        if any(told.values()):
+            self.stream.put(CHANGE, {kind: new for kind, new in told.items() if new})
+
+    def _advertise(self, component: IRI, found: FoundAdvertisement | None) -> None:
+        kind = THING_EVENTS[2] if found is None else THING_EVENTS[1 if component in self.advertised else 0]
+        if found is None:
+            self.advertised.pop(component, None)
+        else:
+            self.advertised[component] = found
+        if self.ready:
+            whole = {} if found is None else thing_description(found.advertisement.profile, self.keys)
+            self.stream.put(kind, {**whole, "id": str(component)})
+
+    def state(self) -> Body:
+        """Everything, with the identifier of the last event that it holds."""
+        return {
+            "ecology": self.keys.ecology,
+            "last": self.stream.last,
+            "ready": self.ready,
+            "components": self._components,
+            "sites": self._sites,
+            "tasks": self._tasks,
+            "events": list(self._events),
+        }
+
+    def gauges(self, linked: bool) -> Mapping[str, Iterable[tuple[Mapping[str, str], float]]]:
+        """What can be read off the ecology now, for the metrics."""
+        states = Counter(body["state"] for body in self._components.values())
+        phases = Counter(body["phase"] for body in self._tasks.values() if not body["over"])
+        held = {component for body in self._tasks.values() for component in body["components"]}
+        return {
+            "selfconf_up": [({}, float(linked))],
+            "selfconf_sites": [({}, float(len(self._sites)))],
+            "selfconf_components": [({"state": s}, float(states[s])) for s in ("alive", "dormant", "absent")],
+            "selfconf_components_held": [({}, float(len(held)))],
+            "selfconf_tasks": [({"phase": phase}, float(count)) for phase, count in sorted(phases.items())],
+            "selfconf_subscribers": [({}, float(self.stream.listeners))],
+        }
+
+
+def _merge(known: dict[str, Body], new: Mapping[str, Body | None]) -> None:
+    for name, body in new.items():
+        if body is None:
+            known.pop(name, None)
+        else:
+            known[name] = body

@@ -1,0 +1,31 @@
+"""What has changed in an ecology, as the thread of the bus hands it to the one that serves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from selfconf.discovery import FoundAdvertisement
+from selfconf.model.term import IRI
+
+Body = dict[str, Any]
+"""A JSON object."""
+
+
+@dataclass(frozen=True, slots=True)
+class EcologyChange:
+    """What is new, by kind; None stands for what is gone."""
+
+    advertised: Mapping[IRI, FoundAdvertisement | None] = field(default_factory=dict)
+    components: Mapping[str, Body | None] = field(default_factory=dict)
+    sites: Mapping[str, Body | None] = field(default_factory=dict)
+    tasks: Mapping[str, Body | None] = field(default_factory=dict)
+    events: tuple[Body, ...] = ()
+    graphs: Mapping[str, bytes] = field(default_factory=dict)
+    """N-Triples by the name of the graph; empty for one that is gone."""
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is new."""
+        return not (self.advertised or self.components or self.sites or self.tasks or self.events or self.graphs)

@@ -1,0 +1,45 @@
+"""A component as the page shows it: what it is, where, and whether it lives."""
+
+from __future__ import annotations
+
+from selfconf.discovery import FoundAdvertisement
+from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.term import Literal
+from selfconf.rdf.sparql import QUERY_PREFIXES
+from selfconf.rdf.vocabulary import LABEL, ROB, SC
+from selfconf.render import Names, short
+from selfconf.serve.change import Body
+
+KNOWN_NAMES = Names(QUERY_PREFIXES)
+"""Shortens IRIs by the prefixes that every query may use."""
+
+
+def label_of(profile: Profile) -> str:
+    """What its author calls a component; empty if nothing is said."""
+    return next((one.lexical for one in profile.values(LABEL) if isinstance(one, Literal)), "")
+
+
+def component_body(found: FoundAdvertisement, state: str) -> Body:
+    """A component as JSON."""
+    profile = found.advertisement.profile
+    return {
+        "name": short(profile.component),
+        "label": label_of(profile),
+        "types": sorted(KNOWN_NAMES(kind) for kind in profile.types - {SC.Component}),
+        "site": found.site,
+        "source": found.source,
+        "places": [short(place) for place in profile.values(ROB.place)],
+        "state": state,
+        "inputs": [_port(port) for port in profile.inputs],
+        "outputs": [_port(port) for port in profile.outputs],
+        "parameters": [{"name": one.name, "type": KNOWN_NAMES(one.type)} for one in profile.parameters],
+        "preference": float(profile.preference),
+        "shareable": profile.is_shareable,
+    }
+
+
+def _port(port: Input | Output) -> Body:
+    body: Body = {"name": port.name, "signal": KNOWN_NAMES(port.signal)}
+    if isinstance(port, Output) and port.rate is not None:
+        body["rate"] = port.rate
+    return body

@@ -1,0 +1,58 @@
+"""A deployed configuration, read from the Turtle that its configurator serves: also what was passed over, replaced."""
+
+from __future__ import annotations
+
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import SC
+from selfconf.render.bodies import value_body
+from selfconf.serve.change import Body
+
+
+def deployed_body(document: Document) -> Body | None:
+    """The configuration of a document as JSON, with role, component and port names; None if it holds none."""
+    name = next(iter(document.instances(SC.Configuration)), None)
+    if name is None:
+        return None
+    roles: dict[str, list[str]] = {}
+    passed_over: dict[str, list[str]] = {}
+    replaced: dict[str, str] = {}
+    for node in document.values(name, SC.assignment):
+        role, component = str(document.value(node, SC.role)), str(document.value(node, SC.component))
+        roles.setdefault(role, []).append(component)
+        passed_over[role] = [str(other) for other in document.values(node, SC.passedOver)]
+        before = document.value(node, SC.replaces)
+        if before is not None:
+            replaced[component] = str(before)
+    return {
+        "template": str(document.value(name, SC.template)),
+        "roles": [
+            {"role": role, "components": components, "passed_over": passed_over[role]}
+            for role, components in roles.items()
+        ],
+        "connections": [
+            {
+                "from": {"component": _text(document, node, SC["from"]), "output": _text(document, node, SC.output)},
+                "to": {"component": _text(document, node, SC.to), "input": _text(document, node, SC.input)},
+            }
+            for node in document.values(name, SC.connection)
+        ],
+        "parameters": [
+            {
+                "component": _text(document, node, SC.component),
+                "name": _text(document, node, SC.name),
+                "value": _value(document.value(node, SC.value)),
+            }
+            for node in document.values(name, SC.setting)
+        ],
+        "replaced": replaced,
+    }
+
+
+def _text(document: Document, node: Term, predicate: IRI) -> str:
+    value = document.value(node, predicate)
+    return "" if value is None else value.lexical if isinstance(value, Literal) else str(value)
+
+
+def _value(value: Term | None) -> object:
+    return None if value is None else value_body(value)

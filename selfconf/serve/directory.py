@@ -1,0 +1,105 @@
+"""The directory API of W3C WoT Discovery (Recommendation of 2023-12-05): it fills itself, nothing can be written."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Any
+from urllib.parse import quote, urlencode
+
+from starlette.requests import Request
+from starlette.responses import Response, StreamingResponse
+
+from selfconf.model.term import IRI
+from selfconf.rdf import turtle
+from selfconf.rdf.sparql import QUERY_PREFIXES
+from selfconf.serve.board import THING_EVENTS, Board
+from selfconf.serve.negotiation import acceptable
+from selfconf.serve.problems import problem
+from selfconf.serve.things import TD, directory_description, thing_description
+
+DISCOVERY_CONTEXT = "https://w3c.github.io/wot-discovery/context/discovery-context.jsonld"
+JSON_LD_MEDIA = "application/ld+json"
+EVENT_STREAM = "text/event-stream"
+
+
+class Directory:
+    """Answers what things there are, and tells when they come, change and go."""
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+
+    def _thing(self, component: IRI) -> dict[str, Any]:
+        return thing_description(self._board.advertised[component].advertisement.profile, self._board.keys)
+
+    async def itself(self, request: Request) -> Response:
+        """`/.well-known/wot`: the directory's own description."""
+        return Response(json.dumps(directory_description(str(request.base_url).rstrip("/"))), media_type=TD)
+
+    async def things(self, request: Request) -> Response:
+        """`/things`: all descriptions, or a page of them, as an array or a collection."""
+        try:
+            offset = _whole(request.query_params.get("offset", "0"), 0)
+            limit = _whole(request.query_params.get("limit", "1000000000"), 1)
+        except ValueError:
+            return problem(400, "offset takes a whole number, limit one above zero")
+        form = request.query_params.get("format", "array")
+        if form not in ("array", "collection"):
+            return problem(400, f"the format is array or collection, not {form!r}")
+        components = sorted(self._board.advertised)
+        members = [self._thing(component) for component in components[offset : offset + limit]]
+        more = {} if form == "array" else {"format": form}
+        here = f"/things?{urlencode({'offset': offset, 'limit': limit, **more})}"
+        after = f"/things?{urlencode({'offset': offset + limit, 'limit': limit, **more})}"
+        follows = offset + limit < len(components)
+        tag = f'"{hashlib.blake2s(repr(components).encode(), digest_size=8).hexdigest()}"'
+        links = [f'<{after}>; rel="next"'] if follows else []
+        links.append(f'</things>; rel="canonical"; etag={tag}')
+        body: Any = members
+        if form == "collection":
+            body = {"@context": DISCOVERY_CONTEXT, "@type": "ThingCollection", "total": len(components), "@id": here}
+            body |= {**({"next": after} if follows else {}), "members": members}
+        return Response(
+            json.dumps(body, ensure_ascii=False), media_type=JSON_LD_MEDIA, headers={"Link": ", ".join(links)}
+        )
+
+    async def thing(self, request: Request) -> Response:
+        """`/things/{id}`: one description; as Turtle, the advertisement itself."""
+        found = self._board.advertised.get(IRI(request.path_params["id"]))
+        if found is None:
+            return problem(404, "no component of this IRI is advertised; /things lists them all")
+        media = acceptable(request.headers.get("accept", ""), [TD, JSON_LD_MEDIA, "application/json", "text/turtle"])
+        if not media:
+            return problem(406, f"a component is described as {TD} or text/turtle")
+        component = found.advertisement.component
+        headers = {"Vary": "Accept", "Link": f'</things/{quote(component, safe="")}>; rel="canonical"'}
+        if media[0] == "text/turtle":
+            text = turtle.to_turtle(found.advertisement.triples, QUERY_PREFIXES)
+            return Response(text, media_type="text/turtle", headers=headers)
+        return Response(json.dumps(self._thing(component), ensure_ascii=False), media_type=media[0], headers=headers)
+
+    async def events(self, request: Request) -> Response:
+        """`/events` and `/events/{type}`: server-sent events."""
+        kind = request.path_params.get("kind")
+        if kind is not None and kind not in THING_EVENTS:
+            return problem(404, f"there are events of the types {', '.join(THING_EVENTS)}")
+        whole = request.query_params.get("diff", "false").lower() in ("true", "1", "")
+        last = request.headers.get("last-event-id", "")
+
+        def worded(data: Any) -> object:
+            return data if whole else {"id": data["id"]}
+
+        return event_stream(self._board, THING_EVENTS if kind is None else (kind,), last, worded)
+
+
+def event_stream(board: Board, kinds: tuple[str, ...], last: str, worded: Any = lambda data: data) -> Response:
+    """A stream of the events of some kinds, from the one after the last that the client has heard."""
+    lines = board.stream.lines(kinds, last, worded)
+    return StreamingResponse(lines, media_type=EVENT_STREAM, headers={"Cache-Control": "no-store"})
+
+
+def _whole(text: str, least: int) -> int:
+    number = int(text)
+    if number < least:
+        raise ValueError(text)
+    return number

@@ -1,0 +1,121 @@
+"""The server as a program: one thread listens to the ecology, one serves HTTP, and one hands changes over."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import socket
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from types import FrameType
+
+import uvicorn
+
+from selfconf.bus.port import Bus
+from selfconf.bus.zenoh_bus import client
+from selfconf.errors import AuthorError, NetworkError
+from selfconf.query import StandingDataset
+from selfconf.rendezvous import usual_endpoints
+from selfconf.serve.application import LOOPBACK, application
+from selfconf.serve.board import Board
+from selfconf.serve.change import EcologyChange
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.sparql_endpoint import SparqlEndpoint
+from selfconf.serve.watcher import EcologyWatcher
+from selfconf.termination import PARENT_CHECK, orphaned, started_by_another
+
+LAST_ANSWERS = 2
+"""Seconds that answers which are under way may take when the server is ended."""
+
+
+def serve_ecology(
+    ecology: str, endpoints: Sequence[str], host: str, port: int, seconds: float, listening: Callable[[str], None]
+) -> None:
+    """Serve an ecology over HTTP until SIGINT or SIGTERM; `listening` receives the URL.
+
+    `seconds` is what a query may take. Raises NetworkError where the port is taken or the ecology cannot be reached.
+    """
+    dataset = StandingDataset()
+    with bound(host, port) as place, ThreadPoolExecutor(1, "changes") as hands:
+        bus = client(list(dict.fromkeys((*endpoints, *usual_endpoints(ecology)))))  # the relay may move to another one
+        try:
+            asyncio.run(_serve(bus, ecology, dataset, hands, place, seconds, listening))
+        finally:
+            bus.close()
+            dataset.close()
+
+
+async def _serve(
+    bus: Bus,
+    ecology: str,
+    dataset: StandingDataset,
+    hands: ThreadPoolExecutor,
+    place: socket.socket,
+    seconds: float,
+    listening: Callable[[str], None],
+) -> None:
+    loop, metrics = asyncio.get_running_loop(), Metrics()
+    board = Board(ecology, metrics)
+    sparql = SparqlEndpoint(dataset, metrics, seconds)
+    host, port = place.getsockname()[:2]
+    local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
+    app = application(board, metrics, sparql, lambda: bool(bus.link), LOOPBACK if local else ())
+
+    def take(change: EcologyChange) -> None:
+        for graph, triples in change.graphs.items():
+            dataset.replace(graph, triples)
+        loop.call_soon_threadsafe(board.apply, change)  # last: whoever hears of it finds it by SPARQL
+
+    watcher = EcologyWatcher(bus, ecology, lambda change: _submit(hands, take, change), aside=hands.submit)
+    bus.run_aside()
+    bus.wake_up(watcher.begin)
+    server = _Server(uvicorn.Config(app, log_level="warning", access_log=False, lifespan="off", ws="none"), board)
+    server.config.timeout_graceful_shutdown = LAST_ANSWERS
+    listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
+    await server.serve(sockets=[place])
+
+
+def _submit(hands: ThreadPoolExecutor, take: Callable[[EcologyChange], None], change: EcologyChange) -> None:
+    hands.submit(take, change)
+
+
+class _Server(uvicorn.Server):
+    """Ends its streams when it is ended, and ends when the program that has started it is gone."""
+
+    def __init__(self, config: uvicorn.Config, board: Board) -> None:
+        super().__init__(config)
+        self._board, self._parent, self._looked = board, os.getppid(), 0.0
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: None)  # uvicorn raises them again for who was there before it
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """End, by a signal."""
+        self.should_exit = True
+
+    async def on_tick(self, counter: int) -> bool:
+        """Look, ten times a second, whether to end."""
+        if started_by_another() and counter % int(PARENT_CHECK * 10) == 0 and orphaned(self._parent):
+            self.should_exit = True
+        ending = bool(await super().on_tick(counter))
+        if ending:
+            self._board.stream.close()
+        return ending
+
+
+def bound(host: str, port: int) -> socket.socket:
+    """A socket that is bound to an address. Raises NetworkError where it is taken, AuthorError for what is none."""
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    except (OSError, OverflowError):
+        raise AuthorError(f"{host!r} with port {port} is no address of this machine; try --host 127.0.0.1") from None
+    place = socket.socket(family, kind, protocol)
+    place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        place.bind(address)
+        place.listen(128)
+    except OSError as error:
+        place.close()
+        said = error.strerror or str(error)
+        raise NetworkError(f"cannot listen on port {port} of {host} ({said}); give another one by --port") from None
+    return place

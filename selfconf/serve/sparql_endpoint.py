@@ -1,0 +1,133 @@
+"""`/sparql`: each query is answered in a process that can be ended, and in the media type that the client wants."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import time
+from collections.abc import Coroutine
+from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import Response
+
+from selfconf.errors import NetworkError, NotAcceptableError, ProgrammerError, QueryError, QueryTimeoutError
+from selfconf.query import RESULT_TYPES, TRIPLE_TYPES, StandingDataset, StandingQuestion, outcome
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.negotiation import acceptable
+from selfconf.serve.problems import problem
+from selfconf.serve.service_description import service_description
+from selfconf.serve.sparql_requests import LARGEST_REQUEST, QueryRequest, RequestRefusedError, query_request
+
+LARGEST_ANSWER = 64 << 20
+"""An answer of more bytes than this is refused."""
+AT_ONCE = 24
+"""How many queries are answered at once; others wait."""
+_STATUS: dict[type[Exception], int] = {
+    QueryTimeoutError: 503,
+    NotAcceptableError: 406,
+    QueryError: 400,
+    NetworkError: 503,
+    ProgrammerError: 500,
+}
+
+
+class AnswerTooLargeError(QueryError):
+    """An answer has more bytes than a server holds."""
+
+
+class SparqlEndpoint:
+    """Answers SPARQL over HTTP from a standing dataset."""
+
+    def __init__(self, dataset: StandingDataset, metrics: Metrics, seconds: float) -> None:
+        self._dataset, self._metrics, self._seconds = dataset, metrics, seconds
+        self._free = asyncio.Semaphore(AT_ONCE)
+
+    async def respond(self, request: Request) -> Response:
+        """The response to a request."""
+        if request.method not in ("GET", "HEAD", "POST"):
+            return problem(405, "a query is asked by GET or POST", {"Allow": "GET, POST"})
+        try:
+            body = await body_of(request)
+            method = "POST" if request.method == "POST" else "GET"
+            query = query_request(method, request.url.query, request.headers.get("content-type", ""), body)
+        except RequestRefusedError as error:
+            return problem(error.status, error.detail)
+        accept = ",".join(request.headers.getlist("accept"))
+        if query is None:
+            return self._description(request, accept)
+        return await self._answer(query, accept, request)
+
+    def _description(self, request: Request, accept: str) -> Response:
+        media = acceptable(accept, list(TRIPLE_TYPES)) or ["text/turtle"]
+        return Response(
+            service_description(_endpoint(request), media[0]), media_type=media[0], headers={"Vary": "Accept"}
+        )
+
+    async def _answer(self, query: QueryRequest, accept: str, request: Request) -> Response:
+        media = acceptable(accept, [*RESULT_TYPES, *TRIPLE_TYPES])
+        question = StandingQuestion(
+            query.text, media, query.default_graphs, query.named_graphs, self._seconds, base=_endpoint(request)
+        )
+        began = time.monotonic()
+        try:
+            async with self._free:
+                received = await _unless_gone(request, self._received(question))
+            kind, answer = outcome(received, question)
+        except (QueryError, NetworkError, ProgrammerError) as error:
+            status = next(status for known, status in _STATUS.items() if isinstance(error, known))
+            self._metrics.queried(str(status), time.monotonic() - began)
+            return problem(status, str(error))
+        self._metrics.queried("200", time.monotonic() - began)
+        return Response(answer, media_type=kind, headers={"Vary": "Accept"})
+
+    async def _received(self, question: StandingQuestion) -> bytes:
+        """All that comes on the socket of a question; a client that hangs up ends the query."""
+        line = await asyncio.to_thread(self._dataset.begin, question)
+        try:
+            line.setblocking(False)
+            return await _read(line)
+        finally:
+            line.close()
+
+
+def _endpoint(request: Request) -> str:
+    """The URL at which a request found the endpoint."""
+    return str(request.url.replace(query="", fragment=""))
+
+
+async def _unless_gone(request: Request, work: Coroutine[Any, Any, bytes]) -> bytes:
+    """Do some work for a client; it is broken off, and its result empty, if the client hangs up."""
+
+    async def gone() -> None:
+        while (await request.receive())["type"] != "http.disconnect":
+            pass
+
+    both = asyncio.create_task(work), asyncio.create_task(gone())
+    try:
+        await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
+        return both[0].result() if both[0].done() else b""
+    finally:
+        for task in both:
+            task.cancel()
+
+
+async def _read(line: socket.socket) -> bytes:
+    loop, parts, size = asyncio.get_running_loop(), [], 0
+    while part := await loop.sock_recv(line, 1 << 18):
+        parts.append(part)
+        size += len(part)
+        if size > LARGEST_ANSWER:
+            raise AnswerTooLargeError(f"the answer has more than {LARGEST_ANSWER >> 20} MiB; ask for less, by LIMIT")
+    return b"".join(parts)
+
+
+async def body_of(request: Request) -> bytes:
+    """The body of a request. Raises RequestRefusedError for one that is too large."""
+    parts, size = [], 0
+    async for part in request.stream():
+        parts.append(part)
+        size += len(part)
+        if size > LARGEST_REQUEST:
+            raise RequestRefusedError(413, f"the request has more than {LARGEST_REQUEST >> 20} MiB")
+    return b"".join(parts)

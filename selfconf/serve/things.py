@@ -1,0 +1,116 @@
+"""A component as a W3C Thing Description 1.1: its outputs are properties that can be observed, FAIL is an event.
+
+What a consumer cannot do over the forms is stated in the terms of selfconf: inputs, which follow outputs, and
+operational parameters, which a configurator sets for the task that holds the component.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from selfconf.model.profile import Profile
+from selfconf.protocol.keys import Keys
+from selfconf.rdf.sparql import QUERY_PREFIXES
+from selfconf.serve.component_bodies import KNOWN_NAMES, label_of
+
+TD_CONTEXT = "https://www.w3.org/2022/wot/td/v1.1"
+TD = "application/td+json"
+"""The media type of one Thing Description."""
+_SECURITY = {"securityDefinitions": {"nosec_sc": {"scheme": "nosec"}}, "security": ["nosec_sc"]}
+
+
+def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
+    """The Thing Description of a component of an ecology; its forms are the keys of the ecology on Zenoh."""
+    title = profile.component.short or str(profile.component)
+    label = label_of(profile)
+    description: dict[str, Any] = {
+        "@context": [TD_CONTEXT, {prefix: QUERY_PREFIXES[prefix] for prefix in ("sc", "rob", "home")}],
+        "@type": sorted(KNOWN_NAMES(kind).strip("<>") for kind in profile.types),
+        "id": str(profile.component),
+        "title": title,
+        **({"description": label} if label else {}),
+        **_SECURITY,
+        "properties": {
+            port.name: {
+                "@type": KNOWN_NAMES(port.signal).strip("<>"),
+                "readOnly": True,
+                "observable": True,
+                "forms": [
+                    _form(keys.output(profile.component, port.name), ["observeproperty", "unobserveproperty"]),
+                    _form(keys.output(profile.component, port.name), ["readproperty"]),
+                ],
+            }
+            for port in profile.outputs
+        },
+        "events": {
+            "fail": {
+                "title": "FAIL",
+                "description": "the component cannot go on",
+                "forms": [_form(keys.fail(profile.component), ["subscribeevent", "unsubscribeevent"])],
+            }
+        },
+    }
+    if profile.inputs:
+        description["sc:hasInput"] = [
+            {"sc:name": port.name, "sc:signalType": {"@id": str(port.signal)}} for port in profile.inputs
+        ]
+    if profile.parameters:
+        description["sc:hasParameter"] = [
+            {"sc:name": one.name, "sc:parameterType": {"@id": str(one.type)}} for one in profile.parameters
+        ]
+    return description
+
+
+def _form(key: str, operations: list[str]) -> Mapping[str, Any]:
+    return {"href": f"zenoh:{key}", "contentType": "application/json", "op": operations}
+
+
+def directory_description(base: str) -> dict[str, Any]:
+    """The Thing Description of the directory itself, for the introduction at `/.well-known/wot`."""
+
+    def event(name: str) -> dict[str, Any]:
+        form = {"href": f"/events/{name}", "op": "subscribeevent", "subprotocol": "sse"}
+        return {
+            "data": {"type": "object", "properties": {"id": {"type": "string"}}},
+            "uriVariables": {"diff": {"type": "boolean"}},
+            "forms": [{**form, "contentType": "text/event-stream"}],
+        }
+
+    query = {"query": {"title": "A valid SPARQL 1.1 query", "type": "string"}}
+    return {
+        "@context": [TD_CONTEXT, "https://www.w3.org/2022/wot/discovery"],
+        "@type": "ThingDirectory",
+        "title": "Components of a selfconf ecology",
+        "id": "urn:selfconf:directory",
+        "base": base,
+        **_SECURITY,
+        "properties": {
+            "things": {
+                "readOnly": True,
+                "uriVariables": {
+                    "offset": {"type": "number", "default": 0},
+                    "limit": {"type": "number"},
+                    "format": {"type": "string", "enum": ["array", "collection"], "default": "array"},
+                },
+                "forms": [{"href": "/things{?offset,limit,format}", "htv:methodName": "GET"}],
+            }
+        },
+        "actions": {
+            "retrieveThing": {
+                "uriVariables": {"id": {"type": "string", "format": "iri-reference"}},
+                "output": {"type": "object"},
+                "safe": True,
+                "idempotent": True,
+                "forms": [{"href": "/things/{id}", "htv:methodName": "GET", "contentType": TD}],
+            },
+            "searchSPARQL": {
+                "uriVariables": query,
+                "output": {"type": "object"},
+                "safe": True,
+                "idempotent": True,
+                "forms": [{"href": "/search/sparql{?query}", "htv:methodName": "GET"}],
+            },
+        },
+        "events": {name: event(name) for name in ("thing_created", "thing_updated", "thing_deleted")},
+    }

@@ -1,0 +1,121 @@
+"""`selfconf serve`, as a process beside a real ecology: it shows, it is noticed by nobody, and it ends cleanly."""
+
+from __future__ import annotations
+
+import http.client
+import importlib.util
+import json
+import re
+import signal
+import socket
+from typing import Any
+from urllib.parse import quote
+
+import pytest
+
+from tests.cli.command import run
+from tests.cli.processes import Home, Program, component_of
+
+pytest.importorskip("starlette", reason="the extra `serve` is not installed")
+pytestmark = [pytest.mark.process]
+
+
+class Browser:
+    """Asks a server that was started."""
+
+    def __init__(self, program: Program) -> None:
+        said = program.line()
+        found = re.search(r"http://127\.0\.0\.1:(\d+)/", said)
+        assert found is not None, said + program.complaints
+        self.port = int(found[1])
+
+    def get(self, path: str, **headers: str) -> tuple[int, bytes]:
+        """The status and the body of an answer."""
+        line = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        line.request("GET", path, headers=headers)
+        answer = line.getresponse()
+        found = answer.status, answer.read()
+        line.close()
+        return found
+
+    def state(self) -> Any:
+        """All that the page is told."""
+        return json.loads(self.get("/state")[1])
+
+
+@pytest.fixture
+def ecology(home: Home) -> Home:
+    home.site("peis-home", "ads")
+    home.components("sonar", "encoder", "tracker", "odometry", "control", "drive", "pippi")
+    return home
+
+
+def serve(home: Home) -> tuple[Program, Browser]:
+    """A server of an ecology, once it listens."""
+    program = home.selfconf("serve", "--ecology", home.ecology, "--port", "0")
+    return program, Browser(program)
+
+
+@pytest.mark.slow
+def test_a_failure_is_seen_in_the_page_and_by_sparql_and_servers_come_and_go_unnoticed(ecology: Home) -> None:
+    server, browser = serve(ecology)
+    running = ecology.run()
+    running.act("running")
+    assert ecology.until(lambda: [t["phase"] for t in browser.state()["tasks"].values()] == ["running"])
+    second, other = serve(ecology)
+    assert ecology.until(lambda: len(other.state()["components"]) == 7)
+    second.end(signal.SIGKILL)
+    stream = http.client.HTTPConnection("127.0.0.1", browser.port, timeout=30)
+    stream.request("GET", "/changes")
+    events = stream.getresponse()
+    (ecology.folder / "tracker.fail").touch()
+    told = b""
+    while b"absolute-odometry" not in told:
+        told += events.readline()
+    assert component_of("tracker").encode() in told
+    stream.close()
+    running.act("running")
+
+    def chosen() -> bool:
+        text = "ASK { ?c a sc:Configuration ; sc:assignment [ sc:component <%s> ; sc:replaces <%s> ] }"
+        asked = text % (component_of("odometry"), component_of("tracker"))
+        return bool(json.loads(browser.get(f"/sparql?query={quote(asked)}")[1])["boolean"])
+
+    assert ecology.until(chosen)
+    assert b'selfconf_component_losses_total{cause="fail"} 1' in browser.get("/metrics")[1]
+    assert len(json.loads(browser.get("/things")[1])) == 7
+    assert server.end(signal.SIGTERM) == 0
+    assert running.end(signal.SIGINT) == 0
+
+
+def test_ctrl_c_ends_it_with_streams_open(ecology: Home) -> None:
+    server, browser = serve(ecology)
+    assert ecology.until(lambda: browser.get("/healthz")[0] == 200)
+    stream = http.client.HTTPConnection("127.0.0.1", browser.port, timeout=30)
+    stream.request("GET", "/changes")
+    events = stream.getresponse()
+    assert events.readline().startswith(b":")
+    assert server.end(signal.SIGINT) == 0
+    stream.close()
+    assert "Traceback" not in server.complaints
+
+
+def test_a_port_that_is_taken_is_a_sentence(ecology: Home) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        server = ecology.selfconf("serve", "--ecology", ecology.ecology, "--port", port)
+        assert server.ended() == 2
+    assert f"cannot listen on port {port}" in server.complaints
+
+
+def test_a_port_that_is_none_is_misuse(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "serve", "--port", "70000").is_one_sentence("no port")
+
+
+def test_without_the_extra_it_says_what_to_install(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert run(capsys, "serve").is_one_sentence("pip install 'selfconf[serve]'")

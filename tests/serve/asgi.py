@@ -1,0 +1,71 @@
+"""Asks an ASGI application in this process, without a socket."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from typing import Any, NamedTuple
+from urllib.parse import unquote
+
+from starlette.types import ASGIApp, Message
+
+
+class Answer(NamedTuple):
+    """What came back."""
+
+    status: int
+    headers: dict[str, str]
+    body: bytes
+
+    @property
+    def json(self) -> Any:
+        return json.loads(self.body)
+
+    @property
+    def media(self) -> str:
+        return self.headers.get("content-type", "").partition(";")[0]
+
+
+def ask(
+    app: ASGIApp, path: str, method: str = "GET", body: bytes = b"", host: str = "localhost:8000", **headers: str
+) -> Answer:
+    """The answer to one request; an underscore in the name of a header is a hyphen."""
+    return asyncio.run(asked(app, path, method, body, host, **headers))
+
+
+async def asked(
+    app: ASGIApp, path: str, method: str = "GET", body: bytes = b"", host: str = "localhost:8000", **headers: str
+) -> Answer:
+    """The answer to one request, within a running loop."""
+    where, _, query = path.partition("?")
+    answered = asyncio.Event()
+    sent: list[Message] = []
+    waiting: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
+
+    async def receive() -> Message:
+        if waiting:
+            return waiting.pop()
+        await answered.wait()  # a client that waits for the answer says nothing
+        return {"type": "http.disconnect"}
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    scope = {
+        "type": "http",
+        "method": method,
+        "path": unquote(where),
+        "raw_path": where.encode(),
+        "query_string": query.encode(),
+        "headers": [(name.encode(), value.encode()) for name, value in {"host": host, **named}.items()],
+        "scheme": "http",
+        "server": ("localhost", 8000),
+        "root_path": "",
+    }
+    await app(scope, receive, send)
+    answered.set()
+    begin = next(message for message in sent if message["type"] == "http.response.start")
+    got = {name.decode(): value.decode() for name, value in begin["headers"]}
+    text = b"".join(message.get("body", b"") for message in sent if message["type"] == "http.response.body")
+    return Answer(begin["status"], got, text)

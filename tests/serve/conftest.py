@@ -1,0 +1,53 @@
+"""A server without a network: a board with the ecology of the tests, a dataset, and the application over both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("starlette", reason="the extra `serve` is not installed")
+pytest.importorskip("uvicorn", reason="the extra `serve` is not installed")
+
+from selfconf.discovery import FoundAdvertisement
+from selfconf.query import StandingDataset
+from selfconf.rdf import advertisements, turtle
+from selfconf.serve.board import Board
+from selfconf.serve.change import EcologyChange
+from selfconf.serve.component_bodies import component_body
+from selfconf.serve.metrics import Metrics
+from tests.lab import ADVERTISEMENTS, PREFIXES
+
+
+def found(name: str) -> FoundAdvertisement:
+    """One of the advertisements of the lab, as a discovery finds it."""
+    good, _ = advertisements.read_advertisements((PREFIXES + ADVERTISEMENTS[name]).encode(), name)
+    return FoundAdvertisement(good[0], "astrid", f"{name}.ttl", startable=name == "control")
+
+
+def advertised(*names: str) -> EcologyChange:
+    """The change by which some components are there."""
+    all_found = [found(name) for name in names]
+    components = {one.advertisement.component: one for one in all_found}
+    return EcologyChange(
+        components,
+        {str(c): component_body(one, "alive") for c, one in components.items()},
+        {"astrid": {"missing": False}},
+        graphs={str(c): turtle.ntriples(one.advertisement.triples) for c, one in components.items()},
+    )
+
+
+@pytest.fixture
+def board() -> Board:
+    board = Board("lab", Metrics())
+    board.apply(advertised(*ADVERTISEMENTS))
+    return board
+
+
+@pytest.fixture(scope="module")
+def dataset() -> Iterator[StandingDataset]:
+    dataset = StandingDataset()
+    for graph, triples in advertised(*ADVERTISEMENTS).graphs.items():
+        dataset.replace(graph, triples)
+    yield dataset
+    dataset.close()

@@ -1,0 +1,57 @@
+"""What holds for every answer of the server."""
+
+from __future__ import annotations
+
+import pytest
+from starlette.types import ASGIApp
+
+from selfconf.query import StandingDataset
+from selfconf.serve.application import LOOPBACK, application
+from selfconf.serve.board import Board
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.sparql_endpoint import SparqlEndpoint
+from tests.serve.asgi import ask
+
+
+def served(board: Board, linked: bool = True, hosts: frozenset[str] = LOOPBACK) -> ASGIApp:
+    """The application over a board."""
+    metrics = Metrics()
+    return application(board, metrics, SparqlEndpoint(StandingDataset(), metrics, 5.0), lambda: linked, hosts)
+
+
+def test_the_page_is_there_and_nothing_behind_it(board: Board) -> None:
+    answer = ask(served(board), "/")
+    assert (answer.status, answer.media) == (200, "text/html")
+    assert ask(served(board), "/", if_none_match=answer.headers["etag"]).status == 304
+    for path in ("/page/nothing.js", "/page/..%2Fserver.py", "/nothing"):
+        assert ask(served(board), path).status == 404
+
+
+@pytest.mark.parametrize("path", ["/", "/state", "/nothing", "/metrics"])
+def test_every_answer_forbids_what_a_stranger_might_slip_in(board: Board, path: str) -> None:
+    policy = ask(served(board), path).headers["content-security-policy"]
+    assert "default-src 'none'" in policy
+    assert "unsafe" not in policy
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:8000", "", "localhost.evil.example"])
+def test_a_name_that_is_not_of_this_machine_is_refused(board: Board, host: str) -> None:
+    assert ask(served(board), "/state", host=host).status == 421
+    assert ask(served(board, hosts=frozenset()), "/state", host=host).status == 200
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1:8000", "localhost", "[::1]:8000", "LOCALHOST:1"])
+def test_a_name_of_this_machine_is_answered(board: Board, host: str) -> None:
+    assert ask(served(board), "/state", host=host).status == 200
+
+
+def test_health_is_whether_the_ecology_is_heard(board: Board) -> None:
+    assert ask(served(board), "/healthz").status == 200
+    assert ask(served(board, linked=False), "/healthz").status == 503
+
+
+def test_the_state_and_the_metrics_are_served(board: Board) -> None:
+    assert ask(served(board), "/state").json["ecology"] == "lab"
+    answer = ask(served(board), "/metrics")
+    assert b'selfconf_components{state="alive"} 7' in answer.body
+    assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")

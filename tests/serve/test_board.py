@@ -1,0 +1,46 @@
+"""What the server knows of an ecology, and what it tells of changes."""
+
+from __future__ import annotations
+
+from selfconf.serve.board import Board
+from selfconf.serve.change import EcologyChange
+from selfconf.serve.metrics import Metrics
+from tests.lab import ADVERTISEMENTS, iri
+from tests.serve.conftest import advertised
+
+
+def test_the_state_is_all_changes_together(board: Board) -> None:
+    assert len(board.state()["components"]) == len(ADVERTISEMENTS)
+    gone = iri("pippi-drive")
+    board.apply(EcologyChange({gone: None}, {gone: None}, events=({"act": "ended", "time": 1.0},)))
+    state = board.state()
+    assert gone not in state["components"]
+    assert state["events"] == [{"act": "ended", "time": 1.0}]
+    assert gone not in board.advertised
+
+
+def test_a_thing_is_created_updated_and_deleted(board: Board) -> None:
+    gone = iri("pippi-drive")
+    before = board.stream.last
+    board.apply(advertised("tracker"))
+    board.apply(EcologyChange({gone: None}))
+    board.apply(advertised("pippi"))
+    missed = board.stream.missed(before) or []
+    things = [event for event in missed if event.kind.startswith("thing")]
+    assert [event.kind for event in things] == ["thing_updated", "thing_deleted", "thing_created"]
+    assert things[1].data == {"id": gone}
+
+
+def test_what_is_there_at_first_is_not_told_as_created() -> None:
+    board = Board("lab", Metrics())
+    board.apply(advertised("tracker"))
+    assert [event.kind for event in board.stream.missed(f"{board.stream.life}-0") or []] == ["change"]
+
+
+def test_the_gauges_count_by_state_and_phase(board: Board) -> None:
+    task = {"phase": "running", "over": False, "components": [iri("wheels")]}
+    board.apply(EcologyChange(tasks={"a": task, "b": {**task, "over": True, "components": []}}))
+    gauges = {name: list(values) for name, values in board.gauges(linked=True).items()}
+    assert gauges["selfconf_components"][0] == ({"state": "alive"}, float(len(ADVERTISEMENTS)))
+    assert gauges["selfconf_tasks"] == [({"phase": "running"}, 1.0)]
+    assert gauges["selfconf_components_held"] == [({}, 1.0)]

@@ -1,0 +1,14 @@
+"""How the page is told of a component."""
+
+from __future__ import annotations
+
+from selfconf.serve.component_bodies import component_body
+from tests.serve.conftest import found
+
+
+def test_a_component_is_told_with_its_ports_parameters_and_places() -> None:
+    control = component_body(found("control"), "dormant")
+    assert control["inputs"][0] == {"name": "localize", "signal": "rob:Odometry2D"}
+    assert control["parameters"] == [{"name": "goal", "type": "rob:BehaviouralGoal"}]
+    tracker = component_body(found("tracker"), "alive")
+    assert (tracker["places"], tracker["preference"], tracker["shareable"]) == (["living-room"], 10.0, True)

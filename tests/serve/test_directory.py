@@ -1,0 +1,93 @@
+"""The directory API of W3C WoT Discovery."""
+
+from __future__ import annotations
+
+import asyncio
+from urllib.parse import quote
+
+import pytest
+from starlette.types import ASGIApp
+
+from selfconf.query import StandingDataset
+from selfconf.serve.application import application
+from selfconf.serve.board import Board
+from selfconf.serve.change import EcologyChange
+from selfconf.serve.directory import event_stream
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.sparql_endpoint import SparqlEndpoint
+from tests.lab import ADVERTISEMENTS, iri
+from tests.serve.asgi import ask
+
+TRACKER = f"/things/{quote(iri('person-tracker'), safe='')}"
+
+
+@pytest.fixture
+def app(board: Board) -> ASGIApp:
+    metrics = Metrics()
+    return application(board, metrics, SparqlEndpoint(StandingDataset(), metrics, 5.0), lambda: True)
+
+
+def test_all_things_are_listed(app: ASGIApp) -> None:
+    answer = ask(app, "/things")
+    assert (answer.status, answer.media) == (200, "application/ld+json")
+    assert len(answer.json) == len(ADVERTISEMENTS)
+
+
+def test_things_are_listed_page_by_page(app: ASGIApp) -> None:
+    found, path = [], "/things?limit=3&offset=0"
+    while path:
+        answer = ask(app, path)
+        found += [thing["id"] for thing in answer.json]
+        links = answer.headers["link"].split(", ")
+        path = next((link[1:].partition(">")[0] for link in links if 'rel="next"' in link), "")
+    assert found == sorted(found)
+    assert len(found) == len(ADVERTISEMENTS)
+
+
+def test_a_collection_says_how_many_there_are_and_what_is_next(app: ASGIApp) -> None:
+    answer = ask(app, "/things?format=collection&limit=2").json
+    assert (answer["total"], len(answer["members"])) == (len(ADVERTISEMENTS), 2)
+    assert ask(app, answer["next"]).json["@type"] == "ThingCollection"
+
+
+@pytest.mark.parametrize("parameters", ["limit=0", "limit=x", "offset=-1", "format=table"])
+def test_a_parameter_that_makes_no_sense_is_a_problem(app: ASGIApp, parameters: str) -> None:
+    answer = ask(app, f"/things?{parameters}")
+    assert (answer.status, answer.media) == (400, "application/problem+json")
+
+
+def test_one_thing_is_found_by_its_iri_as_description_or_as_turtle(app: ASGIApp) -> None:
+    answer = ask(app, TRACKER)
+    assert (answer.status, answer.media, answer.json["id"]) == (200, "application/td+json", iri("person-tracker"))
+    answer = ask(app, TRACKER, accept="text/turtle")
+    assert b"rob:PositionSensor" in answer.body
+    assert ask(app, TRACKER, accept="image/png").status == 406
+    assert ask(app, "/things/urn:nothing").status == 404
+
+
+def test_nothing_can_be_written(app: ASGIApp) -> None:
+    for method in ("PUT", "DELETE", "PATCH"):
+        answer = ask(app, TRACKER, method)
+        assert (answer.status, answer.media) == (405, "application/problem+json")
+
+
+def test_the_directory_describes_itself(app: ASGIApp) -> None:
+    answer = ask(app, "/.well-known/wot")
+    assert (answer.media, answer.json["@type"]) == ("application/td+json", "ThingDirectory")
+
+
+def test_events_of_another_type_are_a_problem(app: ASGIApp) -> None:
+    assert ask(app, "/events/thing_renamed").status == 404
+
+
+def test_a_stream_tells_of_things_from_the_last_event_on(board: Board) -> None:
+    async def play() -> list[bytes]:
+        before = board.stream.last
+        board.apply(EcologyChange({iri("pippi-drive"): None}))
+        response = event_stream(board, ("thing_deleted",), before)
+        lines = response.body_iterator  # type: ignore[attr-defined]  # a StreamingResponse
+        return [await anext(lines), await anext(lines)]
+
+    _, event = asyncio.run(play())
+    assert b"event: thing_deleted" in event
+    assert iri("pippi-drive").encode() in event

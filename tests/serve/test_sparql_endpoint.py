@@ -1,0 +1,94 @@
+"""SPARQL over HTTP: formats, errors, limits, and many clients at once."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from urllib.parse import quote
+
+import pytest
+from starlette.types import ASGIApp
+
+from selfconf.query import StandingDataset
+from selfconf.serve.application import application
+from selfconf.serve.board import Board
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.sparql_endpoint import SparqlEndpoint
+from tests.lab import ADVERTISEMENTS
+from tests.serve.asgi import ask, asked
+
+pytestmark = pytest.mark.process
+EVERYBODY = "/sparql?query=" + quote("SELECT ?c { ?c a sc:Component }")
+CROSS = "/sparql?query=" + quote(
+    "SELECT (COUNT(*) AS ?n) { " + " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(9)) + "}"
+)
+
+
+def served(board: Board, dataset: StandingDataset, seconds: float = 5.0) -> ASGIApp:
+    """The application over a board and a dataset."""
+    metrics = Metrics()
+    return application(board, metrics, SparqlEndpoint(dataset, metrics, seconds), lambda: True)
+
+
+@pytest.mark.parametrize(
+    ("accept", "media"),
+    [
+        ("", "application/sparql-results+json"),
+        ("application/sparql-results+xml", "application/sparql-results+xml"),
+        ("text/csv", "text/csv"),
+        ("text/tab-separated-values", "text/tab-separated-values"),
+        ("text/html, */*;q=0.1", "application/sparql-results+json"),
+    ],
+)
+def test_solutions_come_in_the_format_that_is_wanted(
+    board: Board, dataset: StandingDataset, accept: str, media: str
+) -> None:
+    answer = ask(served(board, dataset), EVERYBODY, accept=accept)
+    assert (answer.status, answer.media) == (200, media)
+    assert answer.body.count(b"person-tracker") == 1
+
+
+@pytest.mark.parametrize(
+    "media", ["text/turtle", "application/n-triples", "application/rdf+xml", "application/ld+json"]
+)
+def test_triples_come_in_the_format_that_is_wanted(board: Board, dataset: StandingDataset, media: str) -> None:
+    path = "/search/sparql?query=" + quote("CONSTRUCT { ?c a sc:Component } { ?c a sc:Component }")
+    answer = ask(served(board, dataset), path, accept=media)
+    assert (answer.status, answer.media) == (200, media)
+
+
+def test_errors_are_problems_with_the_status_of_the_protocol(board: Board, dataset: StandingDataset) -> None:
+    app = served(board, dataset)
+    for answer, status in (
+        (ask(app, "/sparql?query=SELEKT"), 400),
+        (ask(app, "/sparql", "POST", b"ASK {}", content_type="text/plain"), 415),
+        (ask(app, "/sparql?query=ASK+%7B%7D", "DELETE"), 405),
+        (ask(app, EVERYBODY, accept="text/turtle"), 406),
+        (ask(app, "/sparql", "POST", b"x" * (2 << 20), content_type="application/sparql-query"), 413),
+    ):
+        assert (answer.status, answer.media) == (status, "application/problem+json")
+        assert answer.json["detail"]
+
+
+def test_a_query_that_takes_too_long_is_really_ended(board: Board, dataset: StandingDataset) -> None:
+    began = time.monotonic()
+    answer = ask(served(board, dataset, seconds=0.5), CROSS)
+    assert answer.status == 503
+    assert "0.5 s" in answer.json["detail"]
+    assert time.monotonic() - began < 20
+
+
+def test_many_clients_are_answered_while_one_asks_for_a_cross_product(board: Board, dataset: StandingDataset) -> None:
+    app = served(board, dataset, seconds=3.0)
+
+    async def play() -> tuple[list[int], int, float]:
+        began = time.monotonic()
+        greedy = asyncio.create_task(asked(app, CROSS))
+        answers = await asyncio.gather(*(asked(app, EVERYBODY) for _ in range(20)))
+        seconds = time.monotonic() - began
+        assert not greedy.done() or seconds >= 3.0
+        return [len(answer.json["results"]["bindings"]) for answer in answers], (await greedy).status, seconds
+
+    counts, status, _ = asyncio.run(play())
+    assert counts == [len(ADVERTISEMENTS)] * 20
+    assert status == 503

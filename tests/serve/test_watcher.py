@@ -1,0 +1,153 @@
+"""What an observer sees of an ecology in memory: components, tasks, failures, and what takes over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from selfconf.serve.change import EcologyChange
+from selfconf.serve.watcher import LOOK_ANEW, EcologyWatcher
+from tests.lab import Lab, iri
+
+
+class Seen:
+    """All that a watcher has told, merged."""
+
+    def __init__(self, lab: Lab) -> None:
+        self.components: dict[str, Any] = {}
+        self.tasks: dict[str, Any] = {}
+        self.sites: dict[str, Any] = {}
+        self.graphs: dict[str, bytes] = {}
+        self.events: list[Any] = []
+        self.changes = 0
+        self.watcher = EcologyWatcher(lab.network.node(), "lab", self.take, lambda: lab.network.time)
+        self.watcher.begin()
+
+    def take(self, change: EcologyChange) -> None:
+        self.changes += 1
+        for known, new in (
+            (self.components, change.components),
+            (self.tasks, change.tasks),
+            (self.sites, change.sites),
+            (self.graphs, change.graphs),
+        ):
+            for name, body in new.items():
+                if body:
+                    known[name] = body
+                else:
+                    known.pop(name, None)
+        self.events += change.events
+
+    @property
+    def task(self) -> Any:
+        (task,) = self.tasks.values()
+        return task
+
+    def acts(self, act: str) -> list[Any]:
+        return [event for event in self.events if event["act"] == act]
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> Lab:
+    lab = Lab(tmp_path)
+    lab.navigation()
+    return lab
+
+
+def test_it_sees_what_is_advertised_where_it_is_and_whether_it_lives(lab: Lab) -> None:
+    seen = Seen(lab)
+    lab.let_pass(1.0)
+    assert set(seen.sites) == {"astrid", "living-room"}
+    tracker = seen.components[iri("person-tracker")]
+    assert (tracker["site"], tracker["state"], tracker["places"]) == ("living-room", "alive", ["living-room"])
+    assert tracker["types"] == ["rob:PositionSensor"]
+    assert tracker["outputs"] == [{"name": "pose", "signal": "rob:PlanarPose2D"}]
+    assert b"PositionSensor" in seen.graphs[iri("person-tracker")]
+    lab.crash("tracker")
+    lab.let_pass(3.0)
+    assert seen.components[iri("person-tracker")]["state"] == "absent"
+    assert [event["component"] for event in seen.acts("ended")] == [iri("person-tracker")]
+
+
+def test_it_sees_a_configuration_change_when_something_fails_and_why(lab: Lab) -> None:
+    seen = Seen(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    assert seen.task["phase"] == "running"
+    assert chosen(seen.task, "position") == [iri("person-tracker")]
+    lab.components["tracker"].fail("lost Astrid")
+    lab.let_pass(1.0)
+    assert chosen(seen.task, "position") == [iri("absolute-odometry")]
+    assert seen.task["configuration"]["replaced"] == {iri("absolute-odometry"): iri("person-tracker")}
+    assert seen.task["lost"][iri("person-tracker")]["detail"] == "lost Astrid"
+    (graph,) = (text for name, text in seen.graphs.items() if name.startswith("urn:selfconf:"))
+    assert b"absolute-odometry" in graph
+    agent.stop()
+    lab.let_pass(3.0)
+    assert (seen.task["phase"], seen.task["over"], seen.task["components"]) == ("stopped", True, [])
+    assert not any(name.startswith("urn:selfconf:") for name in seen.graphs)
+
+
+def test_it_sees_what_began_before_it_came(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    seen = Seen(lab)
+    lab.let_pass(2.0)
+    assert seen.task["phase"] == "running"
+    assert chosen(seen.task, "position") == [iri("person-tracker")]
+    assert seen.acts("running")
+
+
+def test_a_refusal_comes_with_its_near_misses(lab: Lab) -> None:
+    for name in ("tracker", "odometry"):
+        lab.crash(name)
+    seen = Seen(lab)
+    lab.let_pass(1.5)
+    lab.agent(bound=(("robot", ":Nobody"), ("goal", "(AT BEDROOM)")), patient=True)
+    lab.let_pass(5.0)
+    assert seen.task["phase"] == "waiting"
+    assert seen.task["refusal"]["reasons"]
+    assert "support is Astrid, not Nobody" in [miss["obstacle"] for miss in seen.task["refusal"]["near_misses"]]
+
+
+def test_a_lost_notice_is_asked_for(lab: Lab) -> None:
+    seen = Seen(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    agent._notices._publisher.put = lambda *_: None  # type: ignore[method-assign]  # the network drops one
+    lab.components["tracker"].fail("lost Astrid")
+    lab.let_pass(1.0)
+    assert not seen.acts("lost")
+    lab.let_pass(LOOK_ANEW)
+    assert [event["component"] for event in seen.acts("lost")] == [iri("person-tracker")]
+
+
+def test_nothing_is_told_while_nothing_changes(lab: Lab) -> None:
+    seen = Seen(lab)
+    lab.running(lab.agent())
+    lab.let_pass(2.0)
+    before = seen.changes
+    lab.let_pass(3 * LOOK_ANEW)
+    assert seen.changes == before
+
+
+def test_an_observer_that_comes_and_goes_is_noticed_by_nobody(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    before = list(lab.events)
+    seen = Seen(lab)
+    lab.let_pass(2.0)
+    seen.watcher.bus.close()
+    lab.let_pass(2.0)
+    assert lab.events == before
+    assert agent.state.phase.value == "running"
+
+
+def chosen(task: Any, role: str) -> list[str]:
+    """The components of a role of a task."""
+    (found,) = (one["components"] for one in task["configuration"]["roles"] if one["role"] == iri(role))
+    return list(found)
