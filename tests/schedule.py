@@ -23,6 +23,7 @@ WHOLE = {
     "tests/api/test_run.py",
     "tests/cli/test_untrusted.py",
     "tests/query/test_endpoint.py",
+    "tests/serve/test_page.py",
     "tests/sim/test_pictures.py",
     "tests/test_house.py",
 }

@@ -74,7 +74,7 @@ class Directory:
         component = found.advertisement.component
         headers = {"Vary": "Accept", "Link": f'</things/{quote(component, safe="")}>; rel="canonical"'}
         if media[0] == "text/turtle":
-            text = turtle.to_turtle(found.advertisement.triples, QUERY_PREFIXES)
+            text = turtle.pretty_turtle(found.advertisement.triples, QUERY_PREFIXES)
             return Response(text, media_type="text/turtle", headers=headers)
         return Response(json.dumps(self._thing(component), ensure_ascii=False), media_type=media[0], headers=headers)
 

@@ -292,7 +292,8 @@ class EcologyWatcher:
         tasks: dict[str, Body | None] = {one: body for one, body in shown.items() if self._shown.get(one) != body}
         tasks |= {one: None for one in self._shown if one not in shown}
         self._shown = shown
-        events, graphs = tuple(self._events), self._graphs
+        # What was asked for at the beginning comes from several configurators, one after the other.
+        events, graphs = tuple(sorted(self._events, key=_moment)), self._graphs
         self._events, self._graphs = [], {}
         self._hand_on(EcologyChange(components=components, tasks=tasks, events=events, graphs=graphs))
 
@@ -310,3 +311,9 @@ class EcologyWatcher:
     def _hand_on(self, change: EcologyChange) -> None:
         if not change.empty:
             self._tell(change)
+
+
+def _moment(event: Body) -> float:
+    """When an event was, as its teller says; an event of a stranger may say anything."""
+    time_said = event.get("time")
+    return float(time_said) if isinstance(time_said, int | float) else 0.0

@@ -2,13 +2,15 @@
 
 `Document` is the triples of one source by subject; `parse` reads one. `Triple` and `Node` are its parts.
 `term`, `resource` and `named` pass between Oxigraph's terms, Turtle's names and the model's terms; `SKOLEM` marks the
-IRIs that stand for labelled blank nodes. `ntriples` and `to_turtle` write; `ox_term` makes a term of Oxigraph.
-`not_turtle` words a syntax error. `read_ontology` reads any format of RDF; `format_of` and `other_format` tell which
-one a file is in (`RdfFormat`), and `conversion` is the command that makes Turtle of it.
+IRIs that stand for labelled blank nodes. `ntriples` and `to_turtle` write, and `pretty_turtle` writes for people;
+`ox_term` makes a term of Oxigraph. `not_turtle` words a syntax error. `read_ontology` reads any format of RDF;
+`format_of` and `other_format` tell which one a file is in (`RdfFormat`), and `conversion` is the command that makes
+Turtle of it.
 """
 
 from selfconf.rdf.turtle.document import SKOLEM, Document, Node, Triple, named, not_turtle, parse, resource, term
 from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, other_format, read_ontology
+from selfconf.rdf.turtle.pretty import pretty_turtle
 from selfconf.rdf.turtle.serialization import ntriples, ox_term, to_turtle
 
 __all__ = [
@@ -25,6 +27,7 @@ __all__ = [
     "other_format",
     "ox_term",
     "parse",
+    "pretty_turtle",
     "read_ontology",
     "resource",
     "term",

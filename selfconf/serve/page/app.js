@@ -1,0 +1,137 @@
+// The page: it hears of each change of the ecology, and shows it.
+
+import { by, say } from "/page/dom.js";
+import { Diagram } from "/page/diagram.js";
+import { Model, worded } from "/page/model.js";
+import { below, forget, showComponents, showDetail, showTasks, taskHead } from "/page/panels.js";
+import { prepareQuery } from "/page/query.js";
+import { Timeline } from "/page/timeline.js";
+
+const model = new Model();
+let chosen = null, selected = "", drawing = false, belowSays = "";
+const diagram = new Diagram(by("canvas"), select);
+const timeline = new Timeline(model, draw);
+
+function draw() {
+  if (!drawing) {
+    drawing = true;
+    requestAnimationFrame(() => { drawing = false; render(); });
+  }
+}
+
+function select(iri) {
+  selected = selected === iri ? "" : iri;
+  draw();
+}
+
+function choose(id) {
+  chosen = id;
+  draw();
+}
+
+function render() {
+  const tasks = model.tasksSeen();
+  if (!tasks.some(([id]) => id === chosen)) chosen = tasks[0]?.[0] ?? null;
+  const task = tasks.find(([id]) => id === chosen)?.[1] ?? null;
+  showTasks(tasks, chosen, choose);
+  by("task-head").replaceChildren(...taskHead(task, model.at === null));
+  const then = model.statesThen();
+  const states = new Map([...model.components].map(([iri, one]) => [iri, then.get(iri) ?? one.state]));
+  const canvas = by("canvas");
+  if (task?.configuration) diagram.show(chosen, task, selected, states, canvas.clientWidth);
+  else diagram.clear();
+  canvas.hidden = Boolean(task && !task.configuration && task.refusal);
+  canvas.dataset.says = task?.configuration ? "" : task ? nothing(task) : "No task runs. What lives is listed beside.";
+  const facts = JSON.stringify([chosen, task?.lost, task?.owed, task?.dropped, task?.refusal]);
+  if (facts !== belowSays) {
+    belowSays = facts;
+    by("below").replaceChildren(...below(task, select));
+  }
+  showComponents(model, selected, select, by("filter").value);
+  showDetail(model, selected, select, choose);
+  timeline.show();
+  const alive = [...model.components.values()].filter((one) => one.state === "alive").length;
+  say(by("tally"), `${alive} of ${model.components.size} components alive · ${model.sites.size} ${model.sites.size === 1 ? "site" : "sites"}`);
+  say(by("ecology"), model.ecology || "selfconf");
+  document.title = `${model.ecology || "ecology"} · selfconf`;
+}
+
+const nothing = (task) => (task.over ? `This task is over: ${task.phase}.` : task.refusal ? "" : `No configuration yet: ${task.phase}.`);
+
+// Hearing of changes.
+
+async function begin() {
+  const answer = await fetch("/state");
+  const state = await answer.json();
+  model.begin(state);
+  draw();
+  const stream = new EventSource(`/changes?last=${encodeURIComponent(state.last)}`);
+  stream.addEventListener("change", (event) => {
+    const change = JSON.parse(event.data);
+    const newest = change.events?.length ?? 0;
+    model.apply(change);
+    for (const iri of Object.keys(change.components ?? {})) forget(iri);
+    if (newest) announce(change.events);
+    draw();
+  });
+  stream.addEventListener("reset", () => { stream.close(); again(); });
+  stream.addEventListener("open", () => linked(true));
+  stream.addEventListener("error", () => {
+    linked(false);
+    if (stream.readyState === EventSource.CLOSED) again();
+  });
+}
+
+let waiting = 0;
+
+function again() {
+  clearTimeout(waiting);
+  waiting = setTimeout(() => begin().catch(() => { linked(false); again(); }), 1000);
+}
+
+function linked(yes) {
+  const line = by("link");
+  line.classList.toggle("live", yes);
+  say(line, yes ? "live" : "not connected");
+}
+
+function announce(events) {
+  const said = events.map((event) => worded(event, null)).filter((one) => one && one.kind !== "plain").at(-1);
+  if (said) by("said").textContent = said.text;
+}
+
+// Views and themes.
+
+function view(name) {
+  by("main").hidden = name !== "ecology";
+  by("query").hidden = name !== "query";
+  by("show-ecology").setAttribute("aria-pressed", String(name === "ecology"));
+  by("show-query").setAttribute("aria-pressed", String(name === "query"));
+  history.replaceState(null, "", name === "query" ? "#query" : "#");
+  if (name === "query") by("sparql").focus();
+  draw();
+}
+
+function theme(name) {
+  if (name) document.documentElement.dataset.theme = name;
+  try { if (name) localStorage.setItem("theme", name); } catch { /* a browser may keep nothing */ }
+}
+
+try { theme(localStorage.getItem("theme")); } catch { /* a browser may keep nothing */ }
+by("theme").addEventListener("click", () => {
+  const now = document.documentElement.dataset.theme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+  theme(now === "dark" ? "light" : "dark");
+});
+by("show-ecology").addEventListener("click", () => view("ecology"));
+by("show-query").addEventListener("click", () => view("query"));
+by("filter").addEventListener("input", draw);
+addEventListener("resize", draw);
+addEventListener("keydown", (event) => {
+  const writing = event.target.matches("input[type=search], textarea");
+  if (event.key === "Escape" && selected) select(selected);
+  if (event.key === "/" && !writing) { event.preventDefault(); view("ecology"); by("filter").focus(); }
+});
+setInterval(() => { if (model.at === null) draw(); }, 10000);
+prepareQuery();
+if (location.hash === "#query") view("query");
+begin().catch(() => { linked(false); again(); });

@@ -1,0 +1,152 @@
+// What is known of the ecology, now and at each moment that is remembered.
+
+import { short } from "/page/dom.js";
+
+const SETTLED = new Set(["running", "waiting", "refused", "stopped", "detached"]);
+const OVER = new Set(["refused", "stopped", "detached"]);
+
+export class Model {
+  components = new Map();
+  sites = new Map();
+  tasks = new Map();
+  events = [];
+  /** The number of events that are seen; null: all, and what is live. */
+  at = null;
+  ecology = "";
+
+  begin(state) {
+    this.ecology = state.ecology;
+    this.components = new Map(Object.entries(state.components));
+    this.sites = new Map(Object.entries(state.sites));
+    this.tasks = new Map(Object.entries(state.tasks));
+    this.events = state.events;
+    this.at = null;
+  }
+
+  apply(change) {
+    for (const kind of ["components", "sites", "tasks"]) {
+      for (const [name, body] of Object.entries(change[kind] ?? {})) {
+        if (body === null) this[kind].delete(name);
+        else this[kind].set(name, body);
+      }
+    }
+    this.events.push(...(change.events ?? []));
+    const over = this.events.length - 4000;
+    if (over > 0) {
+      this.events.splice(0, over);
+      if (this.at !== null) this.at = Math.max(0, this.at - over);
+    }
+  }
+
+  get seen() {
+    return this.at === null ? this.events : this.events.slice(0, this.at);
+  }
+
+  /** The tasks as they are, or were: running ones first, then by priority. */
+  tasksSeen() {
+    const found = this.at === null ? new Map(this.tasks) : this.#tasksThen();
+    return [...found].sort(([, a], [, b]) => a.over - b.over || b.priority - a.priority || a.beginning - b.beginning);
+  }
+
+  #tasksThen() {
+    const found = new Map();
+    for (const event of this.seen) {
+      if (!event.task) continue;
+      const now = this.tasks.get(event.task);
+      const task = found.get(event.task) ?? {
+        ...(now ?? { name: event.task.split("~")[0], priority: 0, beginning: event.time, template: "" }),
+        phase: "composing", over: false, configuration: null, refusal: null, lost: {}, since: event.time, owed: [],
+        dropped: {}, components: [],
+      };
+      const next = { ...task };
+      if (event.act === "lost") next.lost = { ...task.lost, [event.component]: event };
+      if (event.act === "running" && event.configuration) {
+        const replaced = replacements(task.configuration ?? task.before, event.configuration);
+        const configuration = { ...event.configuration, replaced: Object.fromEntries(replaced.map((one) => [one.component, one.instead])) };
+        Object.assign(next, { configuration, before: configuration, refusal: null, epoch: event.epoch });
+        next.components = event.configuration.roles.flatMap((role) => role.components);
+      }
+      if (event.act === "waiting" || event.act === "refused") {
+        Object.assign(next, { configuration: null, refusal: event.refusal, components: [] });
+      }
+      if (SETTLED.has(event.act)) Object.assign(next, { phase: event.act, since: event.time });
+      if (OVER.has(event.act)) Object.assign(next, { over: true, configuration: null, components: [] });
+      found.set(event.task, next);
+    }
+    return found;
+  }
+
+  /** The state of each component whose state was another then. */
+  statesThen() {
+    const then = new Map();
+    if (this.at === null) return then;
+    for (const event of this.events.slice(this.at)) {
+      if (then.has(event.component)) continue;
+      if (event.act === "ended") then.set(event.component, "alive");
+      if (event.act === "began") {
+        const now = this.components.get(event.component);
+        then.set(event.component, now?.state === "alive" ? "not there yet" : now?.state);
+      }
+    }
+    return then;
+  }
+
+  /** Who holds what, and what was lost by whom. */
+  claims() {
+    const held = new Map(), lost = new Map();
+    for (const [id, task] of this.tasksSeen()) {
+      if (task.over) continue;
+      for (const component of task.components) held.set(component, [...(held.get(component) ?? []), { id, ...task }]);
+      for (const [component, why] of Object.entries(task.lost)) lost.set(component, why);
+    }
+    return { held, lost };
+  }
+}
+
+/** What has changed from one configuration to the next: which component took over which role from which other. */
+export function replacements(before, after) {
+  const found = [];
+  for (const { role, components } of after?.roles ?? []) {
+    const old = before?.roles.find((one) => one.role === role)?.components ?? [];
+    const gone = old.filter((one) => !components.includes(one));
+    for (const [number, one] of components.filter((each) => !old.includes(each)).entries()) {
+      if (gone[number]) found.push({ role, component: one, instead: gone[number] });
+    }
+  }
+  return found;
+}
+
+const WHY = { fail: "it failed", crash: "it crashed", silence: "it fell silent", refused: "it refused", hung: "it hangs",
+  malformed: "what it sent was malformed", yield: "another task has it", "let go": "it let go" };
+
+export const why = (loss) => [WHY[loss.cause] ?? loss.cause, loss.detail].filter(Boolean).join(": ");
+
+/** An event in a sentence, its kind for the eye, and whether it is worth a line. */
+export function worded(event, before) {
+  const component = short(event.component);
+  switch (event.act) {
+    case "lost": return { kind: "bad", text: `${component} is lost: ${why(event)}` };
+    case "running": {
+      const changes = replacements(before, event.configuration);
+      const text = changes.map((one) => `${short(one.component)} takes over ${short(one.role)} from ${short(one.instead)}`);
+      return { kind: "good", text: text.length ? text.join("; ") : "the configuration runs" };
+    }
+    case "waiting": return { kind: "warn", text: "there is no configuration; the task waits" };
+    case "refused": return { kind: "bad", text: "there is no configuration; the task has ended" };
+    case "stopped": return { kind: "plain", text: "taken down" };
+    case "detached": return { kind: "plain", text: "handed to the sites" };
+    case "waking": return { kind: "plain", text: `${component} is started by its site` };
+    case "awaiting": return { kind: "warn", text: `${component} is held by another task; waiting for it` };
+    case "declined": return { kind: "warn", text: `${component} declines: ${event.detail}` };
+    case "unreachable": return { kind: "bad", text: `${component} cannot be reached: ${event.detail}` };
+    case "left out": return { kind: "warn", text: `${component} is left out: ${event.reason}` };
+    case "complaint": return { kind: "warn", text: String(event.detail) };
+    case "cut off": return { kind: "bad", text: "the configurator is cut off from the ecology" };
+    case "connected": return { kind: "good", text: "the configurator is connected again" };
+    case "began": return { kind: "plain", text: `${component} lives` };
+    case "ended": return { kind: "warn", text: `${component} lives no more` };
+    case "site came": return { kind: "plain", text: `the site ${event.site} is there` };
+    case "site left": return { kind: "bad", text: `the site ${event.site} has gone` };
+    default: return null;
+  }
+}
