@@ -64,7 +64,7 @@ $(VENV)/with-sim: $(VENV)/python pyproject.toml requirements.txt
 		and sys.platform == "linux" and platform.machine() == "x86_64"))' \
 	|| { echo "the demo needs PyBullet, which has wheels for Python 3.10 and 3.11 on Linux x86_64 only:" \
 		"install python3.11, or type 'make demo PYTHON=/path/to/python3.11'" >&2; exit 2; }
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim,serve]'
 	@touch $@
 
 $(VENV)/with-dev: $(VENV)/python pyproject.toml requirements.txt

@@ -11,6 +11,7 @@ import os
 import secrets
 import shutil
 import signal
+import socket
 import sys
 import tempfile
 import time
@@ -37,6 +38,9 @@ RESULTS = (
 """What a run leaves in its folder."""
 STARTING = 60.0
 """Seconds that a process may take to be there."""
+LINGERING = 86_400.0
+"""Seconds that the page stays at most."""
+PAGE, USUAL_PORT = "page", 8000
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,8 @@ class DemoOptions:
     gui: bool = False
     pictures: str = "fine"
     policy: str = "repair"
+    serve: bool = False
+    """Whether the ecology is shown in a browser, until Ctrl-C."""
 
 
 class DemoError(Exception):
@@ -90,6 +96,29 @@ class Stage:
         command = ["-m", "selfconf", "run", str(template), *binds, *where, "--format", "json", "--policy", policy]
         self.crew.start("configurator", *command)
 
+    def serve(self) -> None:
+        """Show the ecology in a browser, and wait until the page is there."""
+        where = ["--ecology", self.ecology, "--connect", self.endpoint]
+        self.crew.start(PAGE, "-m", "selfconf", "serve", *where, "--port", str(_free(USUAL_PORT)))
+        deadline = time.monotonic() + STARTING
+        while time.monotonic() < deadline:
+            for line in self.crew.lines(0.05):
+                self.hear(line.process, line.text)
+                if line.process == PAGE and line.text is None:
+                    raise DemoError("the page cannot be served")
+                if line.process == PAGE and "http://" in (line.text or ""):
+                    return
+        raise DemoError(f"the page is not there after {STARTING:.0f} s")
+
+    def linger(self) -> None:
+        """Leave the page there until Ctrl-C."""
+        self._say("the page shows what has happened; Ctrl-C ends it")
+        try:
+            for line in self.crew.lines(LINGERING):
+                self.hear(line.process, line.text)
+        except KeyboardInterrupt:
+            return
+
     def hear(self, process: str, text: str | None) -> None:
         """Take a line in and tell it."""
         sentence = self.account.take(Line(process, text))
@@ -121,6 +150,15 @@ def run(given: DemoOptions) -> int:
         return 1
 
 
+def _free(port: int) -> int:
+    """A port of this machine if nothing listens there, else 0 for any that is free."""
+    try:
+        socket.create_server(("127.0.0.1", port)).close()
+    except OSError:
+        return 0
+    return port
+
+
 def _interrupt(number: int, _: FrameType | None) -> None:
     """End as Ctrl-C does, taking everything down."""
     raise KeyboardInterrupt
@@ -144,6 +182,8 @@ def _navigate(given: DemoOptions) -> int:
         stage.site("living-room", EXAMPLES / "peis-home" / "person-tracker.ttl")
         others = sorted(set((EXAMPLES / "peis-home").glob("*.ttl")) - {EXAMPLES / "peis-home" / "person-tracker.ttl"})
         stage.site("astrid", *others)
+        if given.serve:
+            stage.serve()
         world = ["--ecology", stage.ecology, "--connect", stage.endpoint, "--record", str(record)]
         world += ["--seed", str(given.seed), "--speed", str(given.speed), *(["--gui"] if given.gui else [])]
         crew.start("world", "-m", "sim.peis_home", *world)
@@ -160,6 +200,8 @@ def _navigate(given: DemoOptions) -> int:
         crew.end("configurator", signal.SIGINT)
         for line in crew.lines(0.2):
             stage.hear(line.process, line.text)
+        if given.serve:
+            stage.linger()
     if account.end is None:
         raise DemoError("the world ended without a result")
     _tell("")
@@ -181,6 +223,8 @@ def _radio(given: DemoOptions) -> int:
         with Crew({"SIM_SOUND": str(sound)}) as crew:
             stage = Stage(crew, _tell)
             stage.site("living-room", EXAMPLES / "radio")
+            if given.serve:
+                stage.serve()
             stage.configurator(EXAMPLES / "radio.ttl", given.policy, "room=:living-room")
             account = stage.account
             vital = ("configurator", "living-room")
@@ -197,6 +241,8 @@ def _radio(given: DemoOptions) -> int:
             crew.end("configurator", signal.SIGINT)
             for line in crew.lines(1.0):
                 stage.hear(line.process, line.text)
+            if given.serve:
+                stage.linger()
         for path in sorted(sound.glob("*.wav")):
             shutil.copy(path, given.out / path.name)
             _tell(f"wrote {given.out / path.name}")

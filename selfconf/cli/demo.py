@@ -39,6 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--pictures", choices=["fine", "draft", "none"], default="fine", help="quality (default: %(default)s)"
     )
+    parser.add_argument("--serve", action="store_true", help="show the ecology in a browser, until Ctrl-C")
     parser.add_argument("--policy", choices=["repair", "dismantle"], default="repair", help="default: %(default)s")
 
 
@@ -59,6 +60,8 @@ def run(given: argparse.Namespace) -> int:
             "Mitsuba, which renders the pictures, is missing; in the checkout, pip install '.[sim]', "
             "or go without by --pictures none"
         )
+    if given.serve and importlib.util.find_spec("uvicorn") is None:
+        raise InstallationError("the server is missing; in the checkout, pip install '.[sim,serve]'")
     if given.gui and not _display(os.environ.get("DISPLAY", "")):
         raise InstallationError("--gui opens a window, and there is no display; leave it out, the pictures need none")
     try:
@@ -68,7 +71,9 @@ def run(given: argparse.Namespace) -> int:
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))
     demo = importlib.import_module("sim.demo")
-    options = demo.DemoOptions(given.out, given.scene, given.seed, given.speed, given.gui, given.pictures, given.policy)
+    options = demo.DemoOptions(
+        given.out, given.scene, given.seed, given.speed, given.gui, given.pictures, given.policy, given.serve
+    )
     code: int = demo.run(options)
     return code
 

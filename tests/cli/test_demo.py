@@ -47,6 +47,14 @@ def test_without_pybullet_it_is_said_what_to_install(
     assert run(capsys, "demo").is_one_sentence("PyBullet is missing", "pip install '.[sim]'")
 
 
+def test_without_a_server_it_is_said_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    present = object()
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "uvicorn" else present)
+    assert run(capsys, "demo", "--serve").is_one_sentence("the server is missing", "pip install '.[sim,serve]'")
+
+
 @pytest.mark.sim
 def test_a_window_needs_a_display_that_answers(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -137,3 +138,19 @@ def test_a_speaker_that_fails_is_replaced(tmp_path: Path, demo: list[Demo]) -> N
     assert re.search(r"after:  tuner, .*shelf-speaker", words)
     assert len(list(demo[0].out.glob("*.wav"))) == 3
     assert demo[0].gone()
+
+
+@at_night
+def test_the_drive_is_shown_in_a_browser_until_ctrl_c(tmp_path: Path, demo: list[Demo]) -> None:
+    pytest.importorskip("uvicorn", reason="the extra `serve` is not installed")
+    demo.append(Demo(tmp_path, "--serve", "--pictures", "none"))
+    shown = demo[0]
+    address = re.search(r"http://127\.0\.0\.1:\d+/", shown.until("page: serving the ecology"))
+    assert address is not None
+    shown.until("the page shows what has happened")
+    with urllib.request.urlopen(f"{address[0]}state") as answer:
+        (task,) = json.loads(answer.read())["tasks"].values()
+    assert task["phase"] == "stopped"
+    shown.process.send_signal(signal.SIGINT)
+    assert shown.end() == 0
+    assert shown.gone()

@@ -13,7 +13,7 @@ from selfconf.rdf.vocabulary import LABEL, TYPE
 _LOCAL = re.compile(r"[A-Za-z0-9_](?:[\w-]*[\w-])?")
 MOST_NESTED = 200
 """Where there are more blank nodes than that, each is named: what a stranger wrote may nest without end."""
-LONGEST_LINE = 78
+ONE_LINE = 78
 """What is in brackets stands in one line if that has no more characters."""
 _FIRST = {TYPE: 0, LABEL: 1}
 """The predicates that come first; the others follow in the order of the triples."""
@@ -69,11 +69,11 @@ class _Writer:
         lines = []
         for predicate, values in ordered:
             together = ", ".join(values)
-            if len(together) > LONGEST_LINE or "\n" in together:
+            if len(together) > ONE_LINE or "\n" in together:
                 together = f" ,\n{indent}        ".join(values)
             lines.append(f"{'a' if predicate == TYPE else self._name(predicate)} {together}")
         in_one = " ; ".join(lines)
-        if indent and len(in_one) <= LONGEST_LINE and "\n" not in in_one:
+        if indent and len(in_one) <= ONE_LINE and "\n" not in in_one:
             return in_one
         return f" ;\n{indent}    ".join(lines)
 

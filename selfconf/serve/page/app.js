@@ -56,7 +56,7 @@ function render() {
   document.title = `${model.ecology || "ecology"} · selfconf`;
 }
 
-const nothing = (task) => (task.over ? `This task is over: ${task.phase}.` : task.refusal ? "" : `No configuration yet: ${task.phase}.`);
+const nothing = (task) => (task.over ? `This task is over: ${task.phase}. Choose a moment below to see what ran.` : task.refusal ? "" : `No configuration yet: ${task.phase}.`);
 
 // Hearing of changes.
 
