@@ -64,7 +64,7 @@ def test_a_failure_is_seen_in_the_page_and_by_sparql_and_servers_come_and_go_unn
     assert ecology.until(lambda: [t["phase"] for t in browser.state()["tasks"].values()] == ["running"])
     second, other = serve(ecology)
     assert ecology.until(lambda: len(other.state()["components"]) == 7)
-    second.end(signal.SIGKILL)
+    second.send(signal.SIGSTOP)  # a server that hears nothing holds nobody up
     stream = http.client.HTTPConnection("127.0.0.1", browser.port, timeout=30)
     stream.request("GET", "/changes")
     events = stream.getresponse()
@@ -74,7 +74,9 @@ def test_a_failure_is_seen_in_the_page_and_by_sparql_and_servers_come_and_go_unn
         told += events.readline()
     assert component_of("tracker").encode() in told
     stream.close()
-    running.act("running")
+    lost, again = running.act("lost"), running.act("running")
+    assert again["time"] - lost["time"] < 2
+    second.end(signal.SIGKILL)
 
     def chosen() -> bool:
         text = "ASK { ?c a sc:Configuration ; sc:assignment [ sc:component <%s> ; sc:replaces <%s> ] }"

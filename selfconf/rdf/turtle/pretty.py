@@ -87,9 +87,9 @@ class _Writer:
             return f"[ {facts} ]" if "\n" not in facts else f"[\n{indent}    {facts}\n{indent}]"
         return self._name(value) if isinstance(value, IRI) else str(value)
 
-    def _name(self, iri: Term) -> str:
+    def _name(self, iri: IRI) -> str:
         for prefix, base in self._prefixes:
-            if iri.startswith(base) and _LOCAL.fullmatch(iri[len(base) :]):  # type: ignore[union-attr]  # no literal
+            if iri.startswith(base) and _LOCAL.fullmatch(iri[len(base) :]):
                 self.used.add(prefix)
-                return f"{prefix}:{iri[len(base) :]}"  # type: ignore[index]  # no literal
+                return f"{prefix}:{iri[len(base) :]}"
         return f"<{iri}>"
