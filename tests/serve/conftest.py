@@ -1,44 +1,35 @@
-"""A server without a network: a board with the ecology of the tests, a dataset, and the application over both."""
+"""A server without a network: a board with the ecology of the tests, and a dataset; nothing without the extra."""
 
 from __future__ import annotations
 
+import importlib.util
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import pytest
 
-pytest.importorskip("starlette", reason="the extra `serve` is not installed")
-pytest.importorskip("uvicorn", reason="the extra `serve` is not installed")
+from tests.lab import ADVERTISEMENTS
 
-from selfconf.discovery import FoundAdvertisement
-from selfconf.query import StandingDataset
-from selfconf.rdf import advertisements, turtle
-from selfconf.serve.board import Board
-from selfconf.serve.change import EcologyChange
-from selfconf.serve.component_bodies import component_body
-from selfconf.serve.metrics import Metrics
-from tests.lab import ADVERTISEMENTS, PREFIXES
+if TYPE_CHECKING:
+    from selfconf.query import StandingDataset
+    from selfconf.serve.board import Board
+
+MISSING = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
+collect_ignore_glob = ["test_*.py"] if MISSING else []
+"""The tests that import what the extra `serve` brings."""
 
 
-def found(name: str) -> FoundAdvertisement:
-    """One of the advertisements of the lab, as a discovery finds it."""
-    good, _ = advertisements.read_advertisements((PREFIXES + ADVERTISEMENTS[name]).encode(), name)
-    return FoundAdvertisement(good[0], "astrid", f"{name}.ttl", startable=name == "control")
-
-
-def advertised(*names: str) -> EcologyChange:
-    """The change by which some components are there."""
-    all_found = [found(name) for name in names]
-    components = {one.advertisement.component: one for one in all_found}
-    return EcologyChange(
-        components,
-        {str(c): component_body(one, "alive") for c, one in components.items()},
-        {"astrid": {"missing": False}},
-        graphs={str(c): turtle.ntriples(one.advertisement.triples) for c, one in components.items()},
-    )
+def pytest_report_header() -> str:
+    """Say why tests are left out."""
+    return f"tests/serve is left out: {', '.join(MISSING)} is not installed" if MISSING else ""
 
 
 @pytest.fixture
 def board() -> Board:
+    from selfconf.serve.board import Board
+    from selfconf.serve.metrics import Metrics
+    from tests.serve.shown import advertised
+
     board = Board("lab", Metrics())
     board.apply(advertised(*ADVERTISEMENTS))
     return board
@@ -46,6 +37,9 @@ def board() -> Board:
 
 @pytest.fixture(scope="module")
 def dataset() -> Iterator[StandingDataset]:
+    from selfconf.query import StandingDataset
+    from tests.serve.shown import advertised
+
     dataset = StandingDataset()
     for graph, triples in advertised(*ADVERTISEMENTS).graphs.items():
         dataset.replace(graph, triples)

@@ -6,7 +6,7 @@ from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.metrics import Metrics
 from tests.lab import ADVERTISEMENTS, iri
-from tests.serve.conftest import advertised
+from tests.serve.shown import advertised
 
 
 def test_the_state_is_all_changes_together(board: Board) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.serve.component_bodies import component_body
-from tests.serve.conftest import found
+from tests.serve.shown import found
 
 
 def test_a_component_is_told_with_its_ports_parameters_and_places() -> None:

@@ -12,7 +12,7 @@ import pytest
 from selfconf.protocol.keys import Keys
 from selfconf.serve.things import TD_CONTEXT, directory_description, thing_description
 from tests.lab import ADVERTISEMENTS, iri
-from tests.serve.conftest import found
+from tests.serve.shown import found
 
 BESIDE = Path(__file__).parents[3] / "shared" / "data" / "w3c-wot"
 SCHEMA = Path(os.environ.get("SELFCONF_W3C_WOT", BESIDE)) / "td-json-schema-validation.json"
