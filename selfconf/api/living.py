@@ -26,10 +26,12 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import owner_of, task_name
-from selfconf.protocol.messages import Status, TaskRecord
+from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
+from selfconf.rdf.vocabulary import SC
+from selfconf.render.why import told_why
 
 ROLL_CALL = 3.0
 """How long, in seconds, a roll-call may take."""
@@ -203,6 +205,47 @@ class LivingEcology(Ecology):
             dataset.add(IRI(f"urn:selfconf:{sample.key}"), document.triples())
         self.complaints = tuple(complaints)
         return dataset
+
+    def why(self, term: str, at: float | None = None) -> list[str]:
+        """Why roles are played by whom, of those that a term means, in sentences; at a moment, or now.
+
+        The term is a role, a component, a value that a task is bound to, or a task: an IRI or its local name. A
+        configurator remembers its latest events, and none of them when it has ended.
+        """
+        told: dict[str, list[Notice]] = {}
+        rejected = []
+        for sample in self._ask(self._view.keys.notices()).samples:
+            try:
+                notice = decode(sample.payload, Notice)
+            except PeerError as error:
+                rejected.append(f"left out an answer: {error}")
+                continue
+            if sample.key == self._view.keys.notices(notice.configurator):
+                told.setdefault(notice.configurator, []).append(notice)
+        passed_over = {} if at is not None else self._passed_over()
+        sentences: list[str] = []
+        for configurator, notices in sorted(told.items()):
+            events = [notice.event for notice in sorted(notices, key=lambda notice: notice.sequence)]
+            try:
+                sentences += told_why(task_name(notices[0].task), events, term, at, passed_over.get(configurator, {}))
+            except PeerError as error:
+                rejected.append(f"left out an answer: {error}")
+        self.complaints = tuple(rejected)
+        return sentences
+
+    def _passed_over(self) -> dict[str, dict[str, list[str]]]:
+        """By configurator and role, the candidates that go before those that are deployed."""
+        found: dict[str, dict[str, list[str]]] = {}
+        for sample in self._ask(self._view.keys.configuration()).samples:
+            try:
+                document = turtle.parse(sample.payload, sample.key)
+            except TurtleError:
+                continue
+            roles = found.setdefault(sample.key.split("/")[-2], {})
+            for node in document.instances(SC.Assignment):
+                for role in document.values(node, SC.role):
+                    roles[str(role)] = [str(other) for other in document.values(node, SC.passedOver)]
+        return found
 
     def configure(
         self,

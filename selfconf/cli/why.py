@@ -1,0 +1,53 @@
+"""`why`: why a role is played by whom, now or at a moment, in sentences."""
+
+from __future__ import annotations
+
+import argparse
+from datetime import datetime
+
+from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+
+EXAMPLE = """  selfconf why position
+  selfconf why Astrid --at 14:02"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument(
+        "term",
+        metavar="TERM",
+        help="a role, a component, a value that a task is bound to, or a task; an IRI or its local name",
+    )
+    parser.add_argument(
+        "--at",
+        metavar="TIME",
+        type=_moment,
+        help="the moment that is meant: HH:MM, HH:MM:SS, or a date and time as ISO 8601 has it (default: now)",
+    )
+    add_ecology_arguments(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 with an answer, 1 if no task that its configurator remembers has to do with the term."""
+    with joined(given) as ecology:
+        sentences = ecology.why(given.term, given.at)
+        complain_of(ecology)
+    if not sentences:
+        print(f"no task has to do with {given.term}, as far as the configurators remember")
+        return 1
+    print("\n".join(sentences))
+    return 0
+
+
+def _moment(text: str) -> float:
+    """A moment in seconds of the Unix epoch; one without a date is today's."""
+    for form in ("%H:%M", "%H:%M:%S"):
+        try:
+            moment = datetime.strptime(text, form).time()
+        except ValueError:
+            continue
+        return datetime.combine(datetime.now().date(), moment).timestamp()
+    try:
+        return datetime.fromisoformat(text).timestamp()
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes HH:MM, HH:MM:SS, or ISO 8601") from None

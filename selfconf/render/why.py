@@ -1,0 +1,173 @@
+"""Why a role is played by whom, in sentences: what a task has told of itself, read back at a moment.
+
+The events are those of `run --format json`, as a configurator keeps them. Of a stranger they may hold anything: then
+`told_why` raises PeerError.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any
+
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+from selfconf.render.names import short
+
+EventBody = Mapping[str, Any]
+
+
+@dataclass(slots=True)
+class TaskStory:
+    """What a task was at a moment, by its events until then."""
+
+    task: str
+    configuration: Mapping[str, Any] | None = None
+    refusal: Mapping[str, Any] | None = None
+    since: float = 0.0
+    lost: dict[str, EventBody] = field(default_factory=dict)
+    replaced: dict[str, str] = field(default_factory=dict)
+    """The component before, by the one that took over from it."""
+    ended: bool = False
+
+    def take(self, event: EventBody) -> None:
+        """Note an event."""
+        act = event.get("act")
+        if act == "lost":
+            self.lost[str(event.get("component"))] = event
+        elif act == "running" and isinstance(event.get("configuration"), dict):
+            before = self.configuration
+            self.configuration, self.refusal, self.since = event["configuration"], None, _time(event)
+            for role, components in self.roles():
+                gone = [one for one in _components(before, role) if one not in components]
+                come = [one for one in components if one not in _components(before, role)]
+                self.replaced.update(zip(come, gone, strict=False))
+        elif act in ("waiting", "refused"):
+            self.refusal, self.since = event.get("refusal") or {}, _time(event)
+        elif act in ("stopped", "detached"):
+            self.ended, self.since = True, _time(event)
+
+    def roles(self) -> Iterator[tuple[str, list[str]]]:
+        """Each role with its components."""
+        for one in (self.configuration or {}).get("roles", ()):
+            yield str(one["role"]), list(map(str, one["components"]))
+
+
+def story(task: str, events: Iterable[EventBody], at: float | None = None) -> TaskStory:
+    """The story of a task until a moment, or until now."""
+    found = TaskStory(task)
+    for event in events:
+        if at is None or _time(event) <= at:
+            found.take(event)
+    return found
+
+
+def told_why(
+    task: str, events: Iterable[EventBody], term: str, at: float | None, passed_over: Mapping[str, Sequence[str]]
+) -> list[str]:
+    """The sentences of `why_sentences` about a task at a moment. Raises PeerError for events that are none of a run."""
+    try:
+        return why_sentences(story(task, events, at), term, passed_over)
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, OSError) as error:
+        raise PeerError(f"what {task} tells are no events of a run: {error!r}") from None
+
+
+def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequence[str]]) -> list[str]:
+    """Why the roles of a task are played as they are, of those that a term means; none where it means nothing here.
+
+    The term is a role, a component, a value that the task is bound to, or its name; an IRI or its local name.
+    `passed_over` are by role the candidates that go before the chosen ones.
+    """
+    if found.refusal is not None:
+        return _refused(found, term)
+    everything = _means(term, found.task) or any(_means(term, str(value)) for value in _bindings(found))
+    sentences = []
+    for role, components in found.roles():
+        if everything or _means(term, role) or any(_means(term, one) for one in components):
+            sentences += _played(found, role, components, passed_over.get(role, ()))
+    return sentences + _without_a_role(found, term, passed_over)
+
+
+def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Sequence[str]]) -> list[str]:
+    """Why a component that a term means plays no role."""
+    playing = {component for _, components in found.roles() for component in components}
+    lost = {component: event for component, event in found.lost.items() if _means(term, component)}
+    sentences = [
+        f"{_name(component)} plays no role in {found.task}: {_loss(event)}"
+        for component, event in lost.items()
+        if component not in playing
+    ]
+    for role, others in passed_over.items():
+        if not lost and any(_means(term, one) for one in others):
+            chosen = ", ".join(map(_name, _components(found.configuration, role)))
+            sentences.append(f"{_name(term)} goes before {chosen} for the role {_name(role)}, and was passed over")
+    return sentences
+
+
+def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequence[str]) -> list[str]:
+    who = ", ".join(map(_name, components)) or "nobody"
+    sentences = [f"{_name(role)} in {found.task}: {who}, since {_clock(found.since)}"]
+    for component in components:
+        instead = found.replaced.get(component)
+        if instead is not None:
+            loss = found.lost.get(instead)
+            sentences.append(f"  it took over from {_name(instead)}{'' if loss is None else ': ' + _loss(loss)}")
+    others = [one for one in before if one not in components]
+    if others:
+        names = ", ".join(map(_name, others))
+        sentences.append(f"  passed over, though first in order: {names}")
+        sentences.append(f"  what would change it: {names} able to act again, and `run --upgrade`, or a new start")
+    return sentences
+
+
+def _refused(found: TaskStory, term: str) -> list[str]:
+    refusal = found.refusal or {}
+    roles = [str(reason.get("role")) for reason in refusal.get("reasons", ())]
+    near = list(refusal.get("near_misses", ()))
+    told = (found.task, *roles, *(str(miss.get("component")) for miss in near), *found.lost)
+    if not any(_means(term, one) for one in (*told, *map(str, _bindings(found)))):
+        return []
+    sentences = [f"{found.task} has no configuration, since {_clock(found.since)}"]
+    sentences += [f"  {reason.get('message')}" for reason in refusal.get("reasons", ())]
+    sentences += [f"  {_name(component)}: {_loss(event)}" for component, event in found.lost.items()]
+    sentences += [
+        f"  nearly, as {_name(miss.get('role'))}: {_name(miss.get('component'))}, but {miss.get('obstacle')}"
+        for miss in near
+    ]
+    sentences += [f"  what would change it: {repair.get('message')}" for repair in refusal.get("repairs", ())]
+    return sentences
+
+
+def _components(configuration: Mapping[str, Any] | None, role: str) -> list[str]:
+    roles = (configuration or {}).get("roles", ())
+    return next((list(one["components"]) for one in roles if one["role"] == role), [])
+
+
+def _bindings(found: TaskStory) -> list[object]:
+    return list((found.configuration or {}).get("bindings", {}).values())
+
+
+def _means(term: str, thing: str) -> bool:
+    """Whether a term names a thing: by its IRI, or by its local name with or without a prefix."""
+    return term.strip("<>") == thing or term.rpartition(":")[2] == _name(thing)
+
+
+def _name(thing: object) -> str:
+    return short(IRI(str(thing))) or str(thing)
+
+
+def _loss(event: EventBody) -> str:
+    detail = f", {event['detail']}" if event.get("detail") else ""
+    return f"lost at {_clock(_time(event))} ({event.get('cause')}{detail})"
+
+
+def _time(event: EventBody) -> float:
+    moment = event.get("time")
+    return float(moment) if isinstance(moment, int | float) else 0.0
+
+
+def _clock(seconds: float) -> str:
+    moment = datetime.fromtimestamp(seconds).astimezone()
+    today = moment.date() == datetime.now().astimezone().date()
+    return moment.strftime("%H:%M:%S" if today else "%Y-%m-%d %H:%M:%S")

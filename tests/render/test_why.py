@@ -1,0 +1,80 @@
+"""Why a role is played by whom, from the events of a run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from selfconf.errors import PeerError
+from selfconf.render.why import story, told_why, why_sentences
+
+HOME = "https://example.org/peis-home#"
+
+
+def running(time: float, position: str) -> dict[str, Any]:
+    """A configuration with that component as position."""
+    roles = [{"role": HOME + "position", "components": [HOME + position]}]
+    roles.append({"role": HOME + "drive", "components": [HOME + "astrid-drive"]})
+    body = {"template": HOME + "navigate", "bindings": {"robot": HOME + "Astrid"}, "roles": roles}
+    return {"act": "running", "time": time, "configuration": body}
+
+
+LOST = {"act": "lost", "time": 20.0, "component": HOME + "tracker", "cause": "fail", "detail": "out of view"}
+EVENTS = [running(10.0, "tracker"), LOST, running(21.0, "odometry")]
+PASSED = {HOME + "position": [HOME + "tracker"]}
+
+
+def test_a_role_is_told_with_what_failed_what_was_passed_over_and_what_would_change_it() -> None:
+    first, second, third, fourth = why_sentences(story("navigate", EVENTS), ":position", PASSED)
+    assert first.startswith("position in navigate: odometry, since ")
+    assert "it took over from tracker: lost at " in second
+    assert second.endswith("(fail, out of view)")
+    assert third == "  passed over, though first in order: tracker"
+    assert fourth.startswith("  what would change it: tracker able to act again")
+
+
+def test_at_an_earlier_moment_the_answer_is_that_of_then() -> None:
+    (only,) = why_sentences(story("navigate", EVENTS, at=15.0), "position", {})
+    assert "tracker, since" in only
+
+
+def test_a_component_a_bound_value_and_the_task_name_roles() -> None:
+    found = story("navigate", EVENTS)
+    assert len(why_sentences(found, "astrid-drive", {})) == 1
+    assert len(why_sentences(found, f"<{HOME}Astrid>", {})) == 3
+    assert len(why_sentences(found, "navigate", {})) == 3
+    assert why_sentences(found, "kitchen", {}) == []
+
+
+def test_a_lost_component_plays_no_role_and_it_is_said_why() -> None:
+    (only,) = why_sentences(story("navigate", EVENTS), "tracker", PASSED)
+    assert only.startswith("tracker plays no role in navigate: lost at ")
+
+
+def test_what_was_passed_over_without_a_loss_is_said() -> None:
+    (only,) = why_sentences(story("navigate", [running(1.0, "odometry")]), "tracker", PASSED)
+    assert only == "tracker goes before odometry for the role position, and was passed over"
+
+
+def test_a_refusal_is_told_with_its_reasons_near_misses_and_repairs() -> None:
+    refusal = {
+        "reasons": [{"role": HOME + "sonar", "message": "no component is eligible for the role sonar"}],
+        "near_misses": [{"role": HOME + "sonar", "component": HOME + "array", "obstacle": "support is Astrid"}],
+        "repairs": [{"message": "add one component for the role sonar"}],
+    }
+    found = story("navigate", [*EVENTS, {"act": "waiting", "time": 30.0, "refusal": refusal}])
+    for term in ("sonar", "array", "navigate", "Astrid", "tracker"):
+        assert why_sentences(found, term, {})[1:] == [
+            "  no component is eligible for the role sonar",
+            f"  tracker: {why_sentences(found, term, {})[2].partition(': ')[2]}",
+            "  nearly, as sonar: array, but support is Astrid",
+            "  what would change it: add one component for the role sonar",
+        ]
+
+
+def test_what_a_stranger_tells_does_no_harm() -> None:
+    with pytest.raises(PeerError, match="no events of a run"):
+        told_why("navigate", [{"act": "running", "configuration": {"roles": [3]}}], "navigate", None, {})
+    odd = [{"act": "running", "time": "noon", "configuration": 3}, {"act": ["lost"]}, {}, {"act": "waiting"}]
+    assert why_sentences(story("navigate", odd), "navigate", {})[0].startswith("navigate has no configuration")
