@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+from pathlib import Path
 
 from selfconf.cli.options import add_ecology_arguments, joined, seconds_option
 from selfconf.errors import InstallationError
@@ -27,6 +28,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=QUERY_SECONDS,
         help="how long a SPARQL query may take (default: %(default)g)",
     )
+    parser.add_argument(
+        "--history",
+        metavar="DIR",
+        type=Path,
+        help="keep what is deployed in this folder, as PROV-O, so that SPARQL reaches back (default: nothing is kept)",
+    )
     add_ecology_arguments(parser)
 
 
@@ -39,7 +46,8 @@ def run(given: argparse.Namespace) -> int:
 
     with joined(given) as ecology:
         name, endpoints = ecology.name, ecology.endpoints
-    serve_ecology(name, endpoints, given.host, given.port, given.seconds, lambda url: _tell(name, url))
+    place, seconds, folder = (given.host, given.port), given.seconds, given.history
+    serve_ecology(name, endpoints, *place, seconds, folder, lambda url: _tell(name, url))
     return 0
 
 

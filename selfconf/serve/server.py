@@ -6,8 +6,9 @@ import asyncio
 import os
 import signal
 import socket
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from types import FrameType
 
 import uvicorn
@@ -20,64 +21,108 @@ from selfconf.rendezvous import usual_endpoints
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
+from selfconf.serve.history import History
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 from selfconf.serve.watcher import EcologyWatcher
 from selfconf.termination import PARENT_CHECK, orphaned, started_by_another
 
+SETTLED = 15.0
+"""Seconds after which every configurator that lives has said what it has deployed."""
 LAST_ANSWERS = 2
 """Seconds that answers which are under way may take when the server is ended."""
 
 
 def serve_ecology(
-    ecology: str, endpoints: Sequence[str], host: str, port: int, seconds: float, listening: Callable[[str], None]
+    ecology: str,
+    endpoints: Sequence[str],
+    host: str,
+    port: int,
+    seconds: float,
+    folder: Path | None,
+    listening: Callable[[str], None],
 ) -> None:
     """Serve an ecology over HTTP until SIGINT or SIGTERM; `listening` receives the URL.
 
-    `seconds` is what a query may take. Raises NetworkError where the port is taken or the ecology cannot be reached.
+    `seconds` is what a query may take, `folder` where the history is kept, if it is. Raises NetworkError where the port
+    is taken or the ecology cannot be reached, and AuthorError for a folder that cannot be used.
     """
-    dataset = StandingDataset()
-    with bound(host, port) as place, ThreadPoolExecutor(1, "changes") as hands:
-        bus = client(list(dict.fromkeys((*endpoints, *usual_endpoints(ecology)))))  # the relay may move to another one
+    with bound(host, port) as place:
+        record = Record(folder)
         try:
-            asyncio.run(_serve(bus, ecology, dataset, hands, place, seconds, listening))
+            bus = client(list(dict.fromkeys((*endpoints, *usual_endpoints(ecology)))))  # the relay may move there
+            try:
+                asyncio.run(_serve(bus, ecology, record, place, seconds, listening))
+            finally:
+                bus.close()
         finally:
-            bus.close()
-            dataset.close()
+            record.close()
+
+
+class Record:
+    """The dataset that is asked, and the history on disk that is part of it; used on one thread."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self.dataset = StandingDataset()
+        self.hands = ThreadPoolExecutor(1, "changes")
+        """Where changes are noted: it takes time that neither the bus nor the server has."""
+        self._history = None if folder is None else History(folder)
+        if self._history is not None:
+            self._replace(self._history.past())
+
+    def note(self, change: EcologyChange) -> None:
+        """Note a change."""
+        self._replace(change.graphs)
+        if self._history is not None:
+            self._replace(self._history.note(change.graphs))
+
+    def settle(self) -> None:
+        """Take what the last server has left running, and does not run any more, for the past."""
+        if self._history is not None:
+            self._replace(self._history.settle())
+
+    def _replace(self, graphs: Mapping[str, bytes]) -> None:
+        for graph, triples in graphs.items():
+            self.dataset.replace(graph, triples)
+
+    def close(self) -> None:
+        """Note what is left to be noted, and end."""
+        self.hands.shutdown()
+        if self._history is not None:
+            self._history.close()
+        self.dataset.close()
 
 
 async def _serve(
     bus: Bus,
     ecology: str,
-    dataset: StandingDataset,
-    hands: ThreadPoolExecutor,
+    record: Record,
     place: socket.socket,
     seconds: float,
     listening: Callable[[str], None],
 ) -> None:
     loop, metrics = asyncio.get_running_loop(), Metrics()
     board = Board(ecology, metrics)
-    sparql = SparqlEndpoint(dataset, metrics, seconds)
+    sparql = SparqlEndpoint(record.dataset, metrics, seconds)
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
     app = application(board, metrics, sparql, lambda: bool(bus.link), LOOPBACK if local else ())
 
     def take(change: EcologyChange) -> None:
-        for graph, triples in change.graphs.items():
-            dataset.replace(graph, triples)
+        record.note(change)
         loop.call_soon_threadsafe(board.apply, change)  # last: whoever hears of it finds it by SPARQL
 
-    watcher = EcologyWatcher(bus, ecology, lambda change: _submit(hands, take, change), aside=hands.submit)
+    def tell(change: EcologyChange) -> None:
+        record.hands.submit(take, change)
+
+    watcher = EcologyWatcher(bus, ecology, tell, aside=record.hands.submit)
     bus.run_aside()
     bus.wake_up(watcher.begin)
+    loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))
     server = _Server(uvicorn.Config(app, log_level="warning", access_log=False, lifespan="off", ws="none"), board)
     server.config.timeout_graceful_shutdown = LAST_ANSWERS
     listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
     await server.serve(sockets=[place])
-
-
-def _submit(hands: ThreadPoolExecutor, take: Callable[[EcologyChange], None], change: EcologyChange) -> None:
-    hands.submit(take, change)
 
 
 class _Server(uvicorn.Server):

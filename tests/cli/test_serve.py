@@ -50,15 +50,15 @@ def ecology(home: Home) -> Home:
     return home
 
 
-def serve(home: Home) -> tuple[Program, Browser]:
+def serve(home: Home, *options: str) -> tuple[Program, Browser]:
     """A server of an ecology, once it listens."""
-    program = home.selfconf("serve", "--ecology", home.ecology, "--port", "0")
+    program = home.selfconf("serve", "--ecology", home.ecology, "--port", "0", *options)
     return program, Browser(program)
 
 
 @pytest.mark.slow
 def test_a_failure_is_seen_in_the_page_and_by_sparql_and_servers_come_and_go_unnoticed(ecology: Home) -> None:
-    server, browser = serve(ecology)
+    server, browser = serve(ecology, "--history", "history")
     running = ecology.run()
     running.act("running")
     assert ecology.until(lambda: [t["phase"] for t in browser.state()["tasks"].values()] == ["running"])
@@ -88,6 +88,14 @@ def test_a_failure_is_seen_in_the_page_and_by_sparql_and_servers_come_and_go_unn
     assert len(json.loads(browser.get("/things")[1])) == 7
     assert server.end(signal.SIGTERM) == 0
     assert running.end(signal.SIGINT) == 0
+    _, later = serve(ecology, "--history", "history")
+    ended = quote("SELECT ?c { ?c a sc:Configuration ; prov:invalidatedAtTime ?ended }")
+    assert ecology.until(lambda: component_rows(later.get(f"/sparql?query={ended}")[1]) == 1)
+
+
+def component_rows(body: bytes) -> int:
+    """How many solutions an answer has."""
+    return len(json.loads(body)["results"]["bindings"])
 
 
 def test_ctrl_c_ends_it_with_streams_open(ecology: Home) -> None:

@@ -1,0 +1,80 @@
+"""The history of what was deployed, on disk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.errors import AuthorError
+from selfconf.rdf.turtle import ntriples, parse
+from selfconf.rdf.vocabulary import PROV
+from selfconf.serve import history
+from selfconf.serve.history import DEPLOYED, History
+from tests.lab import Lab, iri
+
+GRAPH = DEPLOYED + "lab/conf/c1/cfg"
+
+
+def told(number: int) -> bytes:
+    """What a configurator tells of a configuration."""
+    text = f"""<urn:c:{number}> a <https://w3id.org/selfconf#Configuration> ;
+        <http://www.w3.org/ns/prov#generatedAtTime> "2026-01-01T00:00:{number:02}Z" ;
+        <https://w3id.org/selfconf#assignment> [ <https://w3id.org/selfconf#role> <urn:role> ] ."""
+    return ntriples(parse(text, "cfg").triples())
+
+
+def test_a_configuration_ends_when_another_takes_its_place_or_its_configurator_goes(tmp_path: Path) -> None:
+    kept = History(tmp_path, lambda: 86_400.0)
+    assert kept.note({GRAPH: told(1), "urn:a-component": told(9)}) == {}
+    (ended,) = kept.note({GRAPH: told(2)}).items()
+    assert ended[0] == "urn:c:1"
+    assert b'invalidatedAtTime> "1970-01-02T00:00:00' in ended[1]
+    assert kept.note({GRAPH: told(2)}) == {}
+    assert list(kept.note({GRAPH: b""})) == ["urn:c:2"]
+    assert set(kept.past()) == {"urn:c:1", "urn:c:2"}
+
+
+def test_it_is_there_for_the_next_server(tmp_path: Path) -> None:
+    first = History(tmp_path)
+    for number in (1, 2, 3):
+        first.note({GRAPH: told(number)})
+    first.note({GRAPH + "2": told(4)})
+    first.close()
+    second = History(tmp_path)
+    assert set(second.past()) == {"urn:c:1", "urn:c:2"}
+    second.note({GRAPH: told(3)})
+    assert set(second.settle()) == {"urn:c:4"}
+    assert set(second.note({GRAPH: b""})) == {"urn:c:3"}
+
+
+def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "MOST_KEPT", 3)
+    kept = History(tmp_path)
+    for number in range(6):
+        kept.note({GRAPH: told(number)})
+    assert set(kept.past()) == {"urn:c:3", "urn:c:4", "urn:c:5"}
+
+
+def test_a_folder_that_another_server_uses_is_a_sentence(tmp_path: Path) -> None:
+    kept = History(tmp_path)
+    with pytest.raises(AuthorError, match="does another server use it"):
+        History(tmp_path)
+    kept.close()
+
+
+def test_a_real_configuration_keeps_its_provenance(tmp_path: Path) -> None:
+    lab = Lab(tmp_path / "lab")
+    lab.navigation()
+    agent = lab.agent()
+    lab.running(agent)
+    kept = History(tmp_path / "history")
+    kept.note({GRAPH: ntriples(parse(agent._record.turtle(), "cfg").triples())})
+    lab.components["tracker"].fail("lost Astrid")
+    lab.let_pass(1.0)
+    (before,) = kept.note({GRAPH: ntriples(parse(agent._record.turtle(), "cfg").triples())})
+    (after,) = kept.note({GRAPH: b""}).values()
+    document = parse(after, "after")
+    (revision,) = [str(o) for _, p, o in document.triples() if p == PROV.wasRevisionOf]
+    assert revision == before
+    assert iri("person-tracker") in after.decode()
