@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import Notice, Status
 from selfconf.serve.change import Body
+from selfconf.serve.checked import checked_event
 
 ENDED = {"stopped": "stopped", "refused": "refused", "detached": "detached"}
 """The phase in which a task ends, by the last event of its run."""
@@ -55,19 +54,18 @@ class WatchedTask:
         if notice.sequence <= self.sequence:
             return None
         self.sequence, self._identity = notice.sequence, notice.task or self._identity
-        event = dict(notice.event)
-        act = str(event.get("act"))
+        event = checked_event(notice.event)
+        act = event["act"]
         if act == "lost":
             why = {fact: event.get(fact) for fact in ("cause", "detail", "time")}
             self.lost[str(event.get("component"))] = why
         if act == "running":
-            self.configuration, self.refusal = _object(event.get("configuration")) or self.configuration, None
+            self.configuration, self.refusal = event["configuration"] or self.configuration, None
         if act in ("waiting", "refused"):
-            self.configuration, self.refusal = None, _object(event.get("refusal"))
+            self.configuration, self.refusal = None, event["refusal"]
         self.ended = ENDED.get(act, self.ended)
         if act not in TOLD:
             return None
-        event.pop("process", None)
         return {**event, "task": self.identity, "configurator": self.configurator}
 
     def body(self, detached: bool) -> Body:
@@ -94,7 +92,3 @@ class WatchedTask:
             "configuration": None if over else self.configuration,
             "refusal": self.refusal,
         }
-
-
-def _object(value: Any) -> Body | None:
-    return value if isinstance(value, dict) else None

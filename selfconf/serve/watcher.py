@@ -314,6 +314,5 @@ class EcologyWatcher:
 
 
 def _moment(event: Body) -> float:
-    """When an event was, as its teller says; an event of a stranger may say anything."""
-    time_said = event.get("time")
-    return float(time_said) if isinstance(time_said, int | float) else 0.0
+    """When an event was."""
+    return float(event["time"])

@@ -1,0 +1,79 @@
+"""What a configurator tells, checked: only what is of the expected form goes on to the page, whoever tells it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from selfconf.serve.change import Body
+
+_TEXTS = ("component", "cause", "detail", "reason", "site", "message", "call", "source", "output", "sink", "input")
+_FACTS = {
+    "reasons": ("code", "role", "message"),
+    "near_misses": ("role", "component", "obstacle"),
+    "repairs": ("code", "role", "message"),
+}
+"""The lists of a refusal, and the texts of each of their members."""
+
+
+def checked_event(event: Any) -> Body:
+    """An event of a run with its act, its time, and those facts that are of the expected form."""
+    body: Body = {"act": _text(event.get("act")), "time": _number(event.get("time"))}
+    body |= {fact: event[fact] for fact in _TEXTS if isinstance(event.get(fact), str)}
+    if body["act"] == "running":
+        body |= {
+            "configuration": checked_configuration(event.get("configuration")),
+            "epoch": _number(event.get("epoch")),
+        }
+    if body["act"] in ("waiting", "refused"):
+        body["refusal"] = checked_refusal(event.get("refusal"))
+    return body
+
+
+def checked_configuration(value: Any) -> Body | None:
+    """A configuration with its roles and connections; None for what is none."""
+    if not isinstance(value, dict):
+        return None
+    return {
+        "template": _text(value.get("template")),
+        "roles": [
+            {"role": _text(one.get("role")), "components": list(map(_text, _list(one.get("components"))))}
+            for one in _objects(value.get("roles"))
+        ],
+        "connections": [
+            {"from": _end(one.get("from"), "output"), "to": _end(one.get("to"), "input")}
+            for one in _objects(value.get("connections"))
+        ],
+    }
+
+
+def checked_refusal(value: Any) -> Body | None:
+    """A refusal with its reasons, near misses and repairs, or the sentence of a search that has given up."""
+    if not isinstance(value, dict):
+        return None
+    body: Body = {
+        name: [{fact: _text(one.get(fact)) for fact in facts} for one in _objects(value.get(name))]
+        for name, facts in _FACTS.items()
+    }
+    return {**body, "message": _text(value.get("message"))}
+
+
+def _end(value: Any, port: str) -> Body:
+    given = value if isinstance(value, dict) else {}
+    return {"component": _text(given.get("component")), port: _text(given.get(port))}
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else ""
+
+
+def _number(value: Any) -> float:
+    return value if isinstance(value, int | float) and math.isfinite(value) and abs(value) < 1e12 else 0.0
+
+
+def _list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
+
+
+def _objects(value: Any) -> list[Body]:
+    return [one for one in _list(value) if isinstance(one, dict)]
