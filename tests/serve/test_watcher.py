@@ -126,6 +126,20 @@ def test_a_lost_notice_is_asked_for(lab: Lab) -> None:
     assert [event["component"] for event in seen.acts("lost")] == [iri("person-tracker")]
 
 
+def test_a_configurator_of_before_that_tells_no_events_is_asked(lab: Lab) -> None:
+    agent = lab.agent()
+    agent._notices.close()
+    lab.running(agent)
+    seen = Seen(lab)
+    lab.let_pass(2.0)
+    assert chosen(seen.task, "position") == [iri("person-tracker")]
+    lab.components["tracker"].fail("lost Astrid")
+    lab.let_pass(LOOK_ANEW + 1.0)
+    assert chosen(seen.task, "position") == [iri("absolute-odometry")]
+    assert seen.task["lost"][iri("person-tracker")]["cause"] == "fail"
+    assert seen.events == []
+
+
 def test_nothing_is_told_while_nothing_changes(lab: Lab) -> None:
     seen = Seen(lab)
     lab.running(lab.agent())
