@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from selfconf.serve.change import EcologyChange
-from selfconf.serve.watcher import LOOK_ANEW, EcologyWatcher
+from selfconf.serve.task_watcher import LOOK_ANEW
+from selfconf.serve.watcher import EcologyWatcher
 from tests.lab import Lab, iri
 
 

@@ -1,0 +1,192 @@
+"""The tasks of an ecology, followed from a bus: by lives of configurators, by their notices, and by what they answer."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable, Iterable
+
+from selfconf.bus.port import Bus, Replies, Sample
+from selfconf.errors import PeerError, TurtleError
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import Keys, owner_of, task_name
+from selfconf.protocol.messages import Notice, Status, TaskRecord
+from selfconf.rdf import turtle
+from selfconf.serve.change import Body
+from selfconf.serve.deployed import deployed_body
+from selfconf.serve.watched_task import WatchedTask
+
+log = logging.getLogger(__name__)
+
+LOOK_ANEW = 10.0
+"""Seconds between two looks at all configurators."""
+TOGETHER = 0.05
+"""Seconds for which changes are collected, so that a rush of them is told at once."""
+PATIENCE_WITH_PEERS = 2.0
+"""Seconds that a configurator may take to answer."""
+ENDED_TASKS = 12
+"""How many tasks that are over are still shown."""
+MOST_TASKS = 1000
+"""How many tasks are followed; what a stranger says of more is passed over."""
+
+
+class TaskWatcher:
+    """Follows the tasks of one ecology; runs on the thread of its bus."""
+
+    def __init__(self, bus: Bus, keys: Keys, happened: Callable[[Body], None], changed: Callable[[], None]) -> None:
+        """`happened` receives each event of a task, and `changed` is called when anything of a task may be new."""
+        self.bus, self.keys, self._happened, self._changed = bus, keys, happened, changed
+        self._tasks: dict[str, WatchedTask] = {}
+        """By the name of the configurator."""
+        self._over: deque[str] = deque()
+        self._kept: dict[str, TaskRecord] = {}
+        self._graphs: dict[str, bytes] = {}
+        self._deployed_text: dict[str, bytes] = {}
+        """What each configurator has said last of what it has deployed."""
+        self._asking: set[str] = set()
+
+    def follow(self) -> None:
+        """Follow every configurator from now on, those that are there first."""
+        self.bus.subscribe(self.keys.notices(), self._noticed)
+        self.bus.subscribe(self.keys.task(), lambda sample: self._take_kept(Replies((sample,))))
+        self.bus.watch(self.keys.any_configurator_life(), self._configurator_changed)
+        self._audit()
+
+    def bodies(self) -> Iterable[tuple[str, Body]]:
+        """Every task by its identity; of two configurators of one the one that lives comes last."""
+        kept = {task for task, record in self._kept.items() if not record.ended}
+        for identity in sorted(kept):
+            record = self._kept[identity]
+            task = WatchedTask("")
+            facts = {"name": task_name(identity), "priority": record.priority, "beginning": record.beginning}
+            yield identity, {**task.body(detached=True), **facts, "phase": "kept", "template": record.wanted}
+        for task in sorted(self._tasks.values(), key=lambda task: task.alive):
+            yield task.identity, task.body(task.identity in kept)
+
+    def take_graphs(self) -> dict[str, bytes]:
+        """What was deployed or has ended since the last call, as N-Triples by the name of its graph."""
+        graphs, self._graphs = self._graphs, {}
+        return graphs
+
+    def _task(self, configurator: str) -> WatchedTask:
+        """The task of a configurator; of one too many, a task that is not followed."""
+        found = self._tasks.get(configurator) or WatchedTask(configurator)
+        if len(self._tasks) < MOST_TASKS:
+            self._tasks[configurator] = found
+        return found
+
+    def _configurator_changed(self, key: str, alive: bool) -> None:
+        name = owner_of(key)
+        if alive:
+            self._task(name).alive = True
+            self._ask_all(name)
+        elif name in self._tasks:
+            self._tasks[name].alive = False
+            self._over.append(name)
+            while len(self._over) > ENDED_TASKS:
+                self._tasks.pop(self._over.popleft(), None)
+            self._deployed_text.pop(name, None)
+            self._graphs[self._graph(name)] = b""
+            self._changed()
+
+    def _noticed(self, sample: Sample) -> None:
+        try:
+            notice = decode(sample.payload, Notice)
+        except PeerError as error:
+            log.warning("passed over a notice on %s: %s", sample.key, error)
+            return
+        if sample.key != self.keys.notices(notice.configurator):
+            return
+        task = self._task(notice.configurator)
+        if notice.sequence > task.sequence + 1:
+            self._ask(self.keys.notices(task.configurator), self._hear_all)  # what was lost, in its order
+        else:
+            self._hear(task, notice)
+            self._ask_soon(task.configurator)
+
+    def _hear(self, task: WatchedTask, notice: Notice) -> None:
+        event = task.hear(notice)
+        if event is not None:
+            self._happened(event)
+        if notice.event.get("act") == "running":
+            self._ask(self.keys.configuration(task.configurator), self._deployed)
+
+    def _hear_all(self, replies: Replies) -> None:
+        notices = []
+        for sample in replies.samples:
+            try:
+                notice = decode(sample.payload, Notice)
+            except PeerError:
+                continue
+            if sample.key == self.keys.notices(notice.configurator):
+                notices.append(notice)
+        for notice in sorted(notices, key=lambda notice: (notice.configurator, notice.sequence)):
+            self._hear(self._task(notice.configurator), notice)
+
+    def _audit(self) -> None:
+        """Ask everyone, so that nothing that was lost stays lost."""
+        self.bus.later(LOOK_ANEW, self._audit)
+        self._ask_all("*")
+        self._ask(self.keys.kept_tasks(), self._take_kept)
+
+    def _ask_all(self, configurator: str) -> None:
+        self._ask(self.keys.notices(configurator), self._hear_all)
+        self._ask(self.keys.configurator_call(configurator, "status"), self._take_statuses)
+        self._ask(self.keys.configuration(configurator), self._deployed)
+
+    def _ask_soon(self, configurator: str) -> None:
+        """Ask a configurator how things are, once for a rush of events."""
+        if configurator not in self._asking:
+            self._asking.add(configurator)
+
+            def ask() -> None:
+                self._asking.discard(configurator)
+                self._ask(self.keys.configurator_call(configurator, "status"), self._take_statuses)
+
+            self.bus.later(TOGETHER, ask)
+
+    def _ask(self, key: str, done: Callable[[Replies], None]) -> None:
+        self.bus.ask(key, b"", PATIENCE_WITH_PEERS, done)
+
+    def _take_statuses(self, replies: Replies) -> None:
+        for sample in replies.samples:
+            try:
+                status = decode(sample.payload, Status)
+            except PeerError:
+                continue
+            if sample.key == self.keys.configurator_call(status.configurator, "status"):
+                self._task(status.configurator).take_status(status)
+        self._changed()
+
+    def _graph(self, configurator: str) -> str:
+        return f"urn:selfconf:{self.keys.configuration(configurator)}"
+
+    def _deployed(self, replies: Replies) -> None:
+        for sample in replies.samples:
+            name = sample.key.split("/")[3] if sample.key.count("/") == 4 else ""
+            task = self._tasks.get(name)
+            if task is None or not task.alive or sample.key != self.keys.configuration(name):
+                continue
+            if self._deployed_text.get(name) == sample.payload:
+                continue
+            self._deployed_text[name] = sample.payload
+            try:
+                document = turtle.parse(sample.payload, sample.key)
+            except TurtleError as error:
+                log.warning("passed over a configuration: %s", error)
+                continue
+            self._graphs[self._graph(name)] = turtle.ntriples(document.triples())
+            if task.refusal is None:
+                task.configuration = deployed_body(document)
+        self._changed()
+
+    def _take_kept(self, replies: Replies) -> None:
+        for sample in replies.samples:
+            try:
+                record = decode(sample.payload, TaskRecord)
+            except PeerError:
+                continue
+            known = self._kept.get(record.task)
+            if known is None or known.revision < record.revision:
+                self._kept[record.task] = record
+        self._changed()

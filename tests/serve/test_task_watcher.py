@@ -1,0 +1,91 @@
+"""The tasks that a watcher follows: which are remembered, and how many."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from selfconf.bus.port import Urgency
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Notice, TaskRecord
+from selfconf.serve import task_watcher
+from selfconf.serve.task_watcher import TaskWatcher
+from tests.lab import Lab, iri
+
+
+class Tasks:
+    """What a watcher of tasks tells."""
+
+    def __init__(self, lab: Lab) -> None:
+        self.events: list[Any] = []
+        self.watcher = TaskWatcher(lab.network.node(), lab.keys, self.events.append, lambda: None)
+        self.watcher.follow()
+
+    def phases(self) -> list[str]:
+        return [body["phase"] for _, body in self.watcher.bodies()]
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> Lab:
+    lab = Lab(tmp_path)
+    lab.navigation()
+    return lab
+
+
+def test_a_task_that_is_over_is_remembered_for_a_while(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(task_watcher, "ENDED_TASKS", 2)
+    tasks = Tasks(lab)
+    for _ in range(3):
+        agent = lab.agent()
+        lab.running(agent)
+        agent.stop()
+        lab.let_pass(2.0)
+    assert tasks.phases() == ["stopped", "stopped"]
+
+
+def test_a_configurator_that_is_cut_down_is_gone(lab: Lab) -> None:
+    tasks = Tasks(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    (graph,) = tasks.watcher.take_graphs().items()
+    lab.crash(agent)
+    lab.let_pass(3.0)
+    assert tasks.phases() == ["gone"]
+    assert tasks.watcher.take_graphs() == {graph[0]: b""}
+
+
+def test_a_task_that_the_sites_keep_and_none_runs_is_shown_as_kept(lab: Lab) -> None:
+    tasks = Tasks(lab)
+    notice = lab.network.node().publisher(lab.keys.task("tidy~1"), Urgency.EVENT)
+    notice.put(encode(TaskRecord("tidy~1", 1, priority=3, wanted=iri("tidy"))))
+    lab.let_pass(1.0)
+    ((identity, body),) = tasks.watcher.bodies()
+    assert (identity, body["name"], body["phase"], body["priority"]) == ("tidy~1", "tidy", "kept", 3)
+    notice.put(encode(TaskRecord("tidy~1", 2, ended=True)))
+    lab.let_pass(1.0)
+    assert tasks.phases() == []
+
+
+def test_a_stranger_that_tells_of_tasks_without_end_is_heard_only_so_far(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(task_watcher, "MOST_TASKS", 5)
+    tasks = Tasks(lab)
+    stranger = lab.network.node()
+    for number in range(20):
+        publisher = stranger.publisher(lab.keys.notices(f"c{number}"), Urgency.SIGNAL)
+        publisher.put(encode(Notice(f"c{number}", 1, f"t~{number}", {"act": "stopped", "time": 1.0})))
+    lab.let_pass(1.0)
+    assert len(tasks.phases()) == 5
+
+
+def test_what_is_told_on_the_key_of_another_is_passed_over(lab: Lab) -> None:
+    tasks = Tasks(lab)
+    publisher = lab.network.node().publisher(lab.keys.notices("c1"), Urgency.SIGNAL)
+    for payload in (b"nonsense", encode(Notice("c2", 1, "t~1", {"act": "stopped"}))):
+        publisher.put(payload)
+    lab.let_pass(1.0)
+    assert (tasks.events, tasks.phases()) == ([], [])
