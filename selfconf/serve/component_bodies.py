@@ -39,7 +39,10 @@ def component_body(found: FoundAdvertisement, state: str) -> Body:
 
 
 def _port(port: Input | Output) -> Body:
-    body: Body = {"name": port.name, "signal": KNOWN_NAMES(port.signal)}
-    if isinstance(port, Output) and port.rate is not None:
-        body["rate"] = port.rate
-    return body
+    unit = port.unit if isinstance(port, Output) else None if port.condition is None else port.condition.unit
+    body: Body = {"name": port.name, "signals": list(map(KNOWN_NAMES, port.signals))}
+    if unit is not None:
+        body["unit"] = KNOWN_NAMES(unit)
+    if isinstance(port, Input):
+        return {**body, "optional": True} if port.optional else body
+    return body if port.rate is None else {**body, "rate": port.rate}

@@ -1,4 +1,4 @@
-"""The tasks of an ecology, followed from a bus: by lives of configurators, by their notices, and by what they answer."""
+"""The tasks of an ecology, followed from a bus: by the lives, the notices and the answers of their configurators."""
 
 from __future__ import annotations
 

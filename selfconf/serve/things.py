@@ -33,7 +33,8 @@ def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
         **_SECURITY,
         "properties": {
             port.name: {
-                "@type": KNOWN_NAMES(port.signal).strip("<>"),
+                **({"@type": [KNOWN_NAMES(signal).strip("<>") for signal in port.signals]} if port.signals else {}),
+                **({} if port.unit is None else {"unit": str(port.unit)}),
                 "readOnly": True,
                 "observable": True,
                 "forms": [
@@ -53,7 +54,8 @@ def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
     }
     if profile.inputs:
         description["sc:hasInput"] = [
-            {"sc:name": port.name, "sc:signalType": {"@id": str(port.signal)}} for port in profile.inputs
+            {"sc:name": port.name, "sc:signalType": [{"@id": str(signal)} for signal in port.signals]}
+            for port in profile.inputs
         ]
     if profile.parameters:
         description["sc:hasParameter"] = [

@@ -8,7 +8,7 @@ from tests.serve.shown import found
 
 def test_a_component_is_told_with_its_ports_parameters_and_places() -> None:
     control = component_body(found("control"), "dormant")
-    assert control["inputs"][0] == {"name": "localize", "signal": "rob:Odometry2D"}
+    assert control["inputs"][0] == {"name": "localize", "signals": ["rob:Odometry2D"]}
     assert control["parameters"] == [{"name": "goal", "type": "rob:BehaviouralGoal"}]
     tracker = component_body(found("tracker"), "alive")
     assert (tracker["places"], tracker["preference"], tracker["shareable"]) == (["living-room"], 10.0, True)

@@ -23,7 +23,7 @@ def test_an_output_is_a_property_and_fail_an_event() -> None:
     thing = thing_description(found("tracker").advertisement.profile, keys)
     assert (thing["id"], thing["title"]) == (iri("person-tracker"), "person-tracker")
     pose = thing["properties"]["pose"]
-    assert (pose["@type"], pose["readOnly"], pose["observable"]) == ("rob:PlanarPose2D", True, True)
+    assert (pose["@type"], pose["readOnly"], pose["observable"]) == (["rob:PlanarPose2D"], True, True)
     assert pose["forms"][0]["href"] == f"zenoh:{keys.output(iri('person-tracker'), 'pose')}"
     assert thing["events"]["fail"]["forms"][0]["href"] == f"zenoh:{keys.fail(iri('person-tracker'))}"
 

@@ -64,7 +64,7 @@ def test_it_sees_what_is_advertised_where_it_is_and_whether_it_lives(lab: Lab) -
     tracker = seen.components[iri("person-tracker")]
     assert (tracker["site"], tracker["state"], tracker["places"]) == ("living-room", "alive", ["living-room"])
     assert tracker["types"] == ["rob:PositionSensor"]
-    assert tracker["outputs"] == [{"name": "pose", "signal": "rob:PlanarPose2D"}]
+    assert tracker["outputs"] == [{"name": "pose", "signals": ["rob:PlanarPose2D"]}]
     assert b"PositionSensor" in seen.graphs[iri("person-tracker")]
     lab.crash("tracker")
     lab.let_pass(3.0)

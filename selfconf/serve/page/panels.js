@@ -166,7 +166,7 @@ export function showDetail(model, iri, select, chooseTask) {
   const { held, lost } = model.claims(), holders = held.get(iri) ?? [], loss = lost.get(iri);
   const state = loss ? "lost" : model.statesThen().get(iri) ?? one?.state ?? "not advertised";
   const dt = (name, ...values) => (values.flat().filter(Boolean).length ? [h("dt", { text: name }), h("dd", {}, ...values.flat())] : []);
-  const ports = (list) => list.map((port) => h("div", {}, h("b", { text: port.name }), h("span", { class: "soft", text: ` ${port.signal}${port.rate ? ` · ${port.rate} Hz` : ""}` })));
+  const ports = (list) => list.map((port) => h("div", {}, h("b", { text: port.name }), h("span", { class: "soft", text: ` ${[port.signals.join(", "), port.unit, port.rate && `${port.rate} Hz`, port.optional && "optional"].filter(Boolean).join(" · ")}` })));
   const facts = one ? [
     ...dt("state", h("span", { class: "with-state" }, h("span", { class: `state ${state.replaceAll(" ", "-")}` }), loss ? `lost: ${why(loss)}` : state)),
     ...dt("held by", holders.map((task) => h("button", { type: "button", class: "link", text: task.name, onclick: () => chooseTask(task.id) }))),
