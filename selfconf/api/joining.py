@@ -130,13 +130,22 @@ class Joining:
     def _look(self) -> None:
         if self._file is None:
             return
+        done = self._in_order() or self._looked_in_turn()
+        if not done or not self.bus.link:
+            self._look_again = self.bus.later(LOOK_AGAIN, self._look)
+
+    def _in_order(self) -> bool:
+        """Whether there is nothing to change; a turn is not taken then, as one that is stopped in it keeps it."""
+        return bool(self.bus.link) if not self.bus.endpoint else self._file is None or rendezvous.relays(self._file)
+
+    def _looked_in_turn(self) -> bool:
+        """Give or take the place of the one that relays, if it is this site's turn; whether it was."""
         with rendezvous.turn(seconds=0.0) as mine:
             if mine and self.bus.endpoint:
                 self._give_place()
             elif mine and not self.bus.link:
                 self._take_place()
-        if not mine or not self.bus.link:
-            self._look_again = self.bus.later(LOOK_AGAIN, self._look)
+        return mine
 
     def _give_place(self) -> None:
         """Relay no more, if another site has taken the place meanwhile."""

@@ -41,7 +41,7 @@ def run(given: argparse.Namespace) -> int:
     """0 when it is ended by Ctrl-C or SIGTERM."""
     missing = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
     if missing:
-        raise InstallationError(f"{' and '.join(missing)} is missing; install the extra: pip install 'selfconf[serve]'")
+        raise InstallationError(f"{' and '.join(missing)} is missing; install the extra `serve`")
     from selfconf.serve import serve_ecology
 
     with joined(given) as ecology:

@@ -411,7 +411,7 @@ CODES: tuple[Code, ...] = (
         "Recruits are components outside of the roles; they feed what no role feeds.",
         f'{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits "yes" .',
         f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits true .",
-        ("Recruits",),
+        ("Recruits", "RecruitsDescribed"),
     ),
     Code(
         "SC-C01", "A configuration has exactly one template, and at most one task, epoch and time.",

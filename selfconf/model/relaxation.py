@@ -79,20 +79,6 @@ class AskForFewer:
 
 
 @dataclass(frozen=True, slots=True)
-class AskForOne:
-    """A role that asks for no component, though others need its output, makes the task possible by asking for one."""
-
-    code: ClassVar[str] = "ask-for-one"
-    role: IRI
-    minimum: ClassVar[int] = 1
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component to be changed is described, if that is known."""
-
-    def __str__(self) -> str:
-        return f"let the role {self.role.short} ask for one (sc:minCount 1)"
-
-
-@dataclass(frozen=True, slots=True)
 class AddInteraction:
     """One more interaction makes the task possible."""
 
@@ -126,4 +112,4 @@ class AcceptNearMiss:
         return f"let {self.near.component.short} play {self.near.role.short}, although {self.near}"
 
 
-Relaxation = AddComponents | AskForFewer | AskForOne | AddInteraction | AcceptNearMiss
+Relaxation = AddComponents | AskForFewer | AddInteraction | AcceptNearMiss

@@ -6,7 +6,7 @@
         advertisement = "thermostat.ttl"
 
         def received(self, port, signal):
-            self.emit("heating", {"on": signal["celsius"] < 20.0})
+            self.emit("heating", {"on": signal["temperature"] < 20.0})
 
     if __name__ == "__main__":
         main(Thermostat)

@@ -335,12 +335,12 @@ class InputSubscription:
         began = self._bus.now()
 
         def look() -> None:
-            heard = max(self._heard_at, began)
-            left = heard + (usual if self._heard_at >= began else seconds) - self._bus.now()
+            allowed = usual if self._heard_at >= began else seconds
+            left = max(self._heard_at, began) + allowed - self._bus.now()
             if left > 0:
                 self._deadline = self._bus.later(left, look)
                 return
-            self._events.silent(self._wire, seconds)
+            self._events.silent(self._wire, allowed)
             self._lose(self._heard_at)
             self._expect()
 

@@ -33,7 +33,6 @@ from selfconf.model.relaxation import (
     AddInteraction,
     Addition,
     AskForFewer,
-    AskForOne,
     Relaxation,
 )
 from selfconf.model.requirement import InputFed, RolePlayed
@@ -85,7 +84,6 @@ def relaxations(
     small = _reduced(problem, {miss.component for miss, _ in near_misses})
     accepted = itertools.starmap(AcceptNearMiss, near_misses)
     yield from (one for one in accepted if _possible(relaxed_by(small, one), budget))
-    yield from (one for one in _asked_for_one(problem, refused) if _possible(relaxed_by(problem, one), budget))
     added = _additions(small, budget)
     if added is not None:
         yield added
@@ -314,15 +312,6 @@ def _with_values(problem: Problem, asked: AddComponents, playing: list[list[Cand
 def _unfed(refused: Refusal) -> list[InputFed]:
     """Return the inputs of which the reasons say that no output feeds them."""
     return [r for reason in refused.reasons for r in reason.requirements if isinstance(r, InputFed)]
-
-
-def _asked_for_one(problem: Problem, refused: Refusal) -> Iterator[AskForOne]:
-    """Yield a relaxation for each role that could feed what is unfed but asks for none."""
-    index = {role.iri: number for number, role in enumerate(problem.roles)}
-    sources = dict.fromkeys(source for need in _unfed(refused) for source in problem.sources[index[need.role]])
-    for role in [problem.roles[source] for source in sources][:TRIALS]:
-        if role.minimum == 0 and role.maximum != 0:
-            yield AskForOne(role.iri)
 
 
 def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction]:

@@ -9,7 +9,7 @@ messages. The programs are the real ones: sites, configurators and the runtime o
     def test_it_heats_when_it_is_cold():
         bench = ComponentBench(Thermostat())
         bench.start()
-        bench.send("temperature", {"celsius": 15.0})
+        bench.send("temperature", {"temperature": 15.0})
         assert bench.emitted["heating"] == [{"on": True}]
 """
 

@@ -128,4 +128,4 @@ def test_without_the_extra_it_says_what_to_install(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    assert run(capsys, "serve").is_one_sentence("pip install 'selfconf[serve]'")
+    assert run(capsys, "serve").is_one_sentence("install the extra `serve`")

@@ -15,7 +15,6 @@ from selfconf.model.relaxation import (
     AddInteraction,
     Addition,
     AskForFewer,
-    AskForOne,
     Relaxation,
 )
 from tests.lab import iri
@@ -39,7 +38,6 @@ WORDED: list[tuple[Relaxation, str]] = [
     ),
     (AskForFewer(EYE, 0), "let the role eye be optional (sc:minCount 0)"),
     (AskForFewer(EYE, 2), "let the role eye ask for 2 (sc:minCount 2)"),
-    (AskForOne(EYE), "let the role eye ask for one (sc:minCount 1)"),
     (AddInteraction(EYE, MIND), "let the role eye feed the role mind (sc:feeds)"),
     (
         AcceptNearMiss(NearMiss(EYE, iri("cap"), WrongType(iri("Eye"))), Candidate(Profile(iri("cap")))),
@@ -56,7 +54,6 @@ def test_every_relaxation_is_worded_and_has_a_code_and_a_role() -> None:
         "add-components",
         "add-interaction",
         "ask-for-fewer",
-        "ask-for-one",
     ]
 
 

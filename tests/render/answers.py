@@ -26,7 +26,6 @@ from selfconf.model.relaxation import (
     AddInteraction,
     Addition,
     AskForFewer,
-    AskForOne,
     Relaxation,
 )
 from selfconf.model.term import IRI, Literal
@@ -63,7 +62,6 @@ REASONS: tuple[Reason, ...] = (
 REPAIRS: tuple[Relaxation, ...] = (
     AddComponents((Addition(SOURCE, 2, (Output("time", (term("Text"),)),)),)),
     AskForFewer(SOURCE, 0),
-    AskForOne(SPARE),
     AddInteraction(SOURCE, SINK, place=Place("tell.ttl", 7)),
     AcceptNearMiss(MISS, Candidate(Profile(LAMP))),
 )

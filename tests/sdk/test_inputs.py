@@ -87,6 +87,7 @@ def test_an_output_that_promised_a_rate_and_stops_is_reported_and_again_as_long_
     assert not silence(stage)
     stage.let_pass(0.1)
     assert silence(stage) == [(TRACKER, "")]
+    assert stage.fails[-1].detail == f"no signal on 'pose' for {PATIENCE * 0.1:.2f} s"
     stage.let_pass(PATIENCE * 0.1)
     assert len(silence(stage)) == 2
     tracker.component.emit("pose", 2)

@@ -10,7 +10,7 @@ import pytest
 
 import selfconf
 from selfconf.model.refusal import Refusal
-from selfconf.model.relaxation import AcceptNearMiss, AddComponents, AddInteraction, AskForFewer, AskForOne, Relaxation
+from selfconf.model.relaxation import AcceptNearMiss, AddComponents, AddInteraction, AskForFewer, Relaxation
 from tests.effort import examples
 
 PREFIXES = """\
@@ -80,7 +80,7 @@ def followed(repair: Relaxation, template: str, about: dict[str, str]) -> tuple[
     elif isinstance(repair, AddInteraction):
         source, sink = re.findall(r"the role (\w+)", said)
         template += f"\n:{source} sc:feeds :{sink} ."
-    elif isinstance(repair, AskForFewer | AskForOne):
+    elif isinstance(repair, AskForFewer):
         role, minimum = re.findall(r"the role (\w+).*sc:minCount (\d+)", said)[0]
         about[role] = re.sub(r" ; sc:minCount \d+", "", about[role]).removesuffix(" .") + f" ; sc:minCount {minimum} ."
     return template, about, new

@@ -11,7 +11,7 @@ from hypothesis import given
 from selfconf.model.obstacle import NotAmong, PropertyUnmet
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
-from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition, AskForOne
+from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition
 from selfconf.search import relaxations
 from selfconf.search.problem import Problem
 from selfconf.search.relaxations import relaxed_by, wanted_of, with_relaxations
@@ -38,12 +38,6 @@ def test_every_relaxation_works_and_adds_as_few_components_as_possible(problem: 
         assert one.code
         assert one.role in {role.iri for role in problem.roles}
         assert _possible(relaxed_by(problem, one)), one
-    asked = {one.role for one in found if isinstance(one, AskForOne)}
-    assert asked == {
-        role.iri
-        for role in problem.roles
-        if role.minimum == 0 and role.maximum != 0 and _possible(relaxed_by(problem, AskForOne(role.iri)))
-    }
     added = [one for one in found if isinstance(one, AddComponents)]
     for some in [one.additions for one in added]:
         for place, addition in enumerate(some):
@@ -88,17 +82,6 @@ def test_a_near_miss_that_is_the_first_of_its_class_elsewhere_is_distinguished()
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
     assert isinstance(with_relaxations(given_, refused, [(near, Candidate(eyes[0]))]).repairs[0], AcceptNearMiss)
-
-
-def test_an_optional_role_that_is_needed_may_be_asked_for_one() -> None:
-    given_ = problem(
-        {"sonar": [component("ring", outputs="s:Scan")], "control": [component("cap", "s:Scan")]},
-        "sonar>control",
-        {"sonar": (0, 1)},
-    )
-    refused = first.search(given_)
-    assert isinstance(refused, Refusal)
-    assert str(with_relaxations(given_, refused).repairs[0]) == "let the role sonar ask for one (sc:minCount 1)"
 
 
 def test_a_role_that_asks_for_too_many_may_ask_for_fewer() -> None:
@@ -160,17 +143,6 @@ def test_a_link_by_name_is_not_the_plain_one() -> None:
         assert "let the role eye feed the role mind (sc:feeds)" in [
             str(one) for one in with_relaxations(given_, refused).repairs
         ]
-
-
-def test_a_role_that_allows_no_component_is_not_advised_to_ask_for_one() -> None:
-    given_ = problem(
-        {"sonar": [component("ring", outputs="s:Scan")], "control": [component("cap", "s:Scan")]},
-        "sonar>control",
-        {"sonar": (0, 0)},
-    )
-    refused = first.search(given_)
-    assert isinstance(refused, Refusal)
-    assert not [one for one in with_relaxations(given_, refused).repairs if isinstance(one, AskForOne)]
 
 
 def test_a_role_that_asks_for_far_too_many_is_advised_to_ask_for_those_there_are() -> None:

@@ -81,8 +81,9 @@ class Partitioner:
             compile_role(self.document, role.iri, tuple(s.type for s in role.settings), given.task.bindings, self.free)
             for role in given.task.template.roles
         )
+        unbound = {iri: parameter.name for iri, parameter in self._parameters.items() if iri in self.free}
         self.suppliers = {
-            number: suppliers_of(self.document, role.iri, given.task.bindings)
+            number: suppliers_of(self.document, role.iri, given.task.bindings, unbound)
             for number, role in enumerate(given.task.template.roles)
             if role.recruits
         }

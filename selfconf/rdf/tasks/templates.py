@@ -190,6 +190,11 @@ class _Reader(DocumentReader):
             problem = f"sc:recruits of the role {worded(role)} is true, false, or one shape of its suppliers"
             raise self.mistake(problem, role, SC.recruits, values[-1])
         if not isinstance(value, Literal):
+            if not self.document.about(value):
+                problem = (
+                    f"the role {worded(role)} recruits who conforms to {worded(value)}, which is no shape of this file"
+                )
+                raise self.mistake(problem, role, SC.recruits, value)
             wrong = misfit(self.document, shape_triples(self.document, value), self._variables)
             if wrong is not None:
                 problem = f"the shape of what the role {worded(role)} recruits is not well-formed: {wrong[1]}"

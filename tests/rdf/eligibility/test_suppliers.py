@@ -22,10 +22,13 @@ ECOLOGY = (
 )
 
 
-def recruited(recruits: str) -> list[str]:
+def recruited(recruits: str, **bound: str) -> list[str]:
     """The recruits of the answer, by their short names; nothing where there is no configuration."""
-    task = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :User ; sc:recruits {recruits} ."
-    answer = configure(template(PREFIXES + task), read(ECOLOGY))
+    task = (
+        f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :power-wanted . :r a sc:Role ; sh:class :User ;"
+        f' sc:recruits {recruits} . :power-wanted a sc:Parameter ; sc:name "wanted" .'
+    )
+    answer = configure(template(PREFIXES + task).bind(**bound), read(ECOLOGY))
     assert isinstance(answer, Configuration | Refusal)
     return [one.short for one in answer.recruits] if isinstance(answer, Configuration) else []
 
@@ -52,8 +55,20 @@ def test_only_who_conforms_is_recruited(recruits: str, found: list[str]) -> None
         ('"yes"', "true, false, or one shape"),
         ("true , false", "true, false, or one shape"),
         ("[ sh:pattern 5 ]", "well-formed"),
+        (":Certfied", "no shape of this file"),
     ],
 )
 def test_what_says_neither_is_a_mistake_of_the_template(recruits: str, problem: str) -> None:
     with pytest.raises(TemplateError, match=problem):
         recruited(recruits)
+
+
+def test_a_parameter_in_the_shape_of_suppliers_has_to_have_a_value() -> None:
+    shape = "[ sh:property [ sh:path :power ; sh:in ( :power-wanted ) ; sh:minCount 1 ] ]"
+    with pytest.raises(TemplateError, match="mentions wanted, which has no value; bind wanted"):
+        recruited(shape)
+    assert recruited(shape, wanted="3") == []
+    assert recruited(shape.replace("sh:in ( :power-wanted )", "sh:in ( :power-wanted 9 )"), wanted="3") == [
+        "base",
+        "good",
+    ]
