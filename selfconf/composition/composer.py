@@ -51,6 +51,7 @@ class Strategy(str, Enum):
 def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
     """Whether under a hierarchy an output of some candidate matches an input of another type."""
     profiles = [candidate.profile for candidates in partition.candidates for candidate in candidates]
+    profiles += [recruit.profile for recruit in partition.recruits]
     wanted = {signal for profile in profiles for port in profile.inputs for signal in port.signals}
     offered = {signal for profile in profiles for port in profile.outputs for signal in port.signals}
     return any(not wanted.isdisjoint(hierarchy.superclasses(signal) - {signal}) for signal in offered)
@@ -157,9 +158,8 @@ class Composer:
             other = first_recruited(problem, steps) if whole is None else whole[0]
             if other is None:
                 roles = tuple(role.iri for role in problem.roles)
-                yield Refusal(
-                    self.task.task.template.iri, (Conflict(roles, requirements=tuple(map(RolePlayed, roles))),)
-                )
+                conflict = Conflict(roles, requirements=tuple(map(RolePlayed, roles)))
+                yield Refusal(self.task.task.template.iri, (conflict,), irreducible=False, smallest=False)
             elif isinstance(answer, Optimum) and isinstance(other, Configuration):
                 # Where these players have no recruits, others have, of whom nothing is known but that they come first.
                 found_for = answer if whole is not None else replace(answer, proved=False)

@@ -169,7 +169,9 @@ class Field:
 _SHAPES = ("property", "node", "not", "qualifiedValueShape")
 _LISTS = ("and", "or", "xone", "in", "languageIn", "ignoredProperties", "alternativePath")
 _PATHS = ("path", "inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
-SHAPE_VALUED = frozenset(SH[name] for name in (*_SHAPES, "and", "or", "xone"))
+LISTS_OF_SHAPES = frozenset(SH[name] for name in ("and", "or", "xone"))
+"""The predicates of SHACL Core whose values are lists of shapes."""
+SHAPE_VALUED = LISTS_OF_SHAPES | {SH[name] for name in _SHAPES}
 """The predicates of SHACL Core whose values are shapes, or lists of shapes."""
 PERMITTED_IN_SHAPES = frozenset((TYPE, RDF.first, RDF.rest)).union(
     SH[name]

@@ -17,7 +17,8 @@ of its required inputs is matched, and the free parameters still have a value. A
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import replace
 from heapq import heappop, heappush
 from typing import NamedTuple
 
@@ -191,13 +192,16 @@ class Problem:
     def solved(self, playing: Playing, running: Configuration | None = None) -> Configuration:
         """Return the configuration that a solution stands for, extended by every further candidate that fits.
 
-        With a running configuration, components that play the same role there are tried before all others.
+        With a running configuration, components that play the same role there are tried before all others. Where a role
+        recruits it is not extended: recruits come first, and further candidates afterwards (`with_further_players`).
         """
         extended = [list(role) for role in playing]
         values = self.open_values
         for role in extended:
             for candidate in role:
                 values = tuple(v & allowed for v, allowed in zip(values, candidate.admits, strict=True))
+        if any(role.recruits for role in self.roles):
+            return self.configuration(extended, values)
         if running is not None:
             played = {a.role: a.components for a in running.assignments}
             kept = [
@@ -207,15 +211,47 @@ class Problem:
             values = self._extend(extended, values, kept)
         return self.configuration(extended, self._extend(extended, values, self.candidates))
 
-    def _extend(self, playing: list[list[Candidate]], values: tuple[int, ...], candidates: Playing) -> tuple[int, ...]:
-        """Add every one of some candidates that fits, the first one first; return the values left to the variables."""
+    def with_further_players(self, configuration: Configuration) -> Configuration:
+        """Return a configuration that has its recruits, extended by every further candidate that fits.
+
+        No recruit becomes a player; and where a further candidate would feed what recruits feed, none is added.
+        """
+        playing = [
+            [c for one in a.components for c in candidates if c.profile.component == one]
+            for a, candidates in zip(configuration.assignments, self.candidates, strict=True)
+        ]
+        values = self.open_values
+        for candidate in (candidate for role in playing for candidate in role):
+            values = tuple(v & allowed for v, allowed in zip(values, candidate.admits, strict=True))
+        values = self._extend(playing, values, self.candidates, configuration.recruits)
+        whole = replace(self.configuration(playing, values), recruits=configuration.recruits)
+        brought = [c for c in configuration.connections if not {c.source, c.sink}.isdisjoint(configuration.recruits)]
+        if not {(c.sink, c.input) for c in brought}.isdisjoint((c.sink, c.input) for c in whole.connections):
+            return configuration
+        order = {component: place for place, component in enumerate(whole.components)}
+        connections = sorted(
+            (*whole.connections, *brought), key=lambda c: (order[c.source], c.output, order[c.sink], c.input)
+        )
+        return replace(whole, connections=tuple(connections))
+
+    def _extend(
+        self,
+        playing: list[list[Candidate]],
+        values: tuple[int, ...],
+        candidates: Playing,
+        besides: Iterable[IRI] = (),
+    ) -> tuple[int, ...]:
+        """Add every one of some candidates that fits, the first one first; return the values left to the variables.
+
+        The components `besides` play no role and may not.
+        """
         closed = {position for position, _ in self.unvalued}
         open_roles = [
             p
             for p, role in enumerate(self.roles)
             if p not in closed and (role.maximum is None or len(playing[p]) < role.maximum)
         ]
-        return _Extension(self, playing, values, candidates).over(open_roles) if open_roles else values
+        return _Extension(self, playing, values, candidates, besides).over(open_roles) if open_roles else values
 
     def configuration(self, playing: Playing, values: tuple[int, ...]) -> Configuration:
         """Return <B, S> for candidates that play the roles: S is every matching pair of ports of an interaction."""
@@ -281,10 +317,15 @@ class _Extension:
     """
 
     def __init__(
-        self, problem: Problem, playing: list[list[Candidate]], values: tuple[int, ...], candidates: Playing
+        self,
+        problem: Problem,
+        playing: list[list[Candidate]],
+        values: tuple[int, ...],
+        candidates: Playing,
+        besides: Iterable[IRI],
     ) -> None:
         self.problem, self.playing, self.values, self.candidates = problem, playing, values, candidates
-        self.taken = {candidate.profile.component for role in playing for candidate in role}
+        self.taken = {candidate.profile.component for role in playing for candidate in role}.union(besides)
         self.offered = [{candidate.profile.outputs for candidate in role} for role in playing]
         self.trying: list[tuple[int, int]] = []
         """Roles and numbers of candidates, as a heap: the first one is tried next."""

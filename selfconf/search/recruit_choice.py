@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from heapq import heappop, heappush
 
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.partition import Recruit
-from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.profile import Input, Output, Profile, WantedSignal
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
+
+Suppliers = tuple[int, ...]
+"""The numbers of the recruits that could feed an input."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +36,16 @@ class RecruitChoice:
         outputs = [output for _, profile in self.players.values() for output in profile.outputs]
         self.usable = problem.supply.usable(outputs, without=self.players.keys())
         self._by_signal = self._suppliers_by_signal()
+        self._known: dict[tuple[WantedSignal, int | None], Suppliers] = {}
         self.wanted = list(self._wanted())
         self.needs = dict(self._needs_of_recruits())
         """For each recruit that matters, the inputs that other recruits have to feed."""
+        self._feeds = self._needs_by_supplier()
+        self._consumers: dict[int, list[int]] = {}
+        """For each choice of suppliers, by identity, the recruits that need one of them."""
+        for number, needs in self.needs.items():
+            for need in needs:
+                self._consumers.setdefault(id(need.suppliers), []).append(number)
 
     @property
     def possible(self) -> bool:
@@ -50,15 +61,27 @@ class RecruitChoice:
         return found
 
     def _suppliers(self, port: Input, role: int | None = None) -> tuple[int, ...]:
-        """The usable recruits that could feed an input, of a player of a role or of a recruit."""
-        pairs = (pair for signal in port.signals for pair in self._by_signal.get(signal, ()))
-        found = {
-            number
-            for number, output in pairs
-            if (port.condition is None or port.condition.met_by(output))
-            and (role is None or role in self.recruits[number].roles)
-        }
-        return tuple(sorted(found))
+        """The usable recruits that could feed an input, of a player of a role or of a recruit; one tuple for equals."""
+        key = port.wanted, role
+        if key not in self._known:
+            pairs = (pair for signal in port.signals for pair in self._by_signal.get(signal, ()))
+            found = {
+                number
+                for number, output in pairs
+                if (port.condition is None or port.condition.met_by(output))
+                and (role is None or role in self.recruits[number].roles)
+            }
+            self._known[key] = tuple(sorted(found))
+        return self._known[key]
+
+    def _needs_by_supplier(self) -> dict[int, list[Suppliers]]:
+        """For each recruit the choices of suppliers that it is among."""
+        found: dict[int, list[Suppliers]] = {}
+        every = (need.suppliers for need in (*self.wanted, *(one for needs in self.needs.values() for one in needs)))
+        for suppliers in {id(some): some for some in every}.values():
+            for number in suppliers:
+                found.setdefault(number, []).append(suppliers)
+        return found
 
     def _wanted(self) -> Iterator[UnfedInput]:
         """The required inputs of players that no role feeds."""
@@ -96,15 +119,26 @@ class RecruitChoice:
 
     def placed(self, chosen: Collection[int]) -> list[int]:
         """The chosen recruits that are fed without a cycle among them, each after those that feed it."""
-        found: dict[int, None] = {}
-        waiting = self.ordered(chosen)
-        while waiting:
-            ready = [n for n in waiting if all(any(s in found for s in need.suppliers) for need in self.needs[n])]
-            if not ready:
-                break
-            found[ready[0]] = None
-            waiting.remove(ready[0])
-        return list(found)
+        place = {number: at for at, number in enumerate(self.ordered(chosen))}
+        waiting: dict[int, list[int]] = {}
+        lacking: dict[int, int] = {}
+        for number in place:
+            choices = {id(need.suppliers) for need in self.needs[number]}
+            lacking[number] = len(choices)
+            for choice in choices:
+                waiting.setdefault(choice, []).append(number)
+        order = list(place)
+        ready = [place[number] for number, count in lacking.items() if not count]
+        found: list[int] = []
+        while ready:
+            number = order[heappop(ready)]
+            found.append(number)
+            for suppliers in self._feeds.get(number, ()):
+                for fed in waiting.pop(id(suppliers), ()):
+                    lacking[fed] -= 1
+                    if not lacking[fed]:
+                        heappush(ready, place[fed])
+        return found
 
     def sufficient(self, chosen: Collection[int]) -> bool:
         """Whether chosen recruits feed all needs, their own included."""
@@ -131,9 +165,18 @@ class RecruitChoice:
         left = self.ordered(chosen)
         for number in reversed(left):
             fewer = [other for other in left if other != number]
-            if self.sufficient(fewer):
+            if not self._only_supplier(number, set(fewer)) and self.sufficient(fewer):
                 left = fewer
         return left
+
+    def _only_supplier(self, number: int, others: set[int]) -> bool:
+        """Whether a need of a player, or of others that are chosen, has no supplier but this recruit."""
+        wanted = {id(need.suppliers) for need in self.wanted}
+        return any(
+            others.isdisjoint(suppliers)
+            and (id(suppliers) in wanted or not others.isdisjoint(self._consumers.get(id(suppliers), ())))
+            for suppliers in self._feeds.get(number, ())
+        )
 
     def configuration(self, chosen: Collection[int]) -> Configuration:
         """The configuration with chosen recruits; each input has the first source, players coming before recruits."""

@@ -49,7 +49,7 @@ def recruited(
     if not choice.possible:
         return None
     chosen, proved = fewest(choice, Budget(steps))
-    return choice.configuration(chosen), proved
+    return problem.with_further_players(choice.configuration(chosen)), proved
 
 
 def first_recruited(problem: Problem, steps: int = RECRUIT_STEPS) -> Configuration | Undecided | None:

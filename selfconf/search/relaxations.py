@@ -24,7 +24,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
-from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition
+from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss
 from selfconf.model.profile import Input, Output, Ports, Profile, WantedSignal
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.relaxation import (
@@ -138,14 +138,14 @@ def _reduced(problem: Problem, distinguished: Collection[IRI]) -> Problem:
         tuple(candidates[option.number] for option in options)
         for candidates, options in zip(problem.candidates, kept, strict=True)
     )
-    return Problem(problem.task, Partition(candidates, problem.variables), problem.hierarchy)
+    return Problem(problem.task, replace(problem.partition, candidates=candidates), problem.hierarchy)
 
 
 def _with_candidates(problem: Problem, more: dict[IRI, list[Candidate]]) -> Problem:
     candidates = tuple(
         (*known, *more.get(role.iri, ())) for role, known in zip(problem.roles, problem.candidates, strict=True)
     )
-    return Problem(problem.task, Partition(candidates, problem.variables), problem.hierarchy)
+    return Problem(problem.task, replace(problem.partition, candidates=candidates), problem.hierarchy)
 
 
 def _newcomer(problem: Problem, role: IRI, number: int, outputs: tuple[Output, ...]) -> Candidate:
@@ -244,12 +244,17 @@ def _helpful(problem: Problem, budget: Budget) -> list[int]:
     return [role for role in found if role in played]
 
 
+def _in_order(added: tuple[int, tuple[Output, ...]]) -> tuple[int, str]:
+    """Return what additions are sorted by: the role, then the outputs, some of which say more than others."""
+    return added[0], repr(added[1])
+
+
 def _asked(problem: Problem, added: Added) -> AddComponents:
     """Return additions as a relaxation, those of a role and of equal outputs as one."""
     return AddComponents(
         tuple(
             Addition(problem.roles[role].iri, count, outputs, _named(problem, role) & {o.name for o in outputs})
-            for (role, outputs), count in sorted(added.items(), key=lambda one: one[0])
+            for (role, outputs), count in sorted(added.items(), key=lambda one: _in_order(one[0]))
         )
     )
 
@@ -262,7 +267,7 @@ def _named(problem: Problem, role: int) -> frozenset[str]:
 
 def _trimmed(problem: Problem, added: Added, playing: list[list[Candidate]], budget: Budget) -> AddComponents:
     """Return additions with only the outputs that are needed for a solution; `playing` is a solution with all."""
-    for one in sorted(added):
+    for one in sorted(added, key=_in_order):
         role, left = one
         for output in one[1]:
             fewer = tuple(other for other in left if other != output)

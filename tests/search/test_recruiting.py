@@ -180,6 +180,28 @@ def test_a_recruit_may_be_fed_by_the_player_that_it_feeds() -> None:
     assert {(c.source.short, c.sink.short) for c in found[0].connections} == {("user", "a"), ("a", "user")}
 
 
+def test_a_further_player_is_no_reason_to_do_without_a_recruit() -> None:
+    given_ = problem(
+        {"sink": [component("s", "i:S")], "rest": [component("mic", outputs="o:S")]}, counts={"rest": (0, 1)}
+    )
+    helped = with_recruits(given_, component("mic", outputs="o:S"))
+    found = recruited(helped, first.search(helped))
+    assert found is not None
+    assert found[0].recruits == (iri("mic"),)
+    assert found[0].assignments[1].components == ()
+    assert not certificate.broken_conditions(helped.task, helped.partition, found[0])
+
+
+def test_a_further_player_joins_what_has_its_recruits() -> None:
+    given_ = problem({"sink": [component("a", "i:S"), component("b")]}, counts={"sink": (1, None)})
+    helped = with_recruits(given_, component("mic", outputs="o:S"))
+    found = recruited(helped, first.search(helped))
+    assert found is not None
+    assert found[0].assignments[0].components == (iri("a"), iri("b"))
+    assert found[0].recruits == (iri("mic"),)
+    assert not certificate.broken_conditions(helped.task, helped.partition, found[0])
+
+
 def test_of_equally_few_recruits_those_that_run_are_kept() -> None:
     user = problem({"user": [component("user", "s:S")]})
     helped = with_recruits(user, component("a", "", "s:S"), component("b", "", "s:S"))

@@ -10,6 +10,7 @@ from hypothesis import given
 
 from selfconf.model.obstacle import NotAmong, PropertyUnmet
 from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.profile import Condition
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition
 from selfconf.search import relaxations
@@ -200,3 +201,18 @@ def test_an_addition_names_the_value_that_the_others_leave() -> None:
     assert isinstance(refused, Refusal)
     words = [str(one) for one in with_relaxations(given_, refused).repairs]
     assert words[0] == "add one more component for the role sonar, with robot pippi"
+
+
+def test_additions_that_differ_in_what_they_state_are_put_in_order() -> None:
+    inches = component("b", "i:S")
+    port = inches.inputs[0]._replace(condition=Condition(unit=iri("IN")))
+    given_ = problem(
+        {
+            "a": [component("x")],
+            "b": [component("c", "i:S j:T"), replace(inches, ports=inches.ports._replace(inputs=(port,)))],
+        },
+        "a.o>b",
+    )
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    assert with_relaxations(given_, refused).repairs

@@ -4,10 +4,15 @@
 `Advertisement` is what is said about one component, as a profile and as triples; a `MalformedAdvertisement` is one that
 does not conform, and why. `LoadedAdvertisement` also shares its statements with others. What an advertisement may say
 stands in `selfconf.rdf.permitted_fields`; the shape that an input accepts is read by `accepted_shape` and
-`statements_of_shape`, which raise `ShapeNotAccepted`.
+`statements_of_shape`, which raise `ShapeNotAccepted`; `shape_text` is what says the same of a part of it.
 """
 
-from selfconf.rdf.advertisements.accepted_shapes import ShapeNotAccepted, accepted_shape, statements_of_shape
+from selfconf.rdf.advertisements.accepted_shapes import (
+    ShapeNotAccepted,
+    accepted_shape,
+    shape_text,
+    statements_of_shape,
+)
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement
 from selfconf.rdf.advertisements.loader import LoadedAdvertisement, read_advertisements
 from selfconf.rdf.advertisements.segments import SegmentCache
@@ -20,5 +25,6 @@ __all__ = [
     "ShapeNotAccepted",
     "accepted_shape",
     "read_advertisements",
+    "shape_text",
     "statements_of_shape",
 ]

@@ -14,13 +14,14 @@ from dataclasses import replace
 from operator import attrgetter
 from typing import NamedTuple, TypeVar
 
-from selfconf.errors import TemplateError
+from selfconf.errors import AuthorError, TemplateError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.partition import Candidate, Partition, Recruit
 from selfconf.model.profile import Input, Output, Ports, Profile, shared_ports
 from selfconf.model.template import Template
 from selfconf.model.term import IRI, Term, sort_key
+from selfconf.rdf.advertisements import shape_text
 from selfconf.rdf.eligibility.compiler import compile_role
 from selfconf.rdf.eligibility.node_paths import WalkedStatements
 from selfconf.rdf.shacl import misfit
@@ -36,60 +37,114 @@ _PATH = "urn:selfconf:acceptance:path:"
 _C = TypeVar("_C", Candidate, Recruit)
 Port = tuple[IRI, str]
 """A component, and the name of an output of it."""
+Looks = tuple[tuple[tuple[Term, ...], ...], frozenset[IRI]]
+"""What a shape sees of an output: where each of its paths leads, and the types."""
 Seen = Callable[[IRI], Sequence[Triple]]
 """For a component what a shape sees of its advertisement."""
+
+
+class SeenOutputs:
+    """The outputs of an ecology as shapes see them; each is looked at once for each path, by however many shapes."""
+
+    def __init__(self, seen: Seen, hierarchy: Hierarchy) -> None:
+        self._seen, self._hierarchy = seen, hierarchy
+        self._triples: dict[IRI, Sequence[Triple]] = {}
+        self._statements: dict[IRI, WalkedStatements] = {}
+        self._values: dict[tuple[str, Port], tuple[Term, ...]] = {}
+        self._alike: dict[tuple[tuple[str, ...], int], dict[Looks, list[Port]]] = {}
+
+    def triples(self, component: IRI) -> Sequence[Triple]:
+        """What a shape sees of an advertisement, with the same blank nodes each time."""
+        if component not in self._triples:
+            self._triples[component] = self._seen(component)
+        return self._triples[component]
+
+    def node(self, port: Port) -> Node:
+        """The node of an output."""
+        return _node(self.triples(port[0]), *port)
+
+    def alike(self, paths: Sequence[tuple[str, Document, Term]], outputs: Sequence[Port]) -> dict[Looks, list[Port]]:
+        """Outputs by what some paths, each with its text, lead to from them, and by their types."""
+        key = tuple(text for text, _, _ in paths), id(outputs)
+        if key not in self._alike:
+            found: dict[Looks, list[Port]] = {}
+            for port in outputs:
+                ends = tuple(self._ends(text, document, path, port) for text, document, path in paths)
+                found.setdefault((ends, self._types(port)), []).append(port)
+            self._alike[key] = found
+        return self._alike[key]
+
+    def _ends(self, text: str, document: Document, path: Term, port: Port) -> tuple[Term, ...]:
+        if (text, port) not in self._values:
+            ends = self._walked(port).walked(document, path, self.node(port))
+            self._values[text, port] = tuple(sorted(ends, key=sort_key))
+        return self._values[text, port]
+
+    def _types(self, port: Port) -> frozenset[IRI]:
+        types = self._walked(port).values(self.node(port), TYPE)
+        return frozenset(value for value in types if isinstance(value, IRI))
+
+    def _walked(self, port: Port) -> WalkedStatements:
+        component = port[0]
+        if component not in self._statements:
+            self._statements[component] = WalkedStatements(self.triples(component), self._hierarchy)
+        return self._statements[component]
 
 
 class OutputShape:
     """The shape that an input accepts, compiled."""
 
     def __init__(self, text: str, hierarchy: Hierarchy) -> None:
-        """`text` is the shape as Turtle in brackets. Raises TemplateError."""
+        """`text` is the shape as Turtle in brackets. Raises AuthorError."""
         self._hierarchy = hierarchy
         self._document = parse(f"<{_SHAPE}> {text[1:-1]} .", "sc:accepts")
         wrong = misfit(self._document, self._document.triples(), frozenset())
         if wrong is not None:
             raise TemplateError(wrong[1], file="sc:accepts")
-        self._paths: dict[Term, IRI] = {}
+        self._names: dict[Term, IRI] = {}
         """For each path of the shape the property that the tests see in its place."""
         named = {subject: [*map(self._renamed, said)] for subject, said in self._document.statements.items()}
+        self._paths = [(shape_text(self._document, path), self._document, path) for path in self._names]
         self._tests = compile_role(Document("sc:accepts", named, {}), _SHAPE, (), {}, frozenset())
 
     def _renamed(self, statement: tuple[IRI, Term]) -> tuple[IRI, Term]:
         predicate, value = statement
         if predicate != SH.path:
             return statement
-        return predicate, self._paths.setdefault(value, IRI(f"{_PATH}{len(self._paths)}"))
+        return predicate, self._names.setdefault(value, IRI(f"{_PATH}{len(self._names)}"))
 
-    def conforming(self, outputs: dict[Port, Node], seen: Seen) -> set[Port]:
-        """Those of some outputs, each with its node, that conform. Raises TemplateError where that cannot be judged."""
-        passed = {port: node for port, node in outputs.items() if self._passes(seen(port[0]), node)}
+    def conforming(self, outputs: Sequence[Port], seen: SeenOutputs) -> set[Port]:
+        """Those of some outputs that conform. Raises TemplateError where that cannot be judged."""
+        passed = [
+            port for looks, some in seen.alike(self._paths, outputs).items() if self._passes(looks) for port in some
+        ]
         return {*passed} if self._tests.complete or not passed else self._by_pyshacl(passed, seen)
 
-    def _passes(self, triples: Sequence[Triple], output: Node) -> bool:
-        """Whether an output passes the tests that were compiled, given what is said in its advertisement."""
-        statements = WalkedStatements(triples, self._hierarchy)
-        types = frozenset(value for value in statements.values(output, TYPE) if isinstance(value, IRI))
-        pairs = [
-            (name, value)
-            for path, name in self._paths.items()
-            for value in sorted(statements.walked(self._document, path, output), key=sort_key)
-        ]
-        # The tests look at the profile of a component, so that is what the output has to look like.
-        profile = Profile(output if isinstance(output, IRI) else _OUTPUT, types, tuple(pairs))
-        return next(self._tests.obstacles(profile, self._hierarchy), None) is None
+    def _passes(self, looks: Looks) -> bool:
+        """Whether outputs that look alike pass the tests that were compiled."""
+        ends, types = looks
+        pairs = [(name, value) for name, values in zip(self._names.values(), ends, strict=True) for value in values]
+        # The tests look at the profile of a component, so that is what an output has to look like.
+        return next(self._tests.obstacles(Profile(_OUTPUT, types, tuple(pairs)), self._hierarchy), None) is None
 
-    def _by_pyshacl(self, outputs: dict[Port, Node], seen: Seen) -> set[Port]:
+    def _by_pyshacl(self, outputs: Sequence[Port], seen: SeenOutputs) -> set[Port]:
         from selfconf.rdf.conformance import violations  # most shapes are compiled in full: pySHACL is not loaded
         from selfconf.rdf.rdflib_terms import to_rdflib
 
-        data = to_rdflib(dict.fromkeys(triple for component, _ in outputs for triple in seen(component)))
         shapes = to_rdflib([*self._document.triples(), (_SHAPE, TYPE, SH.NodeShape)])
-        wrong = violations(data, shapes, _SHAPE, list(outputs.values()), "sc:accepts", detailed=False)
-        reasons = [one for some in wrong.values() for one in some]
-        if len(wrong) == len(outputs) and all(isinstance(one, NotJudged) for one in reasons):
+        found, reasons = set[Port](), list[object]()
+        own: dict[IRI, dict[Port, Node]] = {}
+        for port in outputs:
+            own.setdefault(port[0], {})[port] = seen.node(port)
+        for component, nodes in own.items():
+            # What another component says is not seen, so that nobody judges others.
+            data = to_rdflib(seen.triples(component))
+            wrong = violations(data, shapes, _SHAPE, list(nodes.values()), "sc:accepts", detailed=False)
+            found |= {port for port, node in nodes.items() if node not in wrong}
+            reasons += [one for some in wrong.values() for one in some]
+        if not found and all(isinstance(one, NotJudged) for one in reasons):
             raise TemplateError(str(reasons[0]), file="sc:accepts")  # no output is to blame
-        return {port for port, node in outputs.items() if node not in wrong}
+        return found
 
 
 class _Asked(NamedTuple):
@@ -114,19 +169,12 @@ class Acceptance:
         asked = _asked_of(template, partition)
         if asked is None:
             return partition
-        known: dict[IRI, Sequence[Triple]] = {}
-
-        def remembered(component: IRI) -> Sequence[Triple]:
-            if component not in known:
-                known[component] = seen(component)
-            return known[component]
-
         roles, supplying = asked
-        outputs = [
-            *((c.profile, wanted) for some, wanted in zip(partition.candidates, roles, strict=True) for c in some),
-            *((recruit.profile, supplying) for recruit in partition.recruits),
+        feeding = [
+            *(([c.profile for c in some], wanted) for some, wanted in zip(partition.candidates, roles, strict=True)),
+            ([recruit.profile for recruit in partition.recruits], supplying),
         ]
-        met = self._met(outputs, remembered)
+        met = self._met(feeding, SeenOutputs(seen, self._hierarchy))
         return replace(
             partition,
             candidates=tuple(
@@ -136,35 +184,45 @@ class Acceptance:
             recruits=tuple(_told(one, met) for one in partition.recruits if self._can_be_judged(one.profile)),
         )
 
-    def _met(self, profiles: Iterable[tuple[Profile, Sequence[_Asked]]], seen: Seen) -> dict[Port, set[str]]:
+    def _met(
+        self, feeding: Iterable[tuple[Sequence[Profile], Sequence[_Asked]]], seen: SeenOutputs
+    ) -> dict[Port, set[str]]:
         """For each output the shapes to which it conforms, of the inputs that it could feed by its types."""
-        pairs: dict[str, dict[Port, Node]] = {}
-        for profile, wanted in profiles:
-            for output in profile.outputs if wanted else ():
-                for text in self._could_feed(output, wanted):
-                    node = _node(seen(profile.component), profile.component, output.name)
-                    pairs.setdefault(text, {})[profile.component, output.name] = node
         met: dict[Port, set[str]] = {}
         began = time.process_time()
-        for text, outputs in pairs.items():
-            for port in self._conforming(text, outputs, seen, in_time=time.process_time() - began < SECONDS):
-                met.setdefault(port, set()).add(text)
+        lists: list[list[Port]] = []  # kept, since what looks alike is remembered by the identity of these lists
+        for profiles, wanted in feeding:
+            texts: dict[tuple[IRI, ...], dict[str, None]] = {}
+            for port, text in wanted:
+                texts.setdefault(port.signals, {})[text] = None
+            for signals, some in texts.items():
+                lists.append(
+                    [(p.component, o.name) for p in profiles for o in p.outputs if self._could_feed(o, signals)]
+                )
+                for text in some if lists[-1] else ():
+                    in_time = time.process_time() - began < SECONDS
+                    for one in self._conforming(text, lists[-1], seen, in_time):
+                        met.setdefault(one, set()).add(text)
         return met
 
-    def _could_feed(self, output: Output, wanted: Sequence[_Asked]) -> set[str]:
-        return {
-            text
-            for port, text in wanted
-            if not output.signals or not port.signals or self._hierarchy.pairs(output, port._replace(condition=None))
-        }
+    def _could_feed(self, output: Output, signals: tuple[IRI, ...]) -> bool:
+        """Whether an output could feed an input of some types, by the types or by name alone."""
+        return (
+            not output.signals
+            or not signals
+            or any(signal in signals for signal in self._hierarchy.served(output.signals))
+        )
 
-    def _conforming(self, text: str, outputs: dict[Port, Node], seen: Seen, in_time: bool) -> set[Port]:
+    def _conforming(self, text: str, outputs: Sequence[Port], seen: SeenOutputs, in_time: bool) -> set[Port]:
         """Those of some outputs that conform to a shape; none where it cannot be judged, which is noted."""
-        shape = self._shape(text) if in_time else NotJudged("the shapes that inputs accept take too long to be judged")
+        shape = self._shape(text)
         if isinstance(shape, OutputShape):
+            if not in_time:
+                self._shapes[text] = NotJudged("the shapes that inputs accept take too long to be judged")
+                return set()
             try:
                 return shape.conforming(outputs, seen)
-            except TemplateError as error:
+            except AuthorError as error:
                 self._shapes[text] = _cannot_be_judged(error)
         return set()
 
@@ -172,7 +230,7 @@ class Acceptance:
         if text not in self._shapes:
             try:
                 self._shapes[text] = OutputShape(text, self._hierarchy)
-            except TemplateError as error:
+            except AuthorError as error:
                 self._shapes[text] = _cannot_be_judged(error)
         return self._shapes[text]
 
@@ -186,8 +244,8 @@ class Acceptance:
         return True
 
 
-def _cannot_be_judged(error: TemplateError) -> NotJudged:
-    return NotJudged(f"what its input accepts cannot be judged: {error.message}")
+def _cannot_be_judged(error: AuthorError) -> NotJudged:
+    return NotJudged(f"what its input accepts cannot be judged: {getattr(error, 'message', error)}")
 
 
 def _asked_of(template: Template, partition: Partition) -> tuple[list[list[_Asked]], list[_Asked]] | None:

@@ -23,6 +23,8 @@ class WalkedStatements:
         self._forth: dict[tuple[Term, IRI], list[Term]] = {}
         self._back: dict[tuple[Term, IRI], list[Term]] = {}
         self._hierarchy = hierarchy
+        self._known: dict[tuple[Term, Term, bool], list[Term]] = {}
+        """Where a path leads from a node, forth or back: stars in stars would be walked again and again."""
         for subject, predicate, value in triples:
             self._forth.setdefault((subject, predicate), []).append(value)
             self._back.setdefault((value, predicate), []).append(subject)
@@ -36,11 +38,14 @@ class WalkedStatements:
 
     def walked(self, document: Document, path: Term, node: Term, back: bool = False) -> list[Term]:
         """The nodes to which a path leads, each once; `back` walks a predicate against its direction."""
-        return list(dict.fromkeys(self._walked(document, path, node, back)))
+        key = path, node, back
+        if key not in self._known:
+            self._known[key] = list(dict.fromkeys(self._walked(document, path, node, back)))
+        return self._known[key]
 
     def _walked(self, document: Document, path: Term, node: Term, back: bool) -> Iterable[Term]:
         def step(inner: Term, reverse: bool = back) -> Step:
-            return lambda start: self._walked(document, inner, start, reverse)
+            return lambda start: self.walked(document, inner, start, reverse)
 
         if isinstance(path, IRI):
             return self._back.get((node, path), ()) if back else self.values(node, path)

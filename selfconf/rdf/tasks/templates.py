@@ -190,7 +190,7 @@ class _Reader(DocumentReader):
             problem = f"sc:recruits of the role {worded(role)} is true, false, or one shape of its suppliers"
             raise self.mistake(problem, role, SC.recruits, values[-1])
         if not isinstance(value, Literal):
-            if not self.document.about(value):
+            if not self.document.about(value) or self.document.value(value, FIRST) is not None:
                 problem = (
                     f"the role {worded(role)} recruits who conforms to {worded(value)}, which is no shape of this file"
                 )

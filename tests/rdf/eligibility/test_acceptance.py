@@ -14,7 +14,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement, ShapeNotAccepted, accepted_shape, read_advertisements
 from selfconf.rdf.conformance import judged
-from selfconf.rdf.eligibility.acceptance import OutputShape, _node
+from selfconf.rdf.eligibility.acceptance import OutputShape, SeenOutputs
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
@@ -88,8 +88,9 @@ def test_an_output_conforms_where_pyshacl_says_so(text: str, hierarchy: Hierarch
         assume(False)
     ecology = {a.component: a for a in read_advertisements((PREFIXES + OUTPUTS).encode(), "outputs")[0]}
     seen = {component: tuple(visible(advertisement, hierarchy)) for component, advertisement in ecology.items()}
-    outputs = {(home(c), name): _node(seen[home(c)], home(c), name) for c, name in NAMES}
-    found = OutputShape(canonical, hierarchy).conforming(outputs, seen.__getitem__)
+    known = SeenOutputs(seen.__getitem__, hierarchy)
+    outputs = {(home(c), name): known.node((home(c), name)) for c, name in NAMES}
+    found = OutputShape(canonical, hierarchy).conforming(list(outputs), known)
 
     data = to_rdflib(triple for triples in seen.values() for triple in triples)
     (shape,) = document.values(home("input"), SC.accepts)
@@ -145,3 +146,43 @@ def test_a_shape_that_nests_too_deeply_keeps_out_the_component_that_states_it() 
     answer = answered(f"sh:property [ sh:path sc:name ; {deep} ]")
     assert isinstance(answer, Refusal)
     assert "display" in str(answer.reasons[0])
+
+
+def test_what_another_component_says_disqualifies_no_output() -> None:
+    path = "( [ sh:inversePath sc:hasOutput ] :on [ sh:inversePath :on ] )"
+    alone = f"sh:property [ sh:path {path} ; sh:maxCount 1 ]"
+    judged_by_pyshacl = (
+        f"{alone} , [ sh:path sc:name ; sh:qualifiedValueShape [ sh:nodeKind sh:Literal ] ; sh:qualifiedMinCount 1 ]"
+    )
+    for accepts in (alone, judged_by_pyshacl):
+        answer = answered(accepts)
+        assert isinstance(answer, Configuration)
+        assert [connection.source.short for connection in answer.connections] == ["high"]
+
+
+def test_stars_within_stars_are_walked_once() -> None:
+    star = "[ sh:alternativePath ( sc:hasOutput [ sh:inversePath sc:hasOutput ] ) ]"
+    for _ in range(5):
+        star = f"[ sh:zeroOrMorePath {star} ]"
+    assert isinstance(answered(f"sh:property [ sh:path {star} ; sh:minCount 1 ]"), Configuration)
+
+
+def test_many_strangers_with_shapes_of_their_own_change_no_answer() -> None:
+    strangers = "".join(
+        f':s{k} a sc:Component, :Display ; sc:hasInput [ sc:name "i" ; sc:signalType :Pose ;'
+        f" sc:accepts [ sh:property [ sh:path ( sc:rate sc:value ) ; sh:minInclusive {k} ] ] ] ;"
+        f' sc:hasOutput [ sc:name "o" ; sc:signalType :Pose ] ; sc:preference -1 .\n'
+        for k in range(100, 400)
+    )
+    display = ':show a sc:Component, :Display ; sc:hasInput [ sc:name "i" ; sc:signalType :Pose ] .\n'
+    task = TASK.replace(":display a sc:Role ;", ":display a sc:Role ; sc:recruits true ;")
+    alone, among = (
+        configure(template(task), read(PREFIXES + OUTPUTS + display + others)) for others in ("", strangers)
+    )
+    assert isinstance(alone, Configuration)
+    assert isinstance(among, Configuration)
+    assert (alone.assignments, alone.recruits, alone.connections) == (
+        among.assignments,
+        among.recruits,
+        among.connections,
+    )
