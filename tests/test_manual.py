@@ -7,9 +7,12 @@ import re
 import shlex
 from pathlib import Path
 
+import pyoxigraph as ox
 import pytest
 
+import selfconf
 from selfconf.cli.main import main
+from selfconf.model.configuration import Configuration
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"^```console\n\$ selfconf (.+)\n((?:.*\n)*?)```$", re.MULTILINE)
@@ -53,3 +56,22 @@ def test_the_instance_on_the_page_goes_through_the_stages_as_printed() -> None:
     session = doctest.DocTestParser().get_doctest("\n".join(blocks), {}, "docs/search.md", "docs/search.md", 0)
     said: list[str] = []
     assert doctest.DocTestRunner().run(session, out=said.append).failed == 0, "".join(said)
+
+
+def test_the_queries_of_the_page_on_tasks_find_what_is_deployed() -> None:
+    queries = re.findall(r"^```sparql\n(.*?)^```$", (ROOT / "docs" / "tasks.md").read_text("utf-8"), re.M | re.S)
+    home = selfconf.read(ROOT / "examples" / "peis-home")
+    task = selfconf.template(ROOT / "examples" / "navigate.ttl").bind(robot=":Astrid", goal="(AT BEDROOM)")
+    answer = selfconf.configure(task, home)
+    assert isinstance(answer, Configuration)
+    failure = (
+        ":now prov:wasInfluencedBy [ a sc:Failure ; sc:component :person-tracker ; sc:cause 'fail' ;"
+        " sc:detail 'out of view' ]"
+    )
+    store = ox.Store()
+    prefixes = {"sc": "https://w3id.org/selfconf#", "prov": "http://www.w3.org/ns/prov#", "": "urn:t:"}
+    declared = "".join(f"@prefix {name}: <{iri}> .\n" for name, iri in prefixes.items())
+    store.load((answer.to_turtle() + declared + failure + " .").encode(), format=ox.RdfFormat.TURTLE)
+    found = [list(store.query(query, prefixes={"sc": prefixes["sc"]})) for query in queries]
+    assert [len(rows) for rows in found] == [5, 4, 1]
+    assert [term.value for term in found[2][0]] == ["urn:t:person-tracker", "fail", "out of view"]
