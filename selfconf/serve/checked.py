@@ -40,6 +40,7 @@ def checked_configuration(value: Any) -> Body | None:
             {"role": _text(one.get("role")), "components": list(map(_text, _list(one.get("components"))))}
             for one in _objects(value.get("roles"))
         ],
+        "recruits": list(map(_text, _list(value.get("recruits")))),
         "connections": [
             {"from": _end(one.get("from"), "output"), "to": _end(one.get("to"), "input")}
             for one in _objects(value.get("connections"))

@@ -30,6 +30,7 @@ def deployed_body(document: Document) -> Body | None:
             {"role": role, "components": components, "passed_over": passed_over[role]}
             for role, components in roles.items()
         ],
+        "recruits": [str(component) for component in document.values(name, SC.recruited)],
         "connections": [
             {
                 "from": {"component": _text(document, node, SC["from"]), "output": _text(document, node, SC.output)},

@@ -17,7 +17,9 @@ ANYTHING = st.recursive(
     lambda inner: (
         st.lists(inner, max_size=3)
         | st.dictionaries(
-            st.sampled_from(["roles", "role", "components", "connections", "from", "to", "reasons", "message"]),
+            st.sampled_from(
+                ["roles", "recruits", "role", "components", "connections", "from", "to", "reasons", "message"]
+            ),
             inner,
             max_size=4,
         )
@@ -34,6 +36,7 @@ def test_whatever_is_told_has_the_form_that_the_page_expects(act: str, time: obj
     json.loads(json.dumps(event, allow_nan=False))
     for role in (event.get("configuration") or {}).get("roles", ()):
         assert all(isinstance(one, str) for one in (role["role"], *role["components"]))
+    assert all(isinstance(one, str) for one in (event.get("configuration") or {}).get("recruits", ()))
     for reason in (event.get("refusal") or {}).get("reasons", ()):
         assert isinstance(reason["message"], str)
 

@@ -28,6 +28,13 @@ def test_roles_connections_parameters_and_what_was_passed_over_are_read(tmp_path
     assert body["parameters"] == [{"component": iri("thinking-cap"), "name": "goal", "value": "(AT BEDROOM)"}]
 
 
+def test_recruits_are_read_beside_the_roles() -> None:
+    recruited = "<urn:a> a <https://w3id.org/selfconf#Configuration> ; <https://w3id.org/selfconf#recruited> <urn:r> ."
+    body = deployed_body(parse(recruited, "cfg"))
+    assert body is not None
+    assert body["recruits"] == ["urn:r"]
+
+
 def test_a_stranger_that_serves_something_else_does_no_harm() -> None:
     assert deployed_body(parse("<urn:a> <urn:b> 1 .", "cfg")) is None
     odd = "<urn:a> a <https://w3id.org/selfconf#Configuration> ; <https://w3id.org/selfconf#assignment> 1 , [] ."

@@ -17,7 +17,8 @@ const because = (instead, task) => {
 /** The boxes and lines of a configuration: a box for each part in it, which stays when its player changes. */
 function parts(configuration, box) {
   const nodes = [], of = new Map();
-  for (const { role, components, passed_over: passed = [] } of configuration.roles) {
+  const recruited = { role: "recruit", components: configuration.recruits ?? [] };
+  for (const { role, components, passed_over: passed = [] } of [...configuration.roles, recruited]) {
     components.forEach((component, number) => {
       if (of.has(component)) {
         of.get(component).roles.push(role);

@@ -64,7 +64,8 @@ export class Model {
         const replaced = replacements(task.configuration ?? task.before, event.configuration);
         const configuration = { ...event.configuration, replaced: Object.fromEntries(replaced.map((one) => [one.component, one.instead])) };
         Object.assign(next, { configuration, before: configuration, refusal: null, epoch: event.epoch });
-        next.components = event.configuration.roles.flatMap((role) => role.components);
+        next.components = [
+          ...event.configuration.roles.flatMap((role) => role.components), ...(event.configuration.recruits ?? [])];
       }
       if (event.act === "waiting" || event.act === "refused") {
         Object.assign(next, { configuration: null, refusal: event.refusal, components: [] });
