@@ -458,7 +458,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-C06", "Connections and settings concern components that have a role.",
-        "A component without a role is no part of the configuration.",
+        "A component that neither plays a role nor is recruited is no part of the configuration.",
         _ANSWER.replace(":speaker ;", ":amplifier ;", 1).replace("sc:to :speaker", "sc:to :amplifier"), _ANSWER,
         ("ConnectionAssigned", "SettingAssigned"),
     ),

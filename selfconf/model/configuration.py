@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from selfconf.model.term import IRI, Term
@@ -16,6 +16,12 @@ class Connection:
     output: str
     sink: IRI
     input: str
+
+
+def ordered_connections(connections: Iterable[Connection], components: Iterable[IRI]) -> tuple[Connection, ...]:
+    """Connections in the order of the components that they join, sources first, and of the names of their ports."""
+    place = {component: number for number, component in enumerate(components)}
+    return tuple(sorted(connections, key=lambda c: (place[c.source], c.output, place[c.sink], c.input)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from dataclasses import replace
 from heapq import heappop, heappush
 from typing import NamedTuple
 
-from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting, ordered_connections
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.model.profile import Input, Output, Profile, WantedSignal
@@ -228,11 +228,7 @@ class Problem:
         brought = [c for c in configuration.connections if not {c.source, c.sink}.isdisjoint(configuration.recruits)]
         if not {(c.sink, c.input) for c in brought}.isdisjoint((c.sink, c.input) for c in whole.connections):
             return configuration
-        order = {component: place for place, component in enumerate(whole.components)}
-        connections = sorted(
-            (*whole.connections, *brought), key=lambda c: (order[c.source], c.output, order[c.sink], c.input)
-        )
-        return replace(whole, connections=tuple(connections))
+        return replace(whole, connections=ordered_connections((*whole.connections, *brought), whole.components))
 
     def _extend(
         self,
@@ -285,8 +281,7 @@ class Problem:
             for wanted in candidate.profile.inputs
             for source, output in self.feeders(position, wanted, playing)
         }
-        order = {c.profile.component: place for place, c in enumerate(c for role in playing for c in role)}
-        return tuple(sorted(connections, key=lambda c: (order[c.source], c.output, order[c.sink], c.input)))
+        return ordered_connections(connections, (c.profile.component for role in playing for c in role))
 
     def _settings(self, playing: Playing, bindings: Mapping[str, Term]) -> Iterator[ParameterSetting]:
         names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}

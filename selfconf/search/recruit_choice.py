@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 
-from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.configuration import Configuration, Connection, ordered_connections
 from selfconf.model.partition import Recruit
 from selfconf.model.profile import Input, Output, Profile, WantedSignal
 from selfconf.model.term import IRI
@@ -194,11 +194,7 @@ class RecruitChoice:
             found.append(Connection(component, output.name, need.component, need.port.name))
         recruits = tuple(self.recruits[number].component for number in sorted(placed))
         whole = replace(self.plain, recruits=recruits)
-        order = {component: place for place, component in enumerate(whole.components)}
-        every = sorted(
-            (*self.plain.connections, *found), key=lambda c: (order[c.source], c.output, order[c.sink], c.input)
-        )
-        return replace(whole, connections=tuple(every))
+        return replace(whole, connections=ordered_connections((*self.plain.connections, *found), whole.components))
 
     def _source(self, port: Input, placed: Sequence[int], role: int | None) -> tuple[IRI, Output]:
         """The first recruit of those placed, by preference, that feeds an input, with its output."""
