@@ -164,6 +164,8 @@ class _Inquiry:
         """The lives of the sites at the roll-call, by their names."""
         self._answers: dict[SiteLife, _SiteAnswer] = {}
         self._complaints: list[str] = []
+        self._insecure: set[str] = set()
+        """The sites that say that they listen beyond their host without keys."""
         self._attempt = 0
         self._segments = advertisements.SegmentCache()
 
@@ -226,6 +228,8 @@ class _Inquiry:
         if answer is None or (answer.revision, answer.total) != (page.revision, page.total):
             answer = self._answers[site] = _SiteAnswer(page.revision, page.total)
         known = self.ecology.known.get(site)
+        if page.insecure:
+            self._insecure.add(name)
         if page.component is None:
             answer.unchanged = known is not None and (known.revision, known.total) == (page.revision, page.total)
             return
@@ -251,6 +255,9 @@ class _Inquiry:
                 else:
                     found[component] = one
         self._complaints += names.complaints()
+        self._complaints += [
+            f"site {site} is insecure: it listens beyond its host without keys" for site in sorted(self._insecure)
+        ]
         answered = frozenset(key for key in self._tokens if (owner_of(key), life_of(key)) not in missing)
         return Discovery(
             found,

@@ -20,8 +20,10 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
+from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import NetworkError
+from selfconf.model.term import IRI
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 from selfconf.termination import alive, start_time
 
@@ -29,6 +31,8 @@ ECOLOGY_VARIABLE = "SELFCONF_ECOLOGY"
 """The variable that names the ecology of a program to which none is given."""
 CONNECT_VARIABLE = "SELFCONF_CONNECT"
 """The variable with the endpoints, apart by spaces, that a program connects to when none are given."""
+KEYS_VARIABLE = "SELFCONF_KEYS"
+"""The variable with the folder of keys of a program to which none is given."""
 LIFE_VARIABLE = "SELFCONF_LIFE"
 """The variable with the life that a site gives to the components of a program that it starts, so that it knows them."""
 ECOLOGY_ANSWER = 3.0
@@ -70,15 +74,16 @@ def runtime_folder() -> Path:
     return Path(tempfile.gettempdir()) / f"selfconf-{os.getuid()}"
 
 
-def usual_endpoints(ecology: str) -> list[str]:
+def usual_endpoints(ecology: str, secure: bool = False) -> list[str]:
     """Where the site that relays for an ecology on this machine listens: on the first that is free.
 
     They depend on the ecology and the runtime folder alone, so that a site that takes the place of another is where
-    the clients of the one before look for it.
+    the clients of the one before look for it. With keys they are `secure`, and others than without.
     """
-    digest = hashlib.blake2s(f"{runtime_folder()} {ecology}".encode(), digest_size=8).digest()
+    digest = hashlib.blake2s(f"{runtime_folder()} {ecology}{' with keys' * secure}".encode(), digest_size=8).digest()
     first = int.from_bytes(digest, "big")
-    return [f"tcp/127.0.0.1:{USUAL_PORTS[(first + number) % len(USUAL_PORTS)]}" for number in range(PLACES)]
+    protocol = "tls" if secure else "tcp"
+    return [f"{protocol}/127.0.0.1:{USUAL_PORTS[(first + number) % len(USUAL_PORTS)]}" for number in range(PLACES)]
 
 
 @contextmanager
@@ -202,7 +207,40 @@ def asked_for(ecology: str | None, connect: Sequence[str]) -> tuple[str | None, 
     return ecology, list(connect) or os.environ.get(CONNECT_VARIABLE, "").split()
 
 
-def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
+def keys_folder(keys: Path | None) -> Path | None:
+    """The folder of keys that is given, else the one that the environment names, if it does."""
+    named = os.environ.get(KEYS_VARIABLE)
+    return keys or (Path(named) if named else None)
+
+
+def credentials(keys: Path | None, *kinds: str, name: str = "main") -> Credentials | None:
+    """What a program shows to others: from the folder of keys that is given, else named by the environment, if one is.
+
+    `kinds` are those of the principals that may do what the program does (`selfconf.access.PrincipalKind`); with the
+    folder of an authority the program gets a certificate of the first, of that name. Raises AuthorError.
+    """
+    folder = keys_folder(keys)
+    if folder is None:
+        return None
+    from selfconf.access import KeysFolder, PrincipalKind  # what it needs is an extra
+
+    return KeysFolder(folder).credentials([PrincipalKind(kind) for kind in kinds], name)
+
+
+def component_credentials(keys: Path | None, component: IRI | None) -> Credentials | None:
+    """What a component shows: by its own folder of keys, or by that of a site of this host. Raises AuthorError."""
+    folder = keys_folder(keys)
+    if folder is None:
+        return None
+    from selfconf.access import KeysFolder, Principal, PrincipalKind  # what it needs is an extra
+
+    opened = KeysFolder(folder)
+    if component is not None and opened.serves_a_host:
+        opened = KeysFolder(opened.component(Principal.component(component)))
+    return opened.credentials((PrincipalKind.COMPONENT,))
+
+
+def find(ecology: str | None, connect: Sequence[str], credentials: Credentials | None = None) -> tuple[str, list[str]]:
     """The ecology and the endpoints to connect to.
 
     Each is what is given, else what the environment says, else that of the sites on this machine. Raises NetworkError,
@@ -212,7 +250,7 @@ def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
     if ecology is not None:
         checked_name(ecology, "an ecology")
     if endpoints:
-        return ecology or _ecology_at(endpoints), endpoints
+        return ecology or _ecology_at(endpoints, credentials), endpoints
     found = local_sites(ecology)
     names = sorted({site.ecology for site in found})
     if not names:
@@ -225,9 +263,9 @@ def find(ecology: str | None, connect: Sequence[str]) -> tuple[str, list[str]]:
     return names[0], list(dict.fromkeys(site.endpoint for site in found))
 
 
-def _ecology_at(endpoints: list[str]) -> str:
+def _ecology_at(endpoints: list[str], credentials: Credentials | None) -> str:
     """The one ecology that has a site behind some endpoints. Raises NetworkError if there is none, or several."""
-    bus = client(endpoints)
+    bus = client(endpoints, credentials=credentials)
     try:
         heard: list[tuple[str, ...]] = []
         bus.roll_call(any_ecology(), ECOLOGY_ANSWER, heard.append)

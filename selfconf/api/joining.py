@@ -22,7 +22,7 @@ from selfconf import rendezvous
 from selfconf.bus.port import Undo
 from selfconf.bus.zenoh_bus import ZenohBus, client, router
 from selfconf.bus.zenoh_relay import Hub
-from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK
+from selfconf.bus.zenoh_session import Security
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys
 from selfconf.rendezvous import LocalSite
@@ -44,10 +44,17 @@ HUNG = 0.5
 class Joining:
     """The bus of one site, and its part in relaying."""
 
-    def __init__(self, ecology: str, name: str, listen: str | None, connect: Sequence[str]) -> None:
+    def __init__(
+        self,
+        ecology: str,
+        name: str,
+        listen: str | None,
+        connect: Sequence[str],
+        security: Security | None = None,
+    ) -> None:
         """Opens the bus, in a turn (`rendezvous.turn`). Raises NetworkError."""
-        self._ecology, self._name = ecology, name
-        self._usual = rendezvous.usual_endpoints(ecology)
+        self._ecology, self._name, self._security = ecology, name, security
+        self._usual = rendezvous.usual_endpoints(ecology, secure=security is not None)
         relays = self._relays()
         self._elsewhere = [endpoint for endpoint in connect if endpoint not in (*relays, *self._usual)]
         self.bus = self._opened(listen, relays)
@@ -88,6 +95,14 @@ class Joining:
         mine = LocalSite(self._ecology, self._name, self.endpoint, os.getpid(), relays=relays)
         self._file = rendezvous.announce(mine)
 
+    def secure(self, security: Security) -> None:
+        """Have other rules, or another certificate, as long as this site relays, and whenever it does.
+
+        Raises NetworkError.
+        """
+        self._security = security
+        self.bus.secure(security)
+
     def leave(self) -> None:
         """Take back what was written down."""
         if self._file is not None:
@@ -102,18 +117,20 @@ class Joining:
     def _opened(self, listen: str | None, relays: list[str]) -> ZenohBus:
         connect = [*relays, *self._elsewhere]
         if listen is not None:
-            return router(listen, [*connect, *(self._usual if relays else ())])
+            return router(listen, [*connect, *(self._usual if relays else ())], security=self._security)
         if relays and not self._elsewhere:
             try:
-                return client(list(dict.fromkeys([*relays, *self._usual])))
+                own = None if self._security is None else self._security.credentials
+                return client(list(dict.fromkeys([*relays, *self._usual])), credentials=own)
             except NetworkError:  # those that relay hang
                 pass
         for endpoint in self._usual:
             try:
-                return router(endpoint, connect, otherwise=self._usual)
+                return router(endpoint, connect, self._usual, self._security)
             except NetworkError:  # the port is taken
                 continue
-        return router(ANYWHERE_ON_LOOPBACK, connect, otherwise=self._usual)
+        anywhere = self._usual[0].rpartition(":")[0] + ":0"
+        return router(anywhere, connect, self._usual, self._security)
 
     # The one that relays may be gone, or it was stopped and another has taken its place.
 
@@ -163,7 +180,7 @@ class Joining:
             return
         for endpoint in self._usual:
             try:
-                hub = Hub(endpoint)
+                hub = Hub(endpoint, self._security)
             except NetworkError:  # the port is taken, by one that hangs or by another program
                 continue
             for other in rendezvous.local_sites(self._ecology):

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from types import TracebackType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, configure
 from selfconf.api.arguments import Paths, option
 from selfconf.api.detached import task_record
 from selfconf.api.ecology import Ecology
+from selfconf.api.membership import MEMBERS, check_may_run, member
 from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.task import TaskSpecification
-from selfconf.bus.port import Replies
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.credentials import Credentials
+from selfconf.bus.port import Replies, Sample
 from selfconf.configurator.state import Policy
 from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView
@@ -25,8 +27,8 @@ from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import owner_of, task_name
-from selfconf.protocol.messages import Notice, Status, TaskRecord
+from selfconf.protocol.keys import owner_of, site_of, task_name
+from selfconf.protocol.messages import Access, Notice, Refused, Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
@@ -86,6 +88,34 @@ class LivingTask:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class SiteAccess:
+    """Who may do what at the hub of a site with keys, and what was refused there, the latest first."""
+
+    site: str
+    accesses: tuple[Access, ...]
+    refused: tuple[Refused, ...]
+
+    def access_control(self) -> dict[str, Any]:
+        """The rules as Zenoh has them, at the member `access_control` of a configuration."""
+        from selfconf.access import AccessRules  # what it needs is an extra
+
+        return AccessRules(self.accesses).access_control()
+
+
+def _links(sample: Sample) -> Iterator[tuple[IRI, IRI]]:
+    """The connections of a deployed configuration: who feeds whom. Nothing for what is no Turtle."""
+    try:
+        document = turtle.parse(sample.payload, sample.key)
+    except TurtleError:
+        return
+    for node in document.instances(SC.Connection):
+        for source in document.values(node, SC["from"]):
+            for sink in document.values(node, SC.to):
+                if isinstance(source, IRI) and isinstance(sink, IRI):
+                    yield source, sink
+
+
 class LivingEcology(Ecology):
     """Everything that is alive under one name, as seen over the network; use it in a `with` statement.
 
@@ -96,10 +126,10 @@ class LivingEcology(Ecology):
     display dormant
     """
 
-    def __init__(self, name: str, endpoints: Sequence[str]) -> None:
-        """Connects; raises NetworkError if no site of the ecology answers."""
-        self.name, self.endpoints = name, tuple(endpoints)
-        self._bus = client(list(endpoints))
+    def __init__(self, name: str, endpoints: Sequence[str], credentials: Credentials | None = None) -> None:
+        """Connects, with keys by showing a certificate; raises NetworkError if no site of the ecology answers."""
+        self.name, self.endpoints, self._credentials = name, tuple(endpoints), credentials
+        self._bus = member(name, endpoints, credentials)
         self._view = EcologyView(self._bus, name)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
@@ -191,6 +221,35 @@ class LivingEcology(Ecology):
         known = {status.task for status in running}
         found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
         return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
+
+    def access(self) -> tuple[SiteAccess, ...]:
+        """Who may do what at the hub of each site that has keys, and what was refused there; sorted by site."""
+        found: dict[str, list[Access]] = {}
+        refused: dict[str, list[Refused]] = {}
+        rejected = []
+        for sample in self._ask(self._view.keys.access()).samples:
+            try:
+                site = site_of(sample.key)
+                if b'"kind": "refused"' in sample.payload or b'"kind":"refused"' in sample.payload:
+                    refused.setdefault(site, []).append(decode(sample.payload, Refused))
+                else:
+                    found.setdefault(site, []).append(decode(sample.payload, Access))
+            except PeerError as error:
+                rejected.append(f"left out an answer: {error}")
+        self.complaints = tuple(rejected)
+        return tuple(SiteAccess(site, tuple(found[site]), tuple(refused.get(site, ()))) for site in sorted(found))
+
+    def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
+        """Whom each component of a deployed task hears, by what its configurator says; None if nobody runs it."""
+        names = {status.configurator for status in self.tasks if task_name(status.task) == task}
+        if not names:
+            return None
+        heard: dict[IRI, set[IRI]] = {c: set() for s in self.tasks if s.configurator in names for c in s.components}
+        for sample in self._ask(self._view.keys.configuration()).samples:
+            if sample.key.split("/")[-2] in names:
+                for source, sink in _links(sample):
+                    heard.setdefault(sink, set()).add(source)
+        return {component: tuple(sorted(sources)) for component, sources in sorted(heard.items())}
 
     def dataset(self) -> Dataset:
         """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
@@ -294,7 +353,18 @@ class LivingEcology(Ecology):
         """
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         chosen = option(Policy, "policy", policy)
-        return Run(task, method, self.name, self.endpoints, chosen, wait, name=name, priority=priority, upgrade=upgrade)
+        return Run(
+            task,
+            method,
+            self.name,
+            self.endpoints,
+            chosen,
+            wait,
+            name=name,
+            priority=priority,
+            upgrade=upgrade,
+            credentials=self._credentials,
+        )
 
     def detach(
         self,
@@ -315,6 +385,7 @@ class LivingEcology(Ecology):
         The arguments are those of `run`; the task waits where there is no configuration. Raises NetworkError if no
         site keeps it, or if a task of that name lives.
         """
+        check_may_run(self._credentials)
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         record = task_record(task.complete(), method, option(Policy, "policy", policy), name, priority, upgrade)
         wanted = task_name(record.task)
@@ -330,6 +401,7 @@ class LivingEcology(Ecology):
         NetworkError if there is none of that name, if one does not answer or does not end in time, or if a component
         does not obey.
         """
+        check_may_run(self._credentials)
         running = [s for s in self.tasks if name in (None, s.configurator, task_name(s.task))]
         kept = self._kept(name)
         for silent in self.silent:
@@ -398,15 +470,18 @@ class LivingEcology(Ecology):
         return f"<living ecology {self.name}>"
 
 
-def join(ecology: str | None = None, *, connect: Sequence[str] = ()) -> LivingEcology:
+def join(ecology: str | None = None, *, connect: Sequence[str] = (), keys: str | Path | None = None) -> LivingEcology:
     """The living ecology of a name; without one, the only one on this machine, or the one behind the endpoints.
 
     `connect` are endpoints of sites, such as `tcp/127.0.0.1:7447`; without them the sites on this machine. Joining
-    reads; nothing changes before `run`. Raises NetworkError, saying what to try, if there is no such ecology.
+    reads; nothing changes before `run`. `keys` is a folder of keys; without it, that of the variable SELFCONF_KEYS, if
+    there is one. Raises NetworkError, saying what to try, if there is no such ecology, or if it does not let in whom
+    the keys speak for, and AuthorError for keys that are none.
 
     >>> with join() as living:
     ...     answer = living.configure(template("examples/clock/tell-the-time.ttl"))
     ...     answer["screen"], living.tasks
     ((<https://example.org/my-home#display>,), ())
     """
-    return LivingEcology(*rendezvous.find(ecology, list(connect)))
+    shown = rendezvous.credentials(None if keys is None else Path(keys), *MEMBERS)
+    return LivingEcology(*rendezvous.find(ecology, list(connect), shown), shown)

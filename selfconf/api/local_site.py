@@ -30,8 +30,14 @@ class SiteProcess:
     What the site and the components that it starts print goes to stderr.
     """
 
-    def __init__(self, paths: Sequence[str | Path], ecology: str | None = None, connect: Sequence[str] = ()) -> None:
-        """Raises AuthorError for paths that cannot be watched."""
+    def __init__(
+        self,
+        paths: Sequence[str | Path],
+        ecology: str | None = None,
+        connect: Sequence[str] = (),
+        keys: Path | None = None,
+    ) -> None:
+        """Raises AuthorError for paths that cannot be watched. `keys` is the folder of keys of an authority."""
         self.paths = [Path(path) for path in paths]
         if STDIN in self.paths:
             raise AuthorError("a site watches the files of its advertisements, so give files to --ads, not -")
@@ -40,6 +46,7 @@ class SiteProcess:
         ecology, self._connect = rendezvous.asked_for(ecology, connect)
         self.ecology = f"run-{secrets.token_hex(3)}" if ecology is None else ecology
         self.name = f"s{secrets.token_hex(3)}"
+        self._keys = rendezvous.keys_folder(keys)
         self._process: subprocess.Popen[bytes] | None = None
         self.endpoint = ""
         """Where it listens."""
@@ -50,6 +57,8 @@ class SiteProcess:
         """Raises NetworkError if it does not listen in time, SiteMisusedError if it has said why it cannot."""
         where = [part for endpoint in self._connect for part in ("--connect", endpoint)]
         names = ["--ecology", self.ecology, "--name", self.name]
+        if self._keys is not None:
+            names += ["--keys", str(self._keys)]
         self._process = subprocess.Popen(
             [sys.executable, "-m", "selfconf", "site", *map(str, self.paths), *names, *where],
             stdin=subprocess.DEVNULL,

@@ -7,10 +7,11 @@ from dataclasses import replace
 from types import TracebackType
 
 from selfconf.api.answer import Method, refusal_with_places
+from selfconf.api.membership import check_may_run, configurator_name, member
 from selfconf.api.places import Places
 from selfconf.api.task import TaskSpecification
 from selfconf.api.work_queue import WorkQueue
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.credentials import Credentials
 from selfconf.composition import TimeLimit, composed
 from selfconf.configurator.state import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
@@ -55,11 +56,13 @@ class Run:
         name: str = "",
         priority: int | None = None,
         upgrade: float | None = None,
+        credentials: Credentials | None = None,
     ) -> None:
         """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
 
-        Raises BindingError and NetworkError.
+        Raises BindingError and NetworkError, also for credentials that do not let it run tasks.
         """
+        check_may_run(credentials)
         self.task, self.method = task.complete(), method
         self.refusal: Refusal | Undecided | None = None
         """Why the task has ended, where there is no configuration (any more)."""
@@ -68,7 +71,7 @@ class Run:
         self._found: Mapping[IRI, Advertisement] = {}
         self._work = WorkQueue()
         self._ended = False
-        self._bus = client(list(endpoints))
+        self._bus = member(ecology, endpoints, credentials)
         self._runner = TaskRunner(
             self._bus,
             ecology,
@@ -87,6 +90,7 @@ class Run:
                 report=self._work.report,
                 ended=self._settle,
             ),
+            configurator_name(credentials),
         )
 
     def __enter__(self) -> Run:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ipaddress
 import os
 import platform
 import re
@@ -9,6 +10,7 @@ import secrets
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from selfconf import rendezvous
 from selfconf.api.joining import Joining
@@ -21,6 +23,9 @@ from selfconf.protocol.messages import TaskRecord
 from selfconf.render import count
 from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
+
+if TYPE_CHECKING:
+    from selfconf.api.secured_site import SecuredSite
 
 WORK_CHECK = 0.2
 """How often, in seconds, a site looks whether it is to end."""
@@ -35,13 +40,16 @@ def serve(
     complain: Callable[[str], None],
     state: Path | None = None,
     log: Path | None = None,
+    keys: Path | None = None,
+    insecure: bool = False,
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
 
     Without a name it gets one of its own; without an endpoint it listens where a site of the ecology usually does.
     `complain` hears what is left out, and where it listens. In the folder `state` are the tasks that it keeps, in the
-    folder `log` what the components print that it starts; by default both are folders of the runtime folder.
-    Raises AuthorError and NetworkError.
+    folder `log` what the components print that it starts; by default both are folders of the runtime folder. With the
+    folder `keys` only those are let in whom its authority vouches for; without it the site listens beyond loopback
+    only if it may be `insecure`. Raises AuthorError and NetworkError.
     """
     for path in paths:
         existing(path)
@@ -49,11 +57,19 @@ def serve(
     if ecology is None:
         raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
     checked_name(ecology, "an ecology")
-    name = checked_name(name or f"s{secrets.token_hex(3)}", "a site")
+    secured = _secured(rendezvous.keys_folder(keys), name)
+    name = checked_name(name or (secured.name if secured else f"s{secrets.token_hex(3)}"), "a site")
+    beyond = secured is None and _beyond_loopback(listen)
+    if beyond and not insecure:
+        raise AuthorError(
+            f"{listen} can be reached from other hosts, and without keys by everybody there: give --keys DIR (see"
+            " `selfconf keys --help`), or --insecure if that is what you want"
+        )
     shelf = Shelf(paths, complain)
     # One site at a time looks which others there are and announces itself, or two would miss each other.
     with rendezvous.turn():
-        joining = Joining(ecology, name, listen, connect)
+        security = None if secured is None else secured.first(ecology, name, shelf)
+        joining = Joining(ecology, name, listen, connect, security)
         bus = joining.bus
         _refuse_taken(name, ecology, joining)
         life = f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}"
@@ -61,12 +77,16 @@ def serve(
         work = WorkQueue()
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints))
-        site = Site(bus, ecology, name, shelf, environment, _log_path(log, ecology, name), life)
+        keys_of = None if secured is None else secured.keys_of
+        site = Site(bus, ecology, name, shelf, environment, _log_path(log, ecology, name), life, keys_of, beyond)
+        if secured is not None:
+            secured.keep_door(site, joining, complain)
         keeper = Keeper(bus, ecology, name, records, partial(_request_of, work))
         joining.announce()
         bus.watch(site.keys.site_life(name, "*"), partial(_met, complain, site))
     served = count(len(site.shelf.advertisements), "advertisement")
-    complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}")
+    how = " without keys, open to everybody who reaches it" if beyond else ""
+    complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}{how}")
     bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
     try:
         while not ended():
@@ -75,6 +95,26 @@ def serve(
         joining.leave()
         bus.wake_up(keeper.close)
         site.close()
+
+
+def _beyond_loopback(listen: str | None) -> bool:
+    """Whether an endpoint can be reached from other hosts."""
+    if listen is None:
+        return False
+    host = listen.partition("/")[2].rpartition(":")[0].strip("[]")
+    try:
+        return not ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host != "localhost"
+
+
+def _secured(keys: Path | None, name: str | None) -> SecuredSite | None:
+    """The keys of a site, if it has any. Raises AuthorError."""
+    if keys is None:
+        return None
+    from selfconf.api.secured_site import SecuredSite  # what it needs is an extra
+
+    return SecuredSite(keys, name)
 
 
 _HOST = re.sub(r"[^A-Za-z0-9-]", "-", platform.node())[:32] or "unknown"

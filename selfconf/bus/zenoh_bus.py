@@ -27,10 +27,11 @@ from typing import Any
 import zenoh
 from zenoh.handlers import Callback, FifoChannel
 
+from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.bus.zenoh_relay import Hub, Relay
-from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, open_session
+from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
 from selfconf.errors import NetworkError
 
 log = logging.getLogger(__name__)
@@ -70,15 +71,22 @@ def _close_all() -> None:
         bus.close()
 
 
-def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = (), otherwise: Sequence[str] = ()) -> ZenohBus:
+def router(
+    listen: str = ANYWHERE_ON_LOOPBACK,
+    connect: Sequence[str] = (),
+    otherwise: Sequence[str] = (),
+    security: Security | None = None,
+) -> ZenohBus:
     """Open a relay that listens on `listen` and connects to others, and a bus that is its client.
 
     Port 0 means any free one; `endpoint` is the one that was taken. The bus becomes a client of those that are named
     `otherwise` if it relays no more. Raises NetworkError if the endpoint is taken.
     """
-    hub = Hub(listen)
+    hub = Hub(listen, security)
+    own = None if security is None else Security(security.credentials)
     try:
-        bus = ZenohBus(open_session("client", connect=[hub.from_here, *otherwise], connect_seconds=5.0))
+        connected = open_session("client", connect=[hub.from_here, *otherwise], connect_seconds=5.0, security=own)
+        bus = ZenohBus(connected)
         bus.relay(hub, connect)
     except NetworkError:
         hub.close()
@@ -86,7 +94,12 @@ def router(listen: str = ANYWHERE_ON_LOOPBACK, connect: Sequence[str] = (), othe
     return bus
 
 
-def client(connect: Sequence[str], seconds: float = 4.0, shared_memory: bool = False) -> ZenohBus:
+def client(
+    connect: Sequence[str],
+    seconds: float = 4.0,
+    shared_memory: bool = False,
+    credentials: Credentials | None = None,
+) -> ZenohBus:
     """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers.
 
     Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one. Where nothing
@@ -94,14 +107,15 @@ def client(connect: Sequence[str], seconds: float = 4.0, shared_memory: bool = F
     `shared_memory` large payloads go through that, unless so many clients have it already that the hub refuses.
     """
     began = time.monotonic()
+    security = None if credentials is None else Security(credentials)
     for shared in (True, False) if shared_memory else (False,):
         try:
-            return ZenohBus(open_session("client", connect=connect, shared_memory=shared))
+            return ZenohBus(open_session("client", connect=connect, shared_memory=shared, security=security))
         except NetworkError:
             if time.monotonic() - began > HANDSHAKE_MS / 1000:
                 where = ", ".join(connect)
                 raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
-    return ZenohBus(open_session("client", connect=connect, connect_seconds=seconds, shared_memory=shared_memory))
+    return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security))
 
 
 class _Publisher:
@@ -228,6 +242,11 @@ class ZenohBus(Loop):
     def relay(self, hub: Hub, connect: Sequence[str]) -> None:
         """Keep a hub, connected to others, until this bus is closed or relays no more."""
         self._relay, self.endpoint = Relay(hub, self, connect), hub.endpoint
+
+    def secure(self, security: Security) -> None:
+        """Have other rules, or another certificate, where this bus relays. Raises NetworkError."""
+        if self._relay is not None:
+            self._relay.secure(security)
 
     def relay_no_more(self) -> None:
         """Close the hub, if there is one; this bus goes to another hub that it was told of."""

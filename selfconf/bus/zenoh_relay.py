@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import random
 import threading
+import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
@@ -24,9 +25,11 @@ import zenoh
 from zenoh.handlers import Callback
 
 from selfconf.bus.loop import Loop
-from selfconf.bus.zenoh_session import open_session, with_port
+from selfconf.bus.zenoh_session import Security, open_session, with_port
 from selfconf.errors import NetworkError
 
+REOPENING = 2.0
+"""Seconds for which a hub that is opened anew tries to have its port again."""
 QUIET = 0.3
 """Seconds without any change of its links after which an uplink is replaced: trees are computed in between."""
 RETRY_SPREAD = 0.5
@@ -40,16 +43,36 @@ MOST_LINGERING = 3
 class Hub:
     """The session of a router that listens on an endpoint."""
 
-    def __init__(self, listen: str) -> None:
+    def __init__(self, listen: str, security: Security | None = None) -> None:
         """Port 0 means any free one. Raises NetworkError if the endpoint is taken, or none."""
+        self.security = security
         attempts = 5 if listen.endswith(":0") else 1
         for attempt in range(1, attempts + 1):
             self.endpoint = with_port(listen)
             try:
-                self._session = open_session("router", listen=[self.endpoint], shared_memory=True)
+                self._session = self._open()
                 return
             except NetworkError:
                 if attempt == attempts:
+                    raise
+
+    def _open(self) -> Any:
+        return open_session("router", listen=[self.endpoint], shared_memory=True, security=self.security)
+
+    def secure(self, security: Security) -> None:
+        """Have other rules, or another certificate: Zenoh reads them only as a session is opened, so it is opened anew.
+
+        Those that are connected lose this hub for a moment. Raises NetworkError if its port is taken meanwhile.
+        """
+        self.security = security
+        _close(self._session)
+        deadline = time.monotonic() + REOPENING
+        while True:
+            try:
+                self._session = self._open()
+                return
+            except NetworkError:
+                if time.monotonic() > deadline:
                     raise
 
     @property
@@ -78,6 +101,14 @@ class Relay:
         self._others = [e for e in dict.fromkeys([*self._others, *others]) if e != self._hub.endpoint]
         if self._others:
             self._replace()
+
+    def secure(self, security: Security) -> None:
+        """Have other rules, or another certificate, at the hub and at the uplink. Raises NetworkError."""
+        self._hub.secure(security)
+        if self._uplink is not None:
+            self._replace()
+            while self._lingering:  # they have the rules of before
+                self._let_go(self._lingering[0])
 
     def close(self) -> None:
         """Leave the network."""
@@ -115,7 +146,7 @@ class Relay:
 
     def open_uplink(self) -> Any:
         """A session that connects the hub to the others."""
-        return open_session("router", connect=[self._hub.from_here, *self._others])
+        return open_session("router", connect=[self._hub.from_here, *self._others], security=self._hub.security)
 
     def tell(self, uplink: _Uplink, other: str, up: bool) -> None:
         """Have the change of a link noted on the loop's thread."""

@@ -14,12 +14,15 @@ from __future__ import annotations
 import json
 import os
 import socket
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import zenoh
 
+from selfconf.bus.credentials import Credentials
+from selfconf.bus.handshake import why_refused
 from selfconf.errors import NetworkError
 
 LEASE_MS = 1000
@@ -39,7 +42,22 @@ _RETRY = {
     "router": {"period_init_ms": 200, "period_max_ms": 4000, "period_increase_factor": 2.0},
 }
 
-zenoh.init_log_from_env_or("off")  # it would write to stdout, among the results; RUST_LOG=error turns it on
+
+@dataclass(frozen=True, slots=True)
+class Security:
+    """How the links of a session are secured: what it shows, and, at a router, who may do what there."""
+
+    credentials: Credentials
+    access_control: Mapping[str, Any] | None = None
+    """The member `access_control` of a configuration of Zenoh; None: whoever is let in may do everything."""
+
+
+def begin_log(what: str = "off") -> None:
+    """Have Zenoh log something, by default nothing: it writes to stdout, among the results. RUST_LOG goes before.
+
+    The first call counts: Zenoh has one log for a process.
+    """
+    zenoh.init_log_from_env_or(what)
 
 
 def open_session(
@@ -48,19 +66,28 @@ def open_session(
     connect: Sequence[str] = (),
     connect_seconds: float = 0.0,
     shared_memory: bool = False,
+    security: Security | None = None,
 ) -> Any:
     """Open a session. Raises NetworkError for an endpoint that is none or taken, and where no router answers a client.
 
     With `connect_seconds` a client tries for that long, otherwise each endpoint once. A router does not wait for those
     that it connects to. With `shared_memory` large payloads go through that to others on this machine that have it too.
+    With `security` all links are mutual TLS.
     """
-    config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory())
+    for endpoint in (*listen, *connect):
+        _refuse_other_protocol(endpoint, security)
+    begin_log()
+    config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory(), security)
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
         where = ", ".join(connect if mode == "client" else listen)
         if "Address already in use" in str(error):
             raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
+        if security is not None and mode == "client":
+            why = next((found for endpoint in connect if (found := why_refused(endpoint, security.credentials))), "")
+            if why:
+                raise NetworkError(why) from None
         what = "nobody answers at" if mode == "client" else "cannot listen on"
         raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
 
@@ -89,7 +116,12 @@ def _has_shared_memory() -> bool:
 
 
 def _config(
-    mode: str, listen: Sequence[str], connect: Sequence[str], connect_seconds: float, shared_memory: bool
+    mode: str,
+    listen: Sequence[str],
+    connect: Sequence[str],
+    connect_seconds: float,
+    shared_memory: bool,
+    security: Security | None,
 ) -> zenoh.Config:
     config = zenoh.Config()
     settings: dict[str, Any] = {
@@ -110,6 +142,7 @@ def _config(
         "transport/shared_memory/enabled": shared_memory,
         "transport/shared_memory/transport_optimization/message_size_threshold": SHARED_FROM,
         "timestamping/enabled": {"router": True, "peer": True, "client": True},
+        **({} if security is None else _secured(security)),
     }
     for key, value in settings.items():
         try:
@@ -117,6 +150,38 @@ def _config(
         except zenoh.ZError:
             raise NetworkError(f"{', '.join(value)} is no endpoint; write it like tcp/127.0.0.1:7447") from None
     return config
+
+
+def _secured(security: Security) -> dict[str, Any]:
+    """The settings of mutual TLS, and of access control where there is any.
+
+    Zenoh takes an expired certificate off its links only if it is told to.
+    """
+    own = security.credentials
+    settings: dict[str, Any] = {
+        "transport/link/protocols": ["tls"],
+        "transport/link/tls": {
+            "root_ca_certificate": str(own.authorities),
+            "enable_mtls": True,
+            "listen_certificate": str(own.certificate),
+            "listen_private_key": str(own.key),
+            "connect_certificate": str(own.certificate),
+            "connect_private_key": str(own.key),
+            "close_link_on_expiration": True,
+        },
+    }
+    if security.access_control is not None:
+        settings["access_control"] = security.access_control
+    return settings
+
+
+def _refuse_other_protocol(endpoint: str, security: Security | None) -> None:
+    """Raise NetworkError where an endpoint is not of the protocol that is spoken: TLS with keys, TCP without."""
+    protocol = endpoint.partition("/")[0]
+    if security is None and protocol == "tls":
+        raise NetworkError(f"{endpoint} is reached with keys only; give --keys DIR, or set SELFCONF_KEYS")
+    if security is not None and protocol == "tcp":
+        raise NetworkError(f"{endpoint} is without keys, and keys are given; write tls/{endpoint.partition('/')[2]}")
 
 
 def _first_sentence(error: Exception) -> str:

@@ -31,6 +31,8 @@ COMMANDS = {
     "status": "show what is deployed, by whom, and since when",
     "tasks": "list the tasks: which ones run, with which priority, and which live in the sites",
     "stop": "take down what is deployed; components are turned off, not ended",
+    "keys": "make an authority for an ecology, and issue, renew, show and revoke certificates",
+    "access": "show who may do what in an ecology with keys, and who has tried what it may not",
     "why": "say why a role is played by whom: what failed, what was passed over, what would change it",
     "serve": "show the ecology in a browser, and answer SPARQL and the W3C directory of Things over HTTP",
     "demo": "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over",

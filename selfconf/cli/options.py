@@ -112,6 +112,18 @@ def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
         help="where a site listens, such as tcp/127.0.0.1:7447; repeatable (default: $SELFCONF_CONNECT, or else the"
         " sites on this machine)",
     )
+    add_keys_argument(parser)
+
+
+def add_keys_argument(parser: argparse.ArgumentParser) -> None:
+    """The option for the keys by which a program is let in."""
+    parser.add_argument(
+        "--keys",
+        metavar="DIR",
+        type=Path,
+        help="a folder of keys, as `selfconf keys` makes them: links are TLS, and who may do what is kept (default:"
+        " $SELFCONF_KEYS, or else none)",
+    )
 
 
 def _steps(text: str) -> int:
@@ -187,7 +199,7 @@ def joined(given: argparse.Namespace) -> LivingEcology:
     """The living ecology that the arguments name. Raises NetworkError if there is none."""
     from selfconf.api.living import join
 
-    return join(given.ecology, connect=given.connect)
+    return join(given.ecology, connect=given.connect, keys=given.keys)
 
 
 def complain_of(ecology: Ecology) -> None:

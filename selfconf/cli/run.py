@@ -120,21 +120,24 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     """The run in the ecology that there is, or in one with a site of its own for the advertisements given."""
     from selfconf import rendezvous
     from selfconf.api.local_site import SiteProcess
+    from selfconf.api.membership import MEMBERS
     from selfconf.api.run import Run
     from selfconf.configurator.state import Policy
 
     policy, method = Policy(given.policy), method_of(given, task)
     upgrade = given.settle if given.upgrade else None
     begun = partial(Run, task, method, policy=policy, wait=given.wait, priority=given.priority, upgrade=upgrade)
+    shown = rendezvous.credentials(given.keys, *MEMBERS)
+    begun = partial(begun, credentials=shown)
     with ExitStack() as stack:
         paths = given.ads if given.endpoint is None else [stack.enter_context(_fetched(given, task, method))]
         if paths is None:
-            ecology, endpoints = rendezvous.find(given.ecology, given.connect)
+            ecology, endpoints = rendezvous.find(given.ecology, given.connect, shown)
             if given.name is not None:
                 _check_name(given)
             yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
             return
-        site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect))
+        site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect, given.keys))
         described = partial(_described, given.ads or ())
         running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)
         yield stack.enter_context(running), site

@@ -42,12 +42,14 @@ def run(given: argparse.Namespace) -> int:
     missing = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
     if missing:
         raise InstallationError(f"{' and '.join(missing)} is missing; install the extra `serve`")
+    from selfconf import rendezvous
     from selfconf.serve import serve_ecology
 
+    shown = rendezvous.credentials(given.keys, "read", "conf", "site")
     with joined(given) as ecology:
         name, endpoints = ecology.name, ecology.endpoints
     place, seconds, folder = (given.host, given.port), given.seconds, given.history
-    serve_ecology(name, endpoints, *place, seconds, folder, lambda url: _tell(name, url))
+    serve_ecology(name, endpoints, shown, *place, seconds, folder, lambda url: _tell(name, url))
     return 0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from selfconf.cli.options import add_keys_argument
 from selfconf.cli.terminal import complain
 
 EXAMPLE = """  selfconf site examples/peis-home --ecology home"""
@@ -37,6 +38,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
         " are found by themselves",
     )
+    add_keys_argument(parser)
+    parser.add_argument(
+        "--insecure",
+        action="store_true",
+        help="listen beyond this host without keys: whoever reaches it may do everything",
+    )
     parser.add_argument(
         "--state",
         metavar="DIR",
@@ -56,5 +63,16 @@ def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT or SIGTERM; then 0."""
     from selfconf.api.site_program import serve
 
-    serve(given.paths, given.ecology, given.name, given.listen, given.connect, complain, given.state, given.log)
+    serve(
+        given.paths,
+        given.ecology,
+        given.name,
+        given.listen,
+        given.connect,
+        complain,
+        given.state,
+        given.log,
+        given.keys,
+        given.insecure,
+    )
     return 0

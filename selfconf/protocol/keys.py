@@ -6,6 +6,8 @@
     selfconf/{ecology}/site/{site}/@ctl/wake                start a dormant component (call)
     selfconf/{ecology}/site/{site}/@ctl/end                 end a component that does not obey (call)
     selfconf/{ecology}/site/{site}/@ctl/keep                keep a task, or hear that it has ended (call)
+    selfconf/{ecology}/site/{site}/@ctl/introduce           show a certificate, be shown that of the site (call)
+    selfconf/{ecology}/site/{site}/@ctl/access              who may do what, and what was refused (call)
     selfconf/{ecology}/site/{site}/tasks/{task}             a task that the site keeps (queryable, one reply each)
     selfconf/{ecology}/task/{task}                          what has become of a task that the sites keep (put)
     selfconf/{ecology}/c/{shard}/{component}/live/{life}    a component is alive (liveliness token)
@@ -95,6 +97,16 @@ class Keys:
     def end(self, site: str) -> str:
         return self._site(site, "@ctl/end")
 
+    def introduce(self, site: str) -> str:
+        return self._site(site, "@ctl/introduce")
+
+    def access(self, site: str = "*") -> str:
+        return self._site(site, "@ctl/access")
+
+    def all_of_site(self, site: str) -> tuple[str, ...]:
+        """What a site says, under whatever key."""
+        return self._site(site, "**"), self._site(site, "@ctl/*")
+
     def keep(self, site: str = "*") -> str:
         return self._site(site, "@ctl/keep")
 
@@ -125,6 +137,13 @@ class Keys:
     def outputs(self, component: IRI) -> str:
         return self._component(component, "out/*")
 
+    def any_output(self) -> str:
+        return f"selfconf/{self.ecology}/c/*/*/out/*"
+
+    def all_of_component(self, component: IRI) -> tuple[str, ...]:
+        """What a component says, under whatever key."""
+        return self._component(component, "**"), self._component(component, "@ctl/*")
+
     def fail(self, component: IRI) -> str:
         return self._component(component, "fail")
 
@@ -139,6 +158,13 @@ class Keys:
 
     def call(self, component: IRI, call: str = "*") -> str:
         return self._component(component, f"@ctl/{call}")
+
+    def any_call(self) -> str:
+        return f"selfconf/{self.ecology}/c/*/*/@ctl/*"
+
+    def everything(self) -> tuple[str, ...]:
+        """Every key of the ecology."""
+        return f"selfconf/{self.ecology}/**", f"selfconf/{self.ecology}/**/@ctl/**"
 
     def _configurator(self, name: str, rest: str) -> str:
         return f"selfconf/{self.ecology}/conf/{name}/{rest}"
@@ -163,6 +189,11 @@ class Keys:
 
     def notices(self, name: str = "*") -> str:
         return self._configurator(name, "events")
+
+    def all_of_configurators(self, prefix: str) -> tuple[str, ...]:
+        """What configurators say whose names begin with a prefix and a hyphen, under whatever key; `*`: all of them."""
+        names = "*" if prefix == "*" else f"{prefix}-$*"
+        return self._configurator(names, "**"), self._configurator(names, "@ctl/*")
 
     def configurator_call(self, name: str, call: str = "*") -> str:
         return self._configurator(name, f"@ctl/{call}")

@@ -190,6 +190,53 @@ class Page:
     startable: bool = False
     life: str = ""
     """Which life of the site replies: another one may have its name."""
+    program: IRI | None = None
+    """The component that stands for the process of this one, where several share a process; it has the certificate."""
+    insecure: bool = False
+    """Whether the site listens beyond its host without keys."""
+
+
+@dataclass(frozen=True, slots=True)
+class Introduction:
+    """A certificate that is shown to a site, which lets in whom its authority vouches for, and shows its own."""
+
+    certificate: str
+    """The certificate, as PEM. It is no secret: it helps nobody who lacks its key."""
+    known: bool = False
+    """In an answer: whether the site knew the one that asks, so that its rules stay as they are."""
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """What somebody may do at the hubs of a site, as keys, and as a sentence that says it."""
+
+    principal: str
+    """A common name; empty for everybody with a certificate of the authority."""
+    sentence: str
+    says: tuple[str, ...] = ()
+    """Under which keys it may say something."""
+    asked: tuple[str, ...] = ()
+    """As which keys, besides, others may ask for that or listen to it: they know it by wider ones."""
+    hears: tuple[str, ...] = ()
+    """Under which keys it may ask and listen."""
+    about: tuple[IRI, ...] = ()
+    """The components that it speaks for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """What somebody has tried, and may not."""
+
+    principal: str
+    """A common name; empty for one who has shown no certificate that is believed."""
+    attempt: str
+    """What was tried, such as `Query`, or why the certificate is not believed."""
+    key: str
+    """Under which key; empty where there was no link."""
+    number: int
+    """How often."""
+    latest: float
+    """When it was last tried, in seconds of the Unix epoch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,6 +347,9 @@ Message = (
     | Fail
     | Free
     | Wake
+    | Introduction
+    | Access
+    | Refused
     | End
     | Known
     | Notice

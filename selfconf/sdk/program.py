@@ -7,13 +7,15 @@ import logging
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import SelfconfError
+from selfconf.model.term import IRI
 from selfconf.sdk.component import Component
-from selfconf.sdk.host import Host
+from selfconf.sdk.host import Host, profile_of
 from selfconf.termination import Termination, started_by_another
 
 HUNG_ENDS = 0.2
@@ -37,7 +39,7 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     life = os.environ.pop(rendezvous.LIFE_VARIABLE, "")  # it is this process's own: what it starts shall not have it
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
-        host = open_host(given.ecology, given.connect)
+        host = open_host(given.ecology, given.connect, given.keys, profile_of(kinds[0]).component)
         for kind in kinds:
             host.add(kind(), life)
         run_until_ended(host)
@@ -57,12 +59,23 @@ def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="where a site listens, such as tcp/127.0.0.1:7447; repeatable",
     )
+    parser.add_argument("--keys", metavar="DIR", type=Path, help="a folder of keys (default: $SELFCONF_KEYS)")
 
 
-def open_host(ecology: str | None = None, connect: Sequence[str] = ()) -> Host:
-    """A host for components, in the ecology that `selfconf.rendezvous.find` finds. Raises NetworkError."""
-    name, endpoints = rendezvous.find(ecology, connect)
-    bus = client(endpoints, shared_memory=True)
+def open_host(
+    ecology: str | None = None,
+    connect: Sequence[str] = (),
+    keys: Path | None = None,
+    component: IRI | None = None,
+) -> Host:
+    """A host for components, in the ecology that `selfconf.rendezvous.find` finds.
+
+    `keys` is a folder of keys: a component's own, or that of a site of this host, by which `component` gets a
+    certificate. Raises NetworkError, and AuthorError for keys that are none.
+    """
+    shown = rendezvous.component_credentials(keys, component)
+    name, endpoints = rendezvous.find(ecology, connect, shown)
+    bus = client(endpoints, shared_memory=True, credentials=shown)
 
     def hung(what: str) -> None:
         print(what, file=sys.stderr, flush=True)

@@ -13,8 +13,9 @@ from types import FrameType
 
 import uvicorn
 
+from selfconf.api.membership import member
+from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
-from selfconf.bus.zenoh_bus import client
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.query import StandingDataset
 from selfconf.rendezvous import usual_endpoints
@@ -36,6 +37,7 @@ LAST_ANSWERS = 2
 def serve_ecology(
     ecology: str,
     endpoints: Sequence[str],
+    credentials: Credentials | None,
     host: str,
     port: int,
     seconds: float,
@@ -44,13 +46,15 @@ def serve_ecology(
 ) -> None:
     """Serve an ecology over HTTP until SIGINT or SIGTERM; `listening` receives the URL.
 
-    `seconds` is what a query may take, `folder` where the history is kept, if it is. Raises NetworkError where the port
-    is taken or the ecology cannot be reached, and AuthorError for a folder that cannot be used.
+    `credentials` are what it shows where there are keys, `seconds` is what a query may take, `folder` where the history
+    is kept, if it is. Raises NetworkError where the port is taken or the ecology cannot be reached, and AuthorError for
+    a folder that cannot be used.
     """
     with bound(host, port) as place:
         record = Record(folder)
         try:
-            bus = client(list(dict.fromkeys((*endpoints, *usual_endpoints(ecology)))))  # the relay may move there
+            usual = usual_endpoints(ecology, secure=credentials is not None)  # the relay may move there
+            bus = member(ecology, list(dict.fromkeys((*endpoints, *usual))), credentials)
             try:
                 asyncio.run(_serve(bus, ecology, record, place, seconds, listening))
             finally:

@@ -20,13 +20,13 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from selfconf.bus.port import Bus, Urgency
-from selfconf.errors import PeerError, reason
+from selfconf.errors import AuthorError, PeerError, reason
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Cause, Fail
-from selfconf.rendezvous import LIFE_VARIABLE
+from selfconf.rendezvous import KEYS_VARIABLE, LIFE_VARIABLE
 from selfconf.site.life_watch import LifeWatch
 from selfconf.site.printed_lines import PrintedLines
 from selfconf.site.process_group import ProcessGroup
@@ -60,8 +60,13 @@ class ComponentProgram:
         folder: Path,
         environment: Mapping[str, str],
         printed: Callable[[], PrintedLines],
+        keys_of: Callable[[IRI], Path] | None = None,
     ) -> None:
-        """`printed` is where its lines go, `environment` is what it finds its ecology by."""
+        """`printed` is where its lines go, `environment` is what it finds its ecology by.
+
+        `keys_of` makes the folder of keys of a process, by the first of its components; None: there are no keys.
+        """
+        self._keys_of = keys_of
         self._bus, self._keys, self.command, self._folder = bus, keys, command, folder
         self._environment, self._printed = environment, printed
         self._profiles: dict[IRI, Profile] = {}
@@ -134,6 +139,7 @@ class ComponentProgram:
         environment = {
             **os.environ,
             **self._environment,
+            **self._keys_environment(),
             **parent_environment(),
             LIFE_VARIABLE: self._life,
             "PATH": _path(),
@@ -155,6 +161,15 @@ class ComponentProgram:
         self._note(f"started as process {group.number}: {self.command}")
         self._follow_lives()
         self._check_in(PROCESS_CHECK)
+
+    def _keys_environment(self) -> dict[str, str]:
+        """The variable by which the process finds its keys. Raises PeerError where they cannot be made."""
+        if self._keys_of is None:
+            return {}
+        try:
+            return {KEYS_VARIABLE: str(self._keys_of(min(self._profiles)).absolute())}
+        except AuthorError as error:
+            raise PeerError(f"there is no certificate for {min(self._profiles)}: {error}") from None
 
     def _follow_lives(self) -> None:
         for component, profile in self._profiles.items():

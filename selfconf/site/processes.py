@@ -29,12 +29,19 @@ class ComponentProcesses:
     """The processes that one site has started, by component."""
 
     def __init__(
-        self, bus: Bus, keys: Keys, environment: Mapping[str, str] | None, log_path: Path | None = None
+        self,
+        bus: Bus,
+        keys: Keys,
+        environment: Mapping[str, str] | None,
+        log_path: Path | None = None,
+        keys_of: Callable[[IRI], Path] | None = None,
     ) -> None:
         """`environment` is what a started component finds its ecology by; None: no process is ever started.
 
-        `log_path` is the file that keeps what components print; None: it is only shown.
+        `log_path` is the file that keeps what components print; None: it is only shown. `keys_of` makes the folder of
+        keys of a process, by the component that stands for it; None: there are no keys.
         """
+        self._keys_of = keys_of
         self._bus, self._keys, self._environment, self._log_path = bus, keys, environment, log_path
         self._programs: dict[Started, ComponentProgram] = {}
         self._printed: PrintedLines | None = None
@@ -57,7 +64,9 @@ class ComponentProcesses:
             program = self._programs.get(started)
         if program is None:
             folder, command = started
-            program = ComponentProgram(self._bus, self._keys, command, folder, self._environment, self._printing)
+            program = ComponentProgram(
+                self._bus, self._keys, command, folder, self._environment, self._printing, self._keys_of
+            )
             self._programs[started] = program
             if self._closed:  # after it is known: either it is closed here, or by `close`
                 program.close()
@@ -112,6 +121,18 @@ def started_once(profile: Profile) -> Started | None:
     if profile.command is None:
         return None
     return Path(profile.place.source).parent if profile.place else Path(), profile.command
+
+
+def programs_of(profiles: Iterable[Profile]) -> dict[IRI, IRI]:
+    """By component, the one that stands for its process: the first of those that share a command in a folder."""
+    first: dict[Started, IRI] = {}
+    found: dict[IRI, IRI] = {}
+    for profile in sorted(profiles, key=lambda profile: profile.component):
+        started = started_once(profile)
+        found[profile.component] = (
+            profile.component if started is None else first.setdefault(started, profile.component)
+        )
+    return found
 
 
 def cannot_start(component: IRI) -> PeerError:

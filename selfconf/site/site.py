@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import secrets
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,7 +20,7 @@ from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import End, Known, Page, Wake
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import ntriples
-from selfconf.site.processes import ComponentProcesses, Started, cannot_start, started_once
+from selfconf.site.processes import ComponentProcesses, Started, cannot_start, programs_of, started_once
 from selfconf.site.shelf import Shelf
 
 log = logging.getLogger(__name__)
@@ -54,15 +54,22 @@ class Site:
         environment: Mapping[str, str] | None = None,
         log_path: Path | None = None,
         life: str = "",
+        keys_of: Callable[[IRI], Path] | None = None,
+        insecure: bool = False,
     ) -> None:
         """`environment` is what a started component finds its ecology by; None: this site starts none.
 
-        `log_path` is the file that keeps what components print; None: it is only shown.
+        `log_path` is the file that keeps what components print; None: it is only shown. `keys_of` makes the folder of
+        keys of the process of a component; None: there are no keys. `insecure` is told to whoever asks: the site
+        listens beyond its host without keys.
         """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
-        self.processes = ComponentProcesses(bus, self.keys, environment, log_path)
+        self.processes = ComponentProcesses(bus, self.keys, environment, log_path, keys_of)
+        self._insecure = insecure
         self.life = life or secrets.token_hex(4)
         """Which life of the site this is: another site may have its name."""
+        self.programs: dict[IRI, IRI] = {}
+        """The components of this site, each with the one that stands for its process, which has the certificate."""
         self._revision = 1
         shelf.refresh()
         self._served: list[_ServedAdvertisement] = []
@@ -90,6 +97,7 @@ class Site:
 
     def _read_shelf(self) -> list[_ServedAdvertisement]:
         """What is replied, made once for all questions and, where an advertisement has stayed, not even again."""
+        self.programs = programs_of(one.profile for one in self.shelf.advertisements.values())
         self._sharing: dict[Started, list[IRI]] = {}
         for component, advertisement in self.shelf.advertisements.items():
             started = started_once(advertisement.profile)
@@ -127,11 +135,22 @@ class Site:
         try:
             total = len(self._served)
             if total == 0 or self._is_known(request.payload):
-                page = Page(0, total, self._revision, life=self.life)
+                page = Page(0, total, self._revision, life=self.life, insecure=self._insecure)
                 request.reply(self.keys.advertisements(self.name).replace("**", "none"), b"", encode(page))
                 return
             for index, one in enumerate(self._served):
-                page = Page(index, total, self._revision, one.component, one.source, one.startable, self.life)
+                program = self.programs[one.component]
+                page = Page(
+                    index,
+                    total,
+                    self._revision,
+                    one.component,
+                    one.source,
+                    one.startable,
+                    self.life,
+                    None if program == one.component else program,
+                    self._insecure,
+                )
                 request.reply(one.key, one.payload, encode(page))
         finally:
             request.finish()

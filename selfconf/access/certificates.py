@@ -1,0 +1,250 @@
+"""X.509 certificates: an authority makes them, programs show them to each other (RFC 5280, keys on EC P-256).
+
+A certificate here is short-lived and names its holder in its common name (`principal`). Times are in UTC. What is
+wrong with one is said in a sentence each, since Zenoh itself says only that it cannot connect.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta, timezone
+
+from selfconf.access.principal import Principal
+from selfconf.errors import AuthorError, InstallationError, PeerError
+
+try:
+    from cryptography import x509
+    from cryptography.exceptions import InvalidSignature
+    from cryptography.hazmat.primitives import hashes, serialization
+    from cryptography.hazmat.primitives.asymmetric import ec
+    from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
+except ImportError:  # an extra: who needs no keys need not have it
+    raise InstallationError(
+        "keys need the package cryptography; install it with: pip install 'selfconf[keys]'"
+    ) from None
+
+AUTHORITY_DAYS = 3650.0
+"""How long an authority lasts."""
+CLOCKS_DIFFER = timedelta(minutes=5)
+"""By how much the clocks of two hosts may differ: a certificate is valid from so long before it was made."""
+LARGEST_PEM = 1 << 14
+"""Bytes of a certificate at most: one with a hundred addresses has 4 KiB."""
+LOOPBACK = ("localhost", "127.0.0.1", "::1")
+"""The addresses that every certificate is good for."""
+Key = ec.EllipticCurvePrivateKey
+
+
+def new_key() -> Key:
+    """A new private key, on the curve P-256."""
+    return ec.generate_private_key(ec.SECP256R1())
+
+
+def key_pem(key: Key) -> bytes:
+    """A private key as PEM (PKCS #8), not encrypted: the permissions of its file protect it."""
+    return key.private_bytes(
+        serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+    )
+
+
+def read_key(pem: bytes) -> Key:
+    """A private key from PEM. Raises AuthorError."""
+    try:
+        key = serialization.load_pem_private_key(pem, None)
+    except (ValueError, TypeError):
+        raise AuthorError("holds no private key in PEM") from None
+    if not isinstance(key, ec.EllipticCurvePrivateKey):
+        raise AuthorError("holds a private key that is none on an elliptic curve")
+    return key
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """An X.509 certificate."""
+
+    x509: x509.Certificate
+
+    @classmethod
+    def read(cls, pem: bytes) -> Certificate:
+        """A certificate from PEM, the first where there are several. Raises PeerError for what is none."""
+        if len(pem) > LARGEST_PEM:
+            raise PeerError(f"{len(pem)} bytes are too many for a certificate")
+        try:
+            return cls(x509.load_pem_x509_certificate(pem))
+        except ValueError:
+            raise PeerError("that is no certificate in PEM") from None
+
+    @property
+    def pem(self) -> bytes:
+        """The certificate as PEM."""
+        return self.x509.public_bytes(serialization.Encoding.PEM)
+
+    @property
+    def common_name(self) -> str:
+        """The common name of its subject; empty if it has none, or several."""
+        names = self.x509.subject.get_attributes_for_oid(NameOID.COMMON_NAME)
+        return str(names[0].value) if len(names) == 1 else ""
+
+    @property
+    def principal(self) -> Principal:
+        """Whom it speaks for. Raises PeerError."""
+        return Principal.of(self.common_name)
+
+    @property
+    def serial(self) -> int:
+        """The number that its authority has given to it, and to no other."""
+        return self.x509.serial_number
+
+    @property
+    def begins(self) -> datetime:
+        """From when it is valid."""
+        return self.x509.not_valid_before_utc
+
+    @property
+    def ends(self) -> datetime:
+        """Until when it is valid."""
+        return self.x509.not_valid_after_utc
+
+    @property
+    def hosts(self) -> tuple[str, ...]:
+        """The names and addresses of hosts that it is good for."""
+        try:
+            names = self.x509.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+        except (x509.ExtensionNotFound, ValueError):
+            return ()
+        return (
+            *names.get_values_for_type(x509.DNSName),
+            *map(str, names.get_values_for_type(x509.IPAddress)),
+        )
+
+    def half_over(self, now: datetime | None = None) -> bool:
+        """Whether more than half of its time has passed: time to renew it."""
+        return (now or _now()) > self.begins + (self.ends - self.begins) / 2
+
+    def belongs_to(self, key: Key) -> bool:
+        """Whether it is the certificate of a private key."""
+        return self.x509.public_key() == key.public_key()
+
+    def fault(self, authorities: Iterable[Certificate], now: datetime | None = None) -> str:
+        """What is wrong with it, in words that follow "the certificate of NAME"; empty if nothing is."""
+        now = now or _now()
+        if not any(self._signed_by(authority) for authority in authorities):
+            return "was issued by another authority"
+        if now < self.begins:
+            return f"is not valid before {_at(self.begins)}; is the clock of this host right?"
+        if now > self.ends:
+            return f"has expired at {_at(self.ends)}; renew it with `selfconf keys renew`"
+        try:
+            _ = self.principal
+        except PeerError as error:
+            return f"names nobody: {error}"
+        return ""
+
+    def _signed_by(self, authority: Certificate) -> bool:
+        try:
+            self.x509.verify_directly_issued_by(authority.x509)
+        except (ValueError, TypeError, InvalidSignature):
+            return False
+        return True
+
+
+def new_authority(name: str) -> tuple[Certificate, Key]:
+    """An authority that can issue certificates, but no further authorities, with its key."""
+    key, subject = new_key(), _subject(name)
+    usage = x509.KeyUsage(
+        digital_signature=True,
+        key_cert_sign=True,
+        crl_sign=True,
+        content_commitment=False,
+        key_encipherment=False,
+        data_encipherment=False,
+        key_agreement=False,
+        encipher_only=False,
+        decipher_only=False,
+    )
+    begun = _begun(subject, subject, key.public_key(), AUTHORITY_DAYS)
+    begun = begun.add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
+    return Certificate(begun.add_extension(usage, critical=True).sign(key, hashes.SHA256())), key
+
+
+def issue(
+    authority: Certificate,
+    authority_key: Key,
+    principal: Principal,
+    key: ec.EllipticCurvePublicKey,
+    hosts: Sequence[str],
+    days: float,
+) -> Certificate:
+    """A certificate for a public key, good for loopback and some hosts, for some days. Raises AuthorError."""
+    names = [_host(host) for host in dict.fromkeys((*LOOPBACK, *hosts))]
+    begun = _begun(_subject(principal.common_name), authority.x509.subject, key, days)
+    for extension, critical in (
+        (x509.BasicConstraints(ca=False, path_length=None), True),
+        (x509.SubjectAlternativeName(names), False),
+        (x509.ExtendedKeyUsage([ExtendedKeyUsageOID.SERVER_AUTH, ExtendedKeyUsageOID.CLIENT_AUTH]), False),
+    ):
+        begun = begun.add_extension(extension, critical)
+    return Certificate(begun.sign(authority_key, hashes.SHA256()))
+
+
+def revocations(authority: Certificate, key: Key, revoked: Iterable[Certificate]) -> bytes:
+    """A list of revoked certificates, signed by their authority, as PEM (RFC 5280, section 5)."""
+    now = _now()
+    builder = x509.CertificateRevocationListBuilder().issuer_name(authority.x509.subject).last_update(now)
+    builder = builder.next_update(now + timedelta(days=AUTHORITY_DAYS))
+    for certificate in revoked:
+        one = x509.RevokedCertificateBuilder().serial_number(certificate.serial).revocation_date(now).build()
+        builder = builder.add_revoked_certificate(one)
+    return builder.sign(key, hashes.SHA256()).public_bytes(serialization.Encoding.PEM)
+
+
+def read_revocations(pem: bytes, authority: Certificate) -> frozenset[int]:
+    """The serials of revoked certificates. Raises AuthorError for a list that the authority has not signed."""
+    try:
+        revoked = x509.load_pem_x509_crl(pem)
+        genuine = revoked.is_signature_valid(authority.x509.public_key())  # type: ignore[arg-type]  # an EC key, as made here
+    except (ValueError, TypeError):
+        raise AuthorError("holds no list of revoked certificates in PEM") from None
+    if not genuine:
+        raise AuthorError("holds a list of revoked certificates that this authority has not signed")
+    return frozenset(one.serial_number for one in revoked)
+
+
+def _begun(
+    subject: x509.Name, issuer: x509.Name, key: ec.EllipticCurvePublicKey, days: float
+) -> x509.CertificateBuilder:
+    now = _now()
+    try:
+        ends = now + timedelta(days=days)
+    except OverflowError:
+        raise AuthorError(f"{days} days are too many") from None
+    builder = x509.CertificateBuilder().subject_name(subject).issuer_name(issuer).public_key(key)
+    builder = builder.serial_number(x509.random_serial_number())
+    return builder.not_valid_before(now - CLOCKS_DIFFER).not_valid_after(ends)
+
+
+def _subject(name: str) -> x509.Name:
+    return x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name)])
+
+
+def _host(host: str) -> x509.GeneralName:
+    try:
+        return x509.IPAddress(ipaddress.ip_address(host))
+    except ValueError:
+        pass
+    try:
+        host.encode("ascii")
+        if not host or any(not (c.isalnum() or c in ".-") for c in host):
+            raise ValueError(host)
+        return x509.DNSName(host)
+    except ValueError:
+        raise AuthorError(f"{host!r} is neither the name of a host nor an address") from None
+
+
+def _now() -> datetime:
+    return datetime.now(timezone.utc)
+
+
+def _at(moment: datetime) -> str:
+    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"

@@ -1,0 +1,303 @@
+"""The doorkeeper of a site with keys: it learns who there is, and has the hub of this host let in just these.
+
+Zenoh reads its rules only as a router is opened. So they follow from who is what, and not from what is deployed: from
+the certificates that people, programs and sites have shown (`introduce`), from the advertisements of this host, and
+from those of each other site, which speaks for the components that it advertises. When any of that changes, the hub is
+opened anew, which takes some ten milliseconds.
+
+A component that two sites advertise is nobody's, until `selfconf access --believe SITE COMPONENT` has said whose it is;
+on its own host a site goes on with its own.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from typing import NamedTuple, TypeGuard
+
+from selfconf.access.beliefs import believed
+from selfconf.access.keys_folder import KeysFolder
+from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.access.rules import AccessRules, rules_of
+from selfconf.bus.credentials import Credentials
+from selfconf.bus.port import Bus, Replies, Request, Undo
+from selfconf.bus.refusals import RefusalLog
+from selfconf.errors import NetworkError, PeerError, SelfconfError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, site_of
+from selfconf.protocol.messages import Introduction, Known, Page
+
+log = logging.getLogger(__name__)
+
+LOOK = 1.0
+"""How often, in seconds, the folder of keys and what was refused are looked at."""
+SOON = 0.05
+"""Seconds after which others are asked what they advertise, when something has changed: mostly more does."""
+ANSWERS = 3.0
+"""Seconds that other sites may take to say what they advertise."""
+INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
+"""Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
+INTRODUCE_AGAIN = 5.0
+MOST_TOLD = 20
+"""How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
+MOST_ADVERTISED = 20_000
+"""For how many components another site can vouch."""
+
+
+class _Vouched(NamedTuple):
+    """What a site says of one of its components: which one, and whose certificate its process has."""
+
+    component: IRI
+    program: IRI
+
+
+def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, IRI]) -> AccessRules:
+    """The rules that follow from what a site knows by itself; `own` as for a `Doorkeeper`."""
+    return rules_of(ecology, site, _by_program(own.items()), {}, _principals(folder))
+
+
+def _principals(folder: KeysFolder) -> list[Principal]:
+    """Who has shown a good certificate."""
+    return [one.principal for one in folder.admitted().values()]
+
+
+def _by_program(components: Iterable[tuple[IRI, IRI]]) -> dict[IRI, list[IRI]]:
+    """The components of each process, by the one that stands for it."""
+    found: dict[IRI, list[IRI]] = {}
+    for component, program in sorted(components):
+        found.setdefault(program, []).append(component)
+    return found
+
+
+class Doorkeeper:
+    """Keeps the rules of one site's hub."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        ecology: str,
+        site: str,
+        keys_folder: KeysFolder,
+        credentials: Credentials,
+        own: Callable[[], Mapping[IRI, IRI]],
+        of_this_host: Callable[[], Iterable[str]],
+        enforce: Callable[[AccessRules], None],
+        complain: Callable[[str], None],
+        refusals: RefusalLog,
+        rules: AccessRules,
+    ) -> None:
+        """`own` are the components of this site, each with the one whose certificate its process has.
+
+        `rules` are those in force. `of_this_host` are the names of the sites of this host, whose components connect to its hub. `enforce` opens
+        the hub with other rules; it raises NetworkError.
+        """
+        self._bus, self._keys, self._name, self._folder = bus, Keys(ecology), site, keys_folder
+        self._credentials, self._own, self._enforce, self._complain = credentials, own, enforce, complain
+        self._of_this_host, self._refusals = of_this_host, refusals
+        self._others: dict[str, tuple[_Vouched, ...]] = {}
+        self._revisions: dict[str, int] = {}
+        self._disputed: frozenset[IRI] = frozenset()
+        self._told: dict[tuple[str, str, str], int] = {}
+        self._tellings: list[float] = []
+        self._ask_soon: Undo = lambda: None
+        self._renewed_at = credentials.certificate.stat().st_mtime_ns
+        self.rules = rules
+        bus.serve(self._keys.introduce(site), self._introduced)
+        bus.serve(self._keys.access(site), self._tell)
+        bus.subscribe(self._keys.changed(), lambda _: self._others_changed())
+        bus.watch(self._keys.any_site_life(), lambda *_: self._others_changed())
+        for pause in INTRODUCTIONS:
+            bus.later(pause, self._introduce)
+        bus.later(INTRODUCE_AGAIN, self._introduce_again)
+        self._look()
+
+    # Who there is.
+
+    def _introduced(self, request: Request) -> None:
+        """Somebody shows a certificate: the hub lets in whom the authority vouches for."""
+        try:
+            known = self._admit(decode(request.payload, Introduction).certificate)
+            mine = self._credentials.certificate.read_text()
+            request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known)))
+        except SelfconfError as error:
+            request.refuse(str(error))
+        except OSError as error:
+            request.refuse(f"site {self._name} cannot read its certificate: {error.strerror}")
+        finally:
+            request.finish()
+        self._bus.later(0.0, self._renew_rules)  # after the answer is on its way
+
+    def _admit(self, certificate: str) -> bool:
+        """Whether the holder of a certificate was known before. Raises PeerError for one that is not good."""
+        before = self._folder.admitted()
+        return self._folder.admit(certificate.encode()).common_name in before
+
+    def _introduce(self) -> None:
+        """Show the certificate of this site to all others, and learn theirs."""
+        try:
+            mine = encode(Introduction(self._credentials.certificate.read_text()))
+        except OSError as error:
+            log.error("cannot read %s: %s", self._credentials.certificate, error)
+            return
+        self._bus.ask(self._keys.introduce("*"), mine, ANSWERS, self._met)
+
+    def _introduce_again(self) -> None:
+        self._introduce()
+        self._bus.later(INTRODUCE_AGAIN, self._introduce_again)
+
+    def _met(self, replies: Replies) -> None:
+        for sample in replies.samples:
+            try:
+                self._admit(decode(sample.payload, Introduction).certificate)
+            except SelfconfError as error:
+                self._tell_once("", str(error), sample.key)
+        self._renew_rules()
+
+    # What others advertise.
+
+    def _others_changed(self) -> None:
+        self._ask_soon()
+        self._ask_soon = self._bus.later(SOON, self._ask_others)
+
+    def _ask_others(self) -> None:
+        known = encode(Known(dict(self._revisions)))
+        self._bus.ask(self._keys.advertisements(), known, ANSWERS, self._others_answered)
+
+    def _others_answered(self, replies: Replies) -> None:
+        found: dict[str, dict[IRI, IRI]] = {}
+        for sample in replies.samples:
+            try:
+                page, site = decode(sample.attachment, Page), site_of(sample.key)
+            except PeerError:
+                continue
+            if site == self._name:
+                continue
+            revision = f"{site}/{page.life}"
+            if page.component is None and self._revisions.get(revision) == page.revision:
+                continue  # as before
+            self._revisions = {known: at for known, at in self._revisions.items() if known.partition("/")[0] != site}
+            vouched = found.setdefault(site, {})
+            if self._is_advertised(page.component, site, sample.key) and len(vouched) < MOST_ADVERTISED:
+                vouched[page.component] = page.program or page.component
+            if replies.complete:
+                self._revisions[revision] = page.revision
+        for site, vouched in found.items():
+            self._others[site] = tuple(_Vouched(*one) for one in sorted(vouched.items()))
+        self._renew_rules()
+
+    def _is_advertised(self, component: IRI | None, site: str, key: str) -> TypeGuard[IRI]:
+        return component is not None and key == self._keys.advertisement(site, component)
+
+    # The rules.
+
+    def _made(self) -> AccessRules:
+        principals = _principals(self._folder)
+        sites = {principal.name for principal in principals if principal.kind is PrincipalKind.SITE}
+        advertised = {self._name: tuple(_Vouched(*one) for one in self._own().items())}
+        advertised |= {site: vouched for site, vouched in self._others.items() if site in sites}
+        undisputed = self._undisputed(advertised)
+        local = {self._name, *self._of_this_host()}
+        programs: dict[IRI, list[IRI]] = {}
+        for site in sorted(local & advertised.keys()):
+            mine = undisputed[site]
+            programs |= _by_program(
+                (one.component, one.program if one.program in mine else one.component)
+                for one in advertised[site]
+                if one.component in mine
+            )
+        others = {site: components for site, components in undisputed.items() if site != self._name}
+        return rules_of(self._keys.ecology, self._name, programs, others, principals)
+
+    def _undisputed(self, advertised: Mapping[str, Iterable[_Vouched]]) -> dict[str, frozenset[IRI]]:
+        """The components that each site speaks for."""
+        sites: dict[IRI, list[str]] = {}
+        for site, vouched in sorted(advertised.items()):
+            for one in vouched:
+                sites.setdefault(one.component, []).append(site)
+        decided = believed(self._folder.path)
+        disputed = {c: claim for c, claim in sites.items() if len(claim) > 1 and decided.get(c) not in claim}
+        for component in sorted(disputed.keys() - self._disputed):
+            claim = " and ".join(disputed[component])
+            self._complain(
+                f"{component} is advertised by the sites {claim}; it is nobody's until you say whose: "
+                f"selfconf access --believe SITE {component}"
+            )
+        self._disputed = frozenset(disputed)
+        found: dict[str, frozenset[IRI]] = {}
+        for site, vouched in advertised.items():
+            mine = (one.component for one in vouched)
+            found[site] = frozenset(c for c in mine if self._is_whose(c, site, sites[c], decided))
+        return found
+
+    def _is_whose(self, component: IRI, site: str, claim: list[str], decided: Mapping[IRI, str]) -> bool:
+        if len(claim) == 1:
+            return True
+        return decided[component] == site if decided.get(component) in claim else site == self._name
+
+    def _renew_rules(self) -> None:
+        """Have the hub opened anew if who may do what has changed."""
+        try:
+            rules = self._made()
+        except SelfconfError as error:
+            self._tell_once("", str(error), "")
+            return
+        if rules != self.rules:
+            self.rules = rules
+            self._enforced()
+
+    def _enforced(self) -> None:
+        try:
+            self._enforce(self.rules)
+        except NetworkError as error:
+            self._complain(f"the hub cannot be opened with its new rules: {error}; trying again")
+            self._bus.later(LOOK, self._enforced)
+
+    def _look(self) -> None:
+        """Look at what changes without a message: the folder of keys, the time, and what was refused."""
+        self._bus.later(LOOK, self._look)
+        self._renew_certificates()
+        self._renew_rules()
+        for one in self._refusals.refused:
+            what = one.principal, one.attempt, one.key
+            if self._told.get(what, 0) < one.number:
+                new, self._told[what] = what not in self._told, one.number
+                if new:
+                    self._tell_once(*what)
+
+    def _renew_certificates(self) -> None:
+        """Renew what is half over, and have the hub show the certificate that lies in the folder now."""
+        try:
+            if self._folder.is_authority:
+                self._folder.credentials((PrincipalKind.SITE,), self._name)
+            changed = self._credentials.certificate.stat().st_mtime_ns
+            for program in set(self._own().values()):
+                if (self._folder.path / "components" / Principal.component(program).common_name).is_dir():
+                    self._folder.component(Principal.component(program))
+        except (SelfconfError, OSError) as error:
+            self._tell_once("", str(error), "")
+            return
+        if changed != self._renewed_at:
+            self._renewed_at = changed
+            self._enforced()
+
+    # What is told.
+
+    def _tell_once(self, principal: str, attempt: str, key: str) -> None:
+        """Say that something was refused, but not for ever."""
+        now = self._bus.now()
+        self._tellings = [at for at in self._tellings if now - at < 60.0]
+        if len(self._tellings) < MOST_TOLD:
+            self._tellings.append(now)
+            who = principal or "somebody without a certificate that is believed"
+            self._complain(f"refused: {who}: {attempt}{f' on {key}' if key else ''}")
+
+    def _tell(self, request: Request) -> None:
+        """Who may do what, and what was refused: a reply for each."""
+        try:
+            for access in self.rules.accesses:
+                request.reply(self._keys.access(self._name), encode(access))
+            for refused in self._refusals.refused:
+                request.reply(self._keys.access(self._name), encode(refused))
+        finally:
+            request.finish()

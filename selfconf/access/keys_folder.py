@@ -1,0 +1,358 @@
+"""A folder of keys: what `--keys DIR` names. Either an authority's own, or that of somebody it has issued to.
+
+    authority.pem     the certificate of the authority, which everybody has
+    authority.key     its key: whoever has it can make certificates for everybody, so it stays on one machine
+    issued/           the certificates it has issued, by common name and serial
+    certificate.pem   whom this folder speaks for, with certificate.key
+    own/NAME/         in the folder of an authority: the certificates of programs that are given the folder itself
+    components.pem    the authority of one host, with components.key: it issues to the components that its sites start
+    components/NAME/  their certificates
+    admitted/         certificates that others have shown to a site
+    revoked.pem       what the authority has revoked; a copy of its own
+
+Keys have the mode 0600 and folders 0700; a folder that others may read is refused. The authority of a host is believed
+by the hubs of that host alone: what a site issues to its components opens no door anywhere else.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar
+
+from selfconf.access.certificates import (
+    LOOPBACK,
+    Certificate,
+    Key,
+    issue,
+    key_pem,
+    new_authority,
+    new_key,
+    read_key,
+    read_revocations,
+    revocations,
+)
+from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.bus.credentials import Credentials
+from selfconf.errors import AuthorError, PeerError, reason
+
+DAYS = 7.0
+"""For how many days a certificate is good unless told otherwise."""
+COMPONENT_DAYS = 1.0
+"""For how many days that of a component which a site starts is good; the site renews it."""
+MAIN = "main"
+"""The name of a program that is given the folder of an authority itself."""
+_AUTHORITY, _HOST_AUTHORITY, _OWN = "authority", "components", "certificate"
+
+
+class KeysFolder:
+    """A folder of keys, checked as it is opened."""
+
+    def __init__(self, path: Path) -> None:
+        """Raises AuthorError for a folder that is none, or that others may read."""
+        self.path = path
+        if not path.is_dir():
+            raise AuthorError(f"there is no folder {path}; make an authority with `selfconf keys init {path}`")
+        self.authority = self._certificate(path / f"{_AUTHORITY}.pem")
+        for key in (_AUTHORITY, _HOST_AUTHORITY, _OWN):
+            _private(path / f"{key}.key")
+
+    @classmethod
+    def init(cls, path: Path) -> KeysFolder:
+        """Make the folder of a new authority. Raises AuthorError where there is one, or anything else."""
+        if path.exists() and (not path.is_dir() or any(path.iterdir())):
+            raise AuthorError(f"{path} exists and is not empty; an authority gets a folder of its own")
+        try:
+            path.mkdir(mode=0o700, parents=True, exist_ok=True)
+            path.chmod(0o700)
+            _write(path / _AUTHORITY, *new_authority("the authority of an ecology"))
+        except OSError as error:
+            raise AuthorError(reason(error)) from None
+        folder = cls(path)
+        for kind in (PrincipalKind.CONFIGURATOR, PrincipalKind.READER):  # known before anybody asks
+            folder.credentials((kind,), MAIN)
+        return folder
+
+    @property
+    def is_authority(self) -> bool:
+        """Whether certificates can be issued with this folder."""
+        return (self.path / f"{_AUTHORITY}.key").is_file()
+
+    @property
+    def serves_a_host(self) -> bool:
+        """Whether certificates can be issued with this folder to the components of this host."""
+        return (self.path / f"{_HOST_AUTHORITY}.key").is_file()
+
+    # What the authority does.
+
+    def issue(self, principal: Principal, out: Path, hosts: Sequence[str] = (), days: float = DAYS) -> Certificate:
+        """Issue a certificate with a new key into a folder of its own. Raises AuthorError."""
+        if out.exists() and (not out.is_dir() or any(out.iterdir())):
+            raise AuthorError(f"{out} exists and is not empty; to renew what is in it: `selfconf keys renew {out}`")
+        if self._revoked_serials(principal):
+            raise AuthorError(
+                f"a certificate of {principal} was revoked and has not expired: choose another name until it has"
+            )
+        return self._issued(principal, out, new_key(), hosts, days)
+
+    def renew(self, folder: Path, days: float = DAYS) -> Certificate:
+        """Issue anew what a folder has, for the same key. Raises AuthorError."""
+        old = KeysFolder(folder)
+        if old.is_authority or not (folder / f"{_OWN}.pem").is_file():
+            raise AuthorError(f"{folder} holds no certificate that was issued; nothing to renew")
+        if old.authority != self.authority:
+            raise AuthorError(f"{folder} is of another authority than {self.path}")
+        certificate, key = old._pair(_OWN)
+        principal = _principal(certificate, folder)
+        if self._revoked_serials(principal):
+            raise AuthorError(f"the certificate of {principal} was revoked")
+        hosts = [host for host in certificate.hosts if host not in LOOPBACK]
+        return self._issued(principal, folder, key, hosts, days)
+
+    def revoke(self, principal: Principal) -> int:
+        """Revoke all certificates of a name that have not expired; how many. Raises AuthorError if there are none."""
+        authority, key = self._authority_pair()
+        found = [one for one in self.issued() if one.common_name == principal.common_name and not self._expired(one)]
+        if not found:
+            raise AuthorError(f"there is no certificate of {principal} that has not expired; nothing to revoke")
+        before = self.revoked()
+        known = [one for one in self.issued() if one.serial in before and not self._expired(one)]
+        _write_file(self.path / "revoked.pem", revocations(authority, key, [*known, *found]))
+        return len(found)
+
+    def issued(self) -> list[Certificate]:
+        """The certificates that this authority has issued, by name and time."""
+        found = [self._certificate(path) for path in (self.path / "issued").glob("*.pem")]
+        return sorted(found, key=lambda one: (one.common_name, one.begins))
+
+    def revoked(self) -> frozenset[int]:
+        """The serials of revoked certificates, as far as this folder knows. Raises AuthorError for a forged list."""
+        path = self.path / "revoked.pem"
+        if not path.is_file():
+            return frozenset()
+        return _of(path, lambda: read_revocations(_read(path), self.authority))
+
+    # What holders do.
+
+    def own(self) -> Certificate:
+        """The certificate that this folder speaks by. Raises AuthorError if it holds none."""
+        return self._certificate(self.path / f"{_OWN}.pem")
+
+    def credentials(self, kinds: Sequence[PrincipalKind], name: str = MAIN) -> Credentials:
+        """What a program of some kinds shows: of the first if it can be chosen. Raises AuthorError for what is wrong.
+
+        With the folder of an authority it is a certificate of its own, made or renewed now, where a site has the
+        `name` that is given.
+        """
+        shown = KeysFolder(self._self_issued(Principal(kinds[0], name))) if self.is_authority else self
+        return shown._credentials(kinds, self)
+
+    def believed_authorities(self) -> tuple[Certificate, ...]:
+        """Who can have issued what this folder holds: the authority, and that of its host, if it knows of one."""
+        host = self.path / f"{_HOST_AUTHORITY}.pem"
+        return (self.authority, *([self._certificate(host)] if host.is_file() else []))
+
+    def hub_authorities(self) -> Path:
+        """Whose certificates the hub of a site on this host believes: those of the authority and of the host's own."""
+        trusted = self.path / "trusted.pem"
+        with self._turn():
+            self._host_authority()
+            together = self.authority.pem + _read(self.path / f"{_HOST_AUTHORITY}.pem")
+            if not trusted.is_file() or trusted.read_bytes() != together:
+                _write_file(trusted, together)
+        return trusted
+
+    def component(self, principal: Principal) -> Path:
+        """The folder of a component that a site of this host starts, with a certificate made or renewed now."""
+        folder = self.path / "components" / principal.common_name
+        with self._turn():
+            authority, key = self._host_authority()
+            if self._stale(folder):
+                mine = new_key()
+                certificate = issue(authority, key, principal, mine.public_key(), (), COMPONENT_DAYS)
+                _write_holder(folder, self.authority, certificate, mine)
+                _write_file(folder / f"{_HOST_AUTHORITY}.pem", authority.pem)
+        return folder
+
+    def admitted(self) -> dict[str, Certificate]:
+        """By name, the certificates that are good: those the authority here has issued, or others have shown."""
+        revoked, found = self.revoked(), {}
+        shown = [self._certificate(path) for path in (self.path / "admitted").glob("*.pem")]
+        for one in sorted((*self.issued(), *shown), key=lambda one: one.begins):
+            if not one.fault((self.authority,)):
+                found[one.common_name] = one
+        out = {one.common_name for one in (*self.issued(), *shown) if one.serial in revoked}
+        return {name: one for name, one in found.items() if name not in out}
+
+    def admit(self, pem: bytes) -> Certificate:
+        """Keep a certificate that somebody has shown. Raises PeerError for one that is not good."""
+        certificate = Certificate.read(pem)
+        fault = certificate.fault((self.authority,))
+        if fault:
+            raise PeerError(f"the certificate of {certificate.common_name[:80]!r} {fault}")
+        if certificate.serial in self.revoked():
+            raise PeerError(f"the certificate of {certificate.common_name} was revoked")
+        path = self.path / "admitted" / f"{certificate.common_name}.pem"
+        if not path.is_file() or path.read_bytes() != certificate.pem:
+            _made(path.parent)
+            _write_file(path, certificate.pem)
+        return certificate
+
+    # How it is kept.
+
+    def _issued(self, principal: Principal, folder: Path, key: Key, hosts: Sequence[str], days: float) -> Certificate:
+        authority, authority_key = self._authority_pair()
+        certificate = issue(authority, authority_key, principal, key.public_key(), hosts, days)
+        try:
+            _made(self.path / "issued")
+            _write_file(self.path / "issued" / f"{certificate.common_name}~{certificate.serial:x}.pem", certificate.pem)
+            _write_holder(folder, authority, certificate, key)
+            if (self.path / "revoked.pem").is_file():
+                _write_file(folder / "revoked.pem", _read(self.path / "revoked.pem"))
+        except OSError as error:
+            raise AuthorError(reason(error)) from None
+        return certificate
+
+    def _self_issued(self, principal: Principal) -> Path:
+        folder = self.path / "own" / principal.common_name
+        with self._turn():
+            if self._stale(folder):
+                self._issued(principal, folder, new_key(), (), DAYS)
+        return folder
+
+    def _stale(self, folder: Path) -> bool:
+        """Whether a folder lacks a certificate, or has one that is to be renewed."""
+        try:
+            certificate = self._certificate(folder / f"{_OWN}.pem")
+        except AuthorError:
+            return True
+        return certificate.half_over() or certificate.serial in self.revoked()
+
+    def _host_authority(self) -> tuple[Certificate, Key]:
+        path = self.path / _HOST_AUTHORITY
+        if not path.with_suffix(".key").is_file():
+            _write(path, *new_authority("the components of a host"))
+        return self._pair(_HOST_AUTHORITY)
+
+    def _authority_pair(self) -> tuple[Certificate, Key]:
+        if not self.is_authority:
+            raise AuthorError(f"{self.path} is not the folder of an authority: there is no {_AUTHORITY}.key in it")
+        return self._pair(_AUTHORITY)
+
+    def _pair(self, name: str) -> tuple[Certificate, Key]:
+        path = self.path / f"{name}.key"
+        key = _of(path, lambda: read_key(_read(path)))
+        certificate = self._certificate(self.path / f"{name}.pem")
+        if not certificate.belongs_to(key):
+            raise AuthorError(f"{path} is not the key of {name}.pem beside it")
+        return certificate, key
+
+    def _credentials(self, kinds: Sequence[PrincipalKind], given: KeysFolder) -> Credentials:
+        """What this folder shows, checked; `given` is the folder that the program was given."""
+        certificate, _ = self._pair(_OWN)
+        fault = certificate.fault(self.believed_authorities())
+        if not fault and certificate.serial in given.revoked() | self.revoked():
+            fault = "was revoked"
+        if fault:
+            raise AuthorError(f"{self.path}: the certificate of {certificate.common_name} {fault}")
+        principal = certificate.principal
+        if principal.kind not in kinds:
+            wanted = " or ".join(f"{kind.value}.NAME" for kind in kinds)
+            raise AuthorError(f"{self.path} speaks for {principal}; this takes a certificate of {wanted}")
+        own = self.path / _OWN
+        authorities = self.path / f"{_AUTHORITY}.pem"
+        return Credentials(
+            principal.common_name, own.with_suffix(".pem"), own.with_suffix(".key"), authorities, given.path
+        )
+
+    def _revoked_serials(self, principal: Principal) -> set[int]:
+        """The serials of revoked certificates of a name that have not expired."""
+        revoked = self.revoked()
+        mine = (one for one in self.issued() if one.common_name == principal.common_name)
+        return {one.serial for one in mine if one.serial in revoked and not self._expired(one)}
+
+    def _expired(self, certificate: Certificate) -> bool:
+        return "expired" in certificate.fault((self.authority,))
+
+    def _certificate(self, path: Path) -> Certificate:
+        return _of(path, lambda: Certificate.read(_read(path)))
+
+    @contextmanager
+    def _turn(self) -> Iterator[None]:
+        """Programs that share a folder write into it one at a time."""
+        try:
+            descriptor = os.open(self.path, os.O_RDONLY)
+        except OSError as error:
+            raise AuthorError(reason(error)) from None
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            yield
+        except OSError as error:
+            raise AuthorError(reason(error)) from None
+        finally:
+            os.close(descriptor)
+
+
+def _principal(certificate: Certificate, folder: Path) -> Principal:
+    try:
+        return certificate.principal
+    except PeerError as error:
+        raise AuthorError(f"{folder}: {error}") from None
+
+
+def _write_holder(folder: Path, authority: Certificate, certificate: Certificate, key: Key) -> None:
+    """Write what a holder needs. The certificate comes last: whoever reads meanwhile finds a pair that fits."""
+    _made(folder)
+    _write_file(folder / f"{_AUTHORITY}.pem", authority.pem)
+    _write(folder / _OWN, certificate, key)
+
+
+def _write(path: Path, certificate: Certificate, key: Key) -> None:
+    _write_file(path.with_suffix(".key"), key_pem(key))
+    _write_file(path.with_suffix(".pem"), certificate.pem)
+
+
+def _write_file(path: Path, content: bytes) -> None:
+    """Write a file at once, readable by its owner alone."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    with os.fdopen(descriptor, "wb") as file:
+        file.write(content)
+    temporary.replace(path)
+
+
+def _made(folder: Path) -> None:
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise AuthorError(f"there is no {path.name} in {path.parent}; is it a folder of keys?") from None
+    except OSError as error:
+        raise AuthorError(reason(error)) from None
+
+
+def _private(path: Path) -> None:
+    """Raise AuthorError for a key that others than its owner may read."""
+    if path.is_file() and path.stat().st_mode & 0o077:
+        raise AuthorError(f"others may read {path}, so it is no secret; say `chmod 600 {path}`, or make a new one")
+
+
+_Value = TypeVar("_Value")
+
+
+def _of(path: Path, read: Callable[[], _Value]) -> _Value:
+    """What is read from a file, with the file named in what goes wrong."""
+    try:
+        return read()
+    except PeerError as error:
+        raise AuthorError(str(error), file=str(path)) from None
+    except AuthorError as error:
+        if error.file is None and str(path.parent) not in error.message:
+            raise AuthorError(error.message, file=str(path)) from None
+        raise

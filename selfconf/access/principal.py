@@ -1,0 +1,79 @@
+"""Who a certificate speaks for: a site, a component, a configurator or a reader, by the certificate's common name.
+
+site.NAME   a site                       comp.KEY    a component; KEY is its chunk of the keys of the ecology
+conf.NAME   who may run and stop tasks   read.NAME   who may discover, query and watch
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+
+from selfconf.errors import AuthorError, PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import checked_name, component_chunk
+
+LONGEST_NAME = 48
+"""Characters of a name at most: with the kind before it, a common name has room for 64 (X.520, ub-common-name)."""
+_CHUNK = re.compile(r"[a-z2-7]{16}")
+
+
+class PrincipalKind(str, Enum):
+    """What somebody with a certificate is, and so what it may do."""
+
+    SITE = "site"
+    """Serves advertisements, starts components, relays for its host."""
+    COMPONENT = "comp"
+    """Speaks on its own outputs and answers its own calls."""
+    CONFIGURATOR = "conf"
+    """Runs and stops tasks: calls components and sites."""
+    READER = "read"
+    """Discovers, queries and watches, and changes nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Principal:
+    """The subject of a certificate."""
+
+    kind: PrincipalKind
+    name: str
+    """A name as sites have it; of a component the chunk that stands for its IRI in keys."""
+
+    @property
+    def common_name(self) -> str:
+        """The common name of its certificates."""
+        return f"{self.kind.value}.{self.name}"
+
+    def __str__(self) -> str:
+        return self.common_name
+
+    @classmethod
+    def component(cls, component: IRI) -> Principal:
+        """The principal that a component is."""
+        return cls(PrincipalKind.COMPONENT, component_chunk(component))
+
+    @classmethod
+    def of(cls, common_name: str) -> Principal:
+        """The principal of a common name. Raises PeerError for a name that none can have."""
+        kind, dot, name = common_name.partition(".")
+        try:
+            found = cls(PrincipalKind(kind), checked_name(name, "the holder of a certificate"))
+        except (ValueError, AuthorError):
+            raise PeerError(f"{common_name!r} is no name of a site, component, configurator or reader") from None
+        if not dot or len(name) > LONGEST_NAME or (kind == "comp" and not _CHUNK.fullmatch(name)):
+            raise PeerError(f"{common_name!r} is no name of a site, component, configurator or reader")
+        return found
+
+    @classmethod
+    def written(cls, text: str) -> Principal:
+        """The principal that a person has written: a common name, or the IRI of a component. Raises AuthorError."""
+        if ":" in text:
+            return cls.component(IRI(text.strip("<>")))
+        try:
+            return cls.of(text)
+        except PeerError:
+            raise AuthorError(
+                f"{text!r} names nobody who can have a certificate; write site.NAME, conf.NAME, read.NAME, or the IRI"
+                f" of a component; a NAME has at most {LONGEST_NAME} letters, digits, '.', '-' and '_'"
+            ) from None

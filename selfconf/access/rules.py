@@ -1,0 +1,184 @@
+"""Who may do what in an ecology, as values, in words, and as the access control of Zenoh.
+
+Everything that is not granted is denied. A grant holds for the links whose certificate has a common name, at each hub
+and uplink of a site, whose own certificate may do everything: it is the site that decides. What comes from another host
+comes by a link of *its* site, so that site is granted the keys of the components that it advertises, and no others.
+
+Zenoh matches keys by inclusion: a grant must be as wide as what is asked, and `**` does not include a chunk that begins
+with `@`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys, any_ecology
+from selfconf.protocol.messages import Access
+
+SPEAK = ("put", "delete", "declare_queryable", "reply", "liveliness_token")
+"""The messages by which somebody says something under a key: a sample, an answer, a life."""
+LISTEN = ("declare_subscriber", "query", "liveliness_query", "declare_liveliness_subscriber")
+"""The messages by which somebody wants to hear what is said under a key."""
+BY, TO = "ingress", "egress"
+"""What comes by the link of somebody, and what goes to that link."""
+
+
+@dataclass(frozen=True, slots=True)
+class AccessRules:
+    """Who may do what at the hubs of one site."""
+
+    accesses: tuple[Access, ...]
+
+    def access_control(self) -> dict[str, Any]:
+        """The rules as the member `access_control` of a configuration of Zenoh."""
+        rules, subjects, policies = [], [], []
+        for number, access in enumerate(self.accesses):
+            identity = access.principal or "everybody"
+            mine = _rules(str(number), access)
+            who = {"cert_common_names": [access.principal]} if access.principal else {"link_protocols": ["tls"]}
+            rules += mine
+            subjects.append({"id": identity, **who})
+            policies.append({"id": identity, "rules": [rule["id"] for rule in mine], "subjects": [identity]})
+        return {
+            "enabled": True,
+            "default_permission": "deny",
+            "rules": rules,
+            "subjects": subjects,
+            "policies": policies,
+        }
+
+
+def rules_of(
+    ecology: str,
+    site: str,
+    own: Mapping[IRI, Iterable[IRI]],
+    others: Mapping[str, Collection[IRI]],
+    principals: Iterable[Principal],
+) -> AccessRules:
+    """The rules of a site.
+
+    `own` are the components of this host by whom each certificate is for, with those that share a process with it;
+    `others` the components that each other site vouches for; `principals` who else has shown a certificate.
+    """
+    keys = Keys(ecology)
+    found = [_everybody(keys), _site_itself(keys, site)]
+    found += [_component(keys, component, sharing) for component, sharing in sorted(own.items())]
+    for principal in sorted(set(principals), key=str):
+        if principal.kind is PrincipalKind.SITE and principal.name != site:
+            found.append(_other_site(keys, principal, others.get(principal.name, ())))
+        elif principal.kind is PrincipalKind.CONFIGURATOR:
+            found.append(_configurator(keys, principal))
+        elif principal.kind is PrincipalKind.READER:
+            found.append(_reader(keys, principal))
+    return AccessRules(tuple(found))
+
+
+def _everybody(keys: Keys) -> Access:
+    return Access(
+        "",
+        "everybody with a certificate of the authority may show it to a site, and learn which sites live",
+        says=(keys.introduce("*"),),
+        hears=(keys.introduce("*"), any_ecology()),
+    )
+
+
+def _site_itself(keys: Keys, site: str) -> Access:
+    everything = keys.everything()
+    return Access(
+        Principal(PrincipalKind.SITE, site).common_name,
+        "this site: everything, at its own hubs",
+        says=everything,
+        hears=(*everything, any_ecology()),
+    )
+
+
+def _component(keys: Keys, component: IRI, sharing: Iterable[IRI]) -> Access:
+    mine = tuple(dict.fromkeys((component, *sharing)))
+    own = tuple(key for one in mine for key in keys.all_of_component(one))
+    heard = (keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_life(), keys.any_configurator_life())
+    return Access(
+        Principal.component(component).common_name,
+        "speaks on its own outputs, FAIL and calls; hears the signals and FAIL of all, and who lives",
+        says=own,
+        asked=(keys.any_output(), keys.any_fail(), keys.any_free()),
+        hears=(*own, *heard),
+        about=mine,
+    )
+
+
+def _looking(keys: Keys) -> tuple[str, ...]:
+    """What may be asked and heard by whoever looks on."""
+    return (
+        keys.advertisements(),
+        keys.changed(),
+        keys.access(),
+        keys.any_site_life(),
+        keys.any_life(),
+        keys.any_configurator_life(),
+        keys.configuration(),
+        keys.notices(),
+        keys.configurator_call("*", "status"),
+        keys.kept_tasks(),
+        keys.task(),
+    )
+
+
+def _reader(keys: Keys, principal: Principal) -> Access:
+    return Access(
+        principal.common_name,
+        "may discover, query and watch; hears no signals, calls nobody",
+        hears=_looking(keys),
+    )
+
+
+def _configurator(keys: Keys, principal: Principal) -> Access:
+    mine = keys.all_of_configurators(principal.name)
+    called = (keys.any_call(), keys.wake("*"), keys.end("*"), keys.keep("*"), keys.configurator_call("*"))
+    heard = (keys.any_output(), keys.any_fail(), keys.any_free())
+    return Access(
+        principal.common_name,
+        f"may run and stop tasks, as configurators {principal.name}-*: calls components and sites; hears all signals",
+        says=mine,
+        asked=keys.all_of_configurators("*"),
+        hears=(*_looking(keys), *called, *heard),
+    )
+
+
+def _other_site(keys: Keys, principal: Principal, components: Collection[IRI]) -> Access:
+    vouched = tuple(sorted(components))
+    said = [*keys.all_of_site(principal.name), *keys.all_of_configurators("*"), keys.task()]
+    said += [key for component in vouched for key in keys.all_of_component(component)]
+    return Access(
+        principal.common_name,
+        f"another site: speaks for itself, the {len(vouched)} components that it advertises, and the configurators that"
+        " are connected to it; hears everything",
+        says=tuple(said),
+        asked=(*keys.everything(), any_ecology()),
+        hears=(*keys.everything(), any_ecology()),
+        about=vouched,
+    )
+
+
+def _rules(identity: str, access: Access) -> list[dict[str, Any]]:
+    """The rules of Zenoh: who may say something is told who listens, and who may listen is told what is said."""
+    granted = (
+        (BY, SPEAK, access.says),
+        (TO, LISTEN, (*access.says, *access.asked)),
+        (BY, LISTEN, access.hears),
+        (TO, SPEAK, access.hears),
+    )
+    return [
+        {
+            "id": f"{identity}-{number}",
+            "permission": "allow",
+            "flows": [flow],
+            "messages": list(messages),
+            "key_exprs": list(keys),
+        }
+        for number, (flow, messages, keys) in enumerate(granted)
+        if keys
+    ]

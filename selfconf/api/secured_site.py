@@ -1,0 +1,68 @@
+"""The keys of a site: its certificate, the rules of its hub, and certificates for the components that it starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from selfconf import rendezvous
+from selfconf.access import AccessRules, Doorkeeper, KeysFolder, Principal, PrincipalKind, first_rules
+from selfconf.api.joining import Joining
+from selfconf.bus.refusals import hear_refusals
+from selfconf.bus.zenoh_session import Security
+from selfconf.errors import AuthorError
+from selfconf.model.term import IRI
+from selfconf.site import Shelf, Site, programs_of
+
+
+class SecuredSite:
+    """A site that has keys."""
+
+    def __init__(self, keys: Path, name: str | None) -> None:
+        """Raises AuthorError for keys that are none, or of somebody else than a site of that name.
+
+        From now on, what Zenoh logs is read: it must be made before any session is opened.
+        """
+        self._folder = KeysFolder(keys)
+        kinds = (PrincipalKind.SITE,)
+        self._credentials = self._folder.credentials(kinds, name) if name else self._folder.credentials(kinds)
+        self.name = self._credentials.name.partition(".")[2]
+        """The name of the site, as its certificate has it."""
+        if name is not None and name != self.name:
+            raise AuthorError(
+                f"{keys} is for the site {self.name}, not for {name}; give --name {self.name}, or no name"
+            )
+        self._credentials = replace(self._credentials, authorities=self._folder.hub_authorities())
+        self._refusals = hear_refusals()
+        self._first = AccessRules(())
+
+    def first(self, ecology: str, name: str, shelf: Shelf) -> Security:
+        """How its hub is secured to begin with: with the rules that follow from what this site knows by itself."""
+        shelf.refresh()
+        programs = programs_of(one.profile for one in shelf.advertisements.values())
+        self._first = first_rules(ecology, name, self._folder, programs)
+        return self._security(self._first)
+
+    def _security(self, rules: AccessRules) -> Security:
+        return Security(self._credentials, rules.access_control())
+
+    def keys_of(self, program: IRI) -> Path:
+        """The folder of keys of a process that this site starts, by the component that stands for it."""
+        return self._folder.component(Principal.component(program))
+
+    def keep_door(self, site: Site, joining: Joining, complain: Callable[[str], None]) -> None:
+        """From now on, let in who shows a good certificate, and renew what expires."""
+        Doorkeeper(
+            site.bus,
+            site.keys.ecology,
+            site.name,
+            self._folder,
+            self._credentials,
+            lambda: site.programs,
+            lambda: (one.site for one in rendezvous.local_sites(site.keys.ecology)),
+            lambda rules: joining.secure(self._security(rules)),
+            complain,
+            self._refusals,
+            self._first,
+        )

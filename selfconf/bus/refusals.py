@@ -1,0 +1,129 @@
+"""What the hubs of this process refuse, read from the log of Zenoh, which tells it nowhere else.
+
+Zenoh logs to the standard output of the process. So that becomes a pipe which a thread reads; what this program itself
+prints goes where it went before. Two kinds of lines count:
+
+* "... is unauthorized to Put (ingress) on KEY", with "Msg intercepted!" as the next line of the same thread: somebody
+  with a certificate has tried what its name does not allow. What is kept from reaching somebody (egress) is no attempt.
+* a warning of the TLS link: somebody without a certificate that is believed has knocked.
+
+Messages that pass cost Zenoh a line each, and this program next to nothing: it looks for the word "intercepted" only.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import re
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+from selfconf.bus.zenoh_session import begin_log
+from selfconf.protocol.messages import Refused
+
+FILTER = "zenoh::net::routing::interceptor=trace,zenoh_link_tls::unicast=warn"
+"""What Zenoh logs, as the variable RUST_LOG has it."""
+ROOM = 1 << 20
+"""Bytes that the pipe holds: a hub that writes into a full one would stand still."""
+LAST_LINES = 2000
+"""Bytes at the end of a chunk that are read whatever they say."""
+MOST = 1000
+"""How many different attempts are told apart; further ones are counted as those of their principal alone."""
+LONGEST_KEY = 300
+"""Characters of a key that are kept."""
+_COLOUR = re.compile(rb"\x1b\[[0-9;]*m")
+_LINK = re.compile(r"(\w+) on \S*CertCommonName\(([^)]*)\)")
+_DENIED = re.compile(r"(\w+) (?:on \S+ )?is unauthorized to (.+) \((\w+)\) on (.*)$")
+_THREAD = re.compile(r"(ThreadId\(\d+\))")
+_KNOCKED = re.compile(r"WARN .*zenoh_link_tls::unicast: (.*?)(?:\. Hint: .*)?$")
+_REFUSING = b"Msg intercepted!", b"zenoh_link_tls"
+
+
+class RefusalLog:
+    """Who has tried what, and how often; read from lines of Zenoh's log."""
+
+    def __init__(self, clock: Callable[[], float] = time.time) -> None:
+        self._clock = clock
+        self._found: dict[tuple[str, str, str], tuple[int, float]] = {}
+        self._names: dict[str, str] = {}
+        """The common name of each peer, by what Zenoh calls it."""
+        self._denied: dict[str, tuple[str, str, str, str]] = {}
+        """The last line of each thread that says no: peer, attempt, flow, key."""
+        self._lock = threading.Lock()
+
+    @property
+    def refused(self) -> tuple[Refused, ...]:
+        """What was refused, the latest first."""
+        with self._lock:
+            found = [Refused(*what, number, latest) for what, (number, latest) in self._found.items()]
+        return tuple(sorted(found, key=lambda one: -one.latest))
+
+    def take(self, line: str) -> None:
+        """Read one line."""
+        knocked = _KNOCKED.search(line)
+        if knocked:
+            self._count("", knocked[1][:LONGEST_KEY], "")
+            return
+        thread = _THREAD.search(line)
+        if thread is None:
+            return
+        link, denied = _LINK.search(line), _DENIED.search(line)
+        if link:
+            self._names[link[1]] = link[2]
+        if denied:
+            self._denied[thread[1]] = (denied[1], denied[2], denied[3], denied[4])
+        elif "Msg intercepted!" in line and thread[1] in self._denied:
+            peer, attempt, flow, key = self._denied.pop(thread[1])
+            if flow == "ingress":
+                self._count(self._names.get(peer, "?"), attempt, key[:LONGEST_KEY])
+
+    def _count(self, principal: str, attempt: str, key: str) -> None:
+        with self._lock:
+            what = principal, attempt, key
+            if what not in self._found and len(self._found) >= MOST:
+                what = principal, "further attempts", ""
+            if what in self._found or len(self._found) < 2 * MOST:
+                self._found[what] = self._found.get(what, (0, 0.0))[0] + 1, self._clock()
+
+    def take_chunk(self, chunk: bytes) -> None:
+        """Read some whole lines; quickly where none of them says that something was refused."""
+        if any(word in chunk for word in _REFUSING):
+            for line in _COLOUR.sub(b"", chunk).decode(errors="replace").splitlines():
+                self.take(line)
+        else:
+            self._note_names(chunk)
+            for line in _COLOUR.sub(b"", chunk[-LAST_LINES:]).decode(errors="replace").splitlines():
+                self.take(line)  # the next chunk may say that this was refused
+
+    def _note_names(self, chunk: bytes) -> None:
+        """Remember who is who: the line that names a peer may come long before the one that refuses it."""
+        if b"CertCommonName" in chunk:
+            for peer, name in _LINK.findall(_COLOUR.sub(b"", chunk).decode(errors="replace")):
+                self._names[peer] = name
+
+
+def hear_refusals() -> RefusalLog:
+    """Begin to read the log, before any session of this process is opened."""
+    log = RefusalLog()
+    reading, writing = os.pipe()
+    fcntl.fcntl(writing, fcntl.F_SETPIPE_SZ, ROOM)
+    sys.stdout.flush()
+    before = os.dup(1)
+    os.dup2(writing, 1)
+    os.close(writing)
+    sys.stdout = os.fdopen(before, "w", buffering=1, encoding=sys.stdout.encoding, errors=sys.stdout.errors)
+    begin_log(FILTER)
+    threading.Thread(target=_read, args=(reading, log), daemon=True, name="refusals").start()
+    return log
+
+
+def _read(pipe: int, log: RefusalLog) -> None:
+    """Read a pipe until it ends, in whole lines."""
+    rest = b""
+    while chunk := os.read(pipe, ROOM):
+        whole, newline, last = (rest + chunk).rpartition(b"\n")
+        rest = last[-ROOM:]
+        if newline:
+            log.take_chunk(whole)

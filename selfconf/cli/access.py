@@ -1,0 +1,119 @@
+"""`access`: who may do what in a living ecology with keys, and who has tried what it may not."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from datetime import datetime, timezone
+from typing import TYPE_CHECKING, Any
+
+from selfconf.cli.options import add_ecology_arguments, joined
+from selfconf.cli.terminal import complain
+from selfconf.errors import AuthorError
+from selfconf.model.term import IRI
+
+if TYPE_CHECKING:
+    from selfconf.api.living import LivingEcology, SiteAccess
+
+EXAMPLE = """  selfconf access --keys keys
+  selfconf access --keys keys --task tidy           # whom each component of a deployed task may hear
+  selfconf access --keys keys --believe attic https://example.org/my-home#lamp"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    add_ecology_arguments(parser)
+    parser.add_argument("--task", metavar="NAME", help="only what a deployed task needs: who hears and calls whom")
+    parser.add_argument(
+        "--believe",
+        metavar=("SITE", "COMPONENT"),
+        nargs=2,
+        help="say whose a component is that several sites advertise; for the sites of the folder --keys",
+    )
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
+
+
+def run(given: argparse.Namespace) -> int:
+    """0; 1 if a task is asked for that nobody runs."""
+    if given.believe is not None:
+        return _believe(given, *given.believe)
+    with joined(given) as ecology:
+        if given.task is not None:
+            return _task(given, ecology)
+        sites = ecology.access()
+        if not sites:
+            raise AuthorError("no site of the ecology has keys: everybody who reaches it may do everything")
+        if given.format == "json":
+            print(json.dumps({"sites": [_body(site) for site in sites]}, indent=2))
+        else:
+            for site in sites:
+                _tell(site)
+        for one in ecology.complaints:
+            complain(one)
+    return 0
+
+
+def _believe(given: argparse.Namespace, site: str, component: str) -> int:
+    from selfconf import rendezvous
+    from selfconf.access import believe
+
+    folder = rendezvous.keys_folder(given.keys)
+    if folder is None:
+        raise AuthorError("whose sites shall believe it? give their folder of keys: --keys DIR")
+    believe(folder, IRI(component.strip("<>")), site)
+    print(f"the sites of {folder} believe that {component} is that of site {site}")
+    return 0
+
+
+def _task(given: argparse.Namespace, ecology: LivingEcology) -> int:
+    links = ecology.links_of(given.task)
+    if links is None:
+        complain(f"nobody runs a task {given.task!r}")
+        return 1
+    if given.format == "json":
+        print(json.dumps({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]}))
+        return 0
+    for component, heard in links.items():
+        print(f"{IRI(component)!r} hears {', '.join(repr(IRI(one)) for one in heard) or 'nobody'}")
+    return 0
+
+
+def _body(site: SiteAccess) -> dict[str, Any]:
+    return {
+        "site": site.site,
+        "access": [
+            {
+                "principal": one.principal,
+                "may": one.sentence,
+                "says": list(one.says),
+                "asked": list(one.asked),
+                "hears": list(one.hears),
+                "components": list(one.about),
+            }
+            for one in site.accesses
+        ],
+        "refused": [
+            {
+                "principal": one.principal,
+                "attempt": one.attempt,
+                "key": one.key,
+                "number": one.number,
+                "latest": one.latest,
+            }
+            for one in site.refused
+        ],
+        "access_control": site.access_control(),
+    }
+
+
+def _tell(site: SiteAccess) -> None:
+    print(f"site {site.site}")
+    for one in site.accesses:
+        about = f" ({', '.join(map(repr, one.about[:3]))}{', ...' * (len(one.about) > 3)})" if one.about else ""
+        print(f"  {one.principal or 'everybody'}{about}: {one.sentence}")
+    print(f"  refused: {'nothing' if not site.refused else ''}")
+    for refused in site.refused:
+        who = refused.principal or "somebody without a certificate that is believed"
+        at = datetime.fromtimestamp(refused.latest, timezone.utc)
+        where = f" on {refused.key}" if refused.key else ""
+        print(f"    {who}: {refused.attempt}{where}, {refused.number} times, latest {at:%Y-%m-%d %H:%M:%S} UTC")

@@ -1,0 +1,155 @@
+"""`keys`: an authority for an ecology, and the certificates that it issues."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from selfconf.cli.options import add_keys_argument
+from selfconf.errors import AuthorError
+
+if TYPE_CHECKING:
+    from selfconf.access import Certificate, KeysFolder
+
+EXAMPLE = """  selfconf keys init keys                                    # once; the folder stays on this machine
+  selfconf site examples/clock --ecology clock --keys keys   # here the folder is all that is needed
+  selfconf keys issue site.attic --keys keys --host 192.168.1.7 --out attic-keys   # for another host"""
+
+LONGEST_DAYS = 3650.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    init = _action(actions, "init", "make an authority, in a folder of its own")
+    init.add_argument("folder", metavar="DIR", type=Path, help="the folder to make")
+    issue = _action(actions, "issue", "issue a certificate, into a folder for its holder")
+    issue.add_argument(
+        "holder", metavar="HOLDER", help="site.NAME, conf.NAME (runs tasks), read.NAME (looks on), or a component's IRI"
+    )
+    issue.add_argument(
+        "--out", metavar="DIR", type=Path, required=True, help="the folder to make; give it to the holder"
+    )
+    issue.add_argument(
+        "--host",
+        metavar="HOST",
+        action="append",
+        default=[],
+        help="a name or address, besides loopback, under which others reach a site; repeatable",
+    )
+    _add_days(issue)
+    add_keys_argument(issue)
+    renew = _action(actions, "renew", "issue a holder's certificate anew, for the same key; programs go on meanwhile")
+    renew.add_argument("folder", metavar="DIR", type=Path, help="the folder of the holder")
+    _add_days(renew)
+    add_keys_argument(renew)
+    show = _action(actions, "show", "show whom a folder of keys speaks for, until when, and what is wrong with it")
+    show.add_argument("folder", metavar="DIR", type=Path, help="a folder of keys")
+    show.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
+    revoke = _action(actions, "revoke", "let nobody in any more under a name, until its certificates have expired")
+    revoke.add_argument("holder", metavar="HOLDER", help="as for `issue`")
+    add_keys_argument(revoke)
+
+
+def _action(actions: Any, name: str, does: str) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = actions.add_parser(
+        name, help=does, description=f"{does[0].upper()}{does[1:]}.", allow_abbrev=False
+    )
+    return parser
+
+
+def _add_days(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--days", metavar="N", type=_days, default=7.0, help="for how many days it is good (default: %(default)g)"
+    )
+
+
+def _days(text: str) -> float:
+    try:
+        days = float(text)
+    except ValueError:
+        days = math.nan
+    if not 0 < days <= LONGEST_DAYS:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of days above zero, and at most {LONGEST_DAYS:g}")
+    return days
+
+
+def run(given: argparse.Namespace) -> int:
+    """Do what is asked; 1 if `show` finds something wrong."""
+    return {"init": _init, "issue": _issue, "renew": _renew, "show": _show, "revoke": _revoke}[given.action](given)
+
+
+def _init(given: argparse.Namespace) -> int:
+    from selfconf.access import KeysFolder
+
+    KeysFolder.init(given.folder)
+    print(f"made an authority in {given.folder}; whoever has this folder may do everything, so keep it to yourself")
+    return 0
+
+
+def _issue(given: argparse.Namespace) -> int:
+    from selfconf.access import Principal
+
+    certificate = _authority(given).issue(Principal.written(given.holder), given.out, given.host, given.days)
+    print(f"{given.out} speaks for {certificate.common_name}, until {_at(certificate.ends)}; give it to its holder")
+    return 0
+
+
+def _renew(given: argparse.Namespace) -> int:
+    certificate = _authority(given).renew(given.folder, given.days)
+    print(f"{given.folder} speaks for {certificate.common_name}, until {_at(certificate.ends)}")
+    return 0
+
+
+def _revoke(given: argparse.Namespace) -> int:
+    from selfconf.access import Principal
+
+    authority, principal = _authority(given), Principal.written(given.holder)
+    number = authority.revoke(principal)
+    print(f"revoked {number} certificate{'s' * (number != 1)} of {principal}")
+    print(f"copy {authority.path / 'revoked.pem'} into the folder of keys of every site on another machine")
+    return 0
+
+
+def _show(given: argparse.Namespace) -> int:
+    from selfconf.access import KeysFolder
+
+    folder = KeysFolder(given.folder)
+    shown = [_described(one, folder) for one in (folder.issued() if folder.is_authority else [folder.own()])]
+    if given.format == "json":
+        print(json.dumps({"authority": folder.is_authority, "certificates": shown}, indent=2))
+    else:
+        print(f"{given.folder}: {'an authority' if folder.is_authority else 'keys of a holder'}")
+        for one in shown:
+            print(f"  {one['name']:<24} until {one['ends']}  {one['fault'] or 'good'}")
+    return 1 if not folder.is_authority and shown[0]["fault"] else 0
+
+
+def _described(certificate: Certificate, folder: KeysFolder) -> dict[str, Any]:
+    revoked = certificate.serial in folder.revoked()
+    return {
+        "name": certificate.common_name,
+        "serial": f"{certificate.serial:x}",
+        "begins": _at(certificate.begins),
+        "ends": _at(certificate.ends),
+        "hosts": list(certificate.hosts),
+        "fault": "was revoked" if revoked else certificate.fault(folder.believed_authorities()),
+    }
+
+
+def _authority(given: argparse.Namespace) -> KeysFolder:
+    from selfconf import rendezvous
+    from selfconf.access import KeysFolder
+
+    folder = rendezvous.keys_folder(given.keys)
+    if folder is None:
+        raise AuthorError("which authority? give its folder: --keys DIR; `selfconf keys init DIR` makes one")
+    return KeysFolder(folder)
+
+
+def _at(moment: datetime) -> str:
+    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"
