@@ -227,16 +227,20 @@ def credentials(keys: Path | None, *kinds: str, name: str = "main") -> Credentia
     return KeysFolder(folder).credentials([PrincipalKind(kind) for kind in kinds], name)
 
 
-def component_credentials(keys: Path | None, component: IRI | None) -> Credentials | None:
-    """What a component shows: by its own folder of keys, or by that of a site of this host. Raises AuthorError."""
+def component_credentials(keys: Path | None, components: Sequence[IRI]) -> Credentials | None:
+    """What a process of components shows: by its own folder of keys, or by that of a site of this host.
+
+    Raises AuthorError.
+    """
     folder = keys_folder(keys)
     if folder is None:
         return None
     from selfconf.access import KeysFolder, Principal, PrincipalKind  # what it needs is an extra
 
     opened = KeysFolder(folder)
-    if component is not None and opened.serves_a_host:
-        opened = KeysFolder(opened.component(Principal.component(component)))
+    if components and opened.serves_a_host:
+        first, *others = map(Principal.component, components)
+        opened = KeysFolder(opened.component(first, others))
     return opened.credentials((PrincipalKind.COMPONENT,))
 
 

@@ -10,6 +10,7 @@ import ipaddress
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
+from typing import Any
 
 from selfconf.access.principal import Principal
 from selfconf.errors import AuthorError, InstallationError, PeerError
@@ -33,6 +34,7 @@ LARGEST_PEM = 1 << 14
 """Bytes of a certificate at most: one with a hundred addresses has 4 KiB."""
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 """The addresses that every certificate is good for."""
+_ALSO = "urn:selfconf:"
 Key = ec.EllipticCurvePrivateKey
 
 
@@ -92,6 +94,12 @@ class Certificate:
         return Principal.of(self.common_name)
 
     @property
+    def principals(self) -> tuple[Principal, ...]:
+        """Whom it speaks for: its subject, and the components that share a process with it. Raises PeerError."""
+        others = (name.removeprefix(_ALSO) for name in self._names(x509.UniformResourceIdentifier) if _ALSO in name)
+        return (self.principal, *(Principal.of(name) for name in others))
+
+    @property
     def serial(self) -> int:
         """The number that its authority has given to it, and to no other."""
         return self.x509.serial_number
@@ -109,14 +117,15 @@ class Certificate:
     @property
     def hosts(self) -> tuple[str, ...]:
         """The names and addresses of hosts that it is good for."""
+        return (*self._names(x509.DNSName), *self._names(x509.IPAddress))
+
+    def _names(self, kind: type[Any]) -> list[str]:
+        """Its alternative names of a kind (RFC 5280, section 4.2.1.6)."""
         try:
             names = self.x509.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
         except (x509.ExtensionNotFound, ValueError):
-            return ()
-        return (
-            *names.get_values_for_type(x509.DNSName),
-            *map(str, names.get_values_for_type(x509.IPAddress)),
-        )
+            return []
+        return [str(name) for name in names.get_values_for_type(kind)]
 
     def half_over(self, now: datetime | None = None) -> bool:
         """Whether more than half of its time has passed: time to renew it."""
@@ -136,7 +145,7 @@ class Certificate:
         if now > self.ends:
             return f"has expired at {_at(self.ends)}; renew it with `selfconf keys renew`"
         try:
-            _ = self.principal
+            _ = self.principals
         except PeerError as error:
             return f"names nobody: {error}"
         return ""
@@ -175,9 +184,14 @@ def issue(
     key: ec.EllipticCurvePublicKey,
     hosts: Sequence[str],
     days: float,
+    also: Sequence[Principal] = (),
 ) -> Certificate:
-    """A certificate for a public key, good for loopback and some hosts, for some days. Raises AuthorError."""
+    """A certificate for a public key, good for loopback and some hosts, for some days. Raises AuthorError.
+
+    `also` are components that share a process with the one that it is for.
+    """
     names = [_host(host) for host in dict.fromkeys((*LOOPBACK, *hosts))]
+    names += [x509.UniformResourceIdentifier(_ALSO + principal.common_name) for principal in also]
     begun = _begun(_subject(principal.common_name), authority.x509.subject, key, days)
     for extension, critical in (
         (x509.BasicConstraints(ca=False, path_length=None), True),

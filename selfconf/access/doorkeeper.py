@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable, Mapping
-from typing import NamedTuple, TypeGuard
+from typing import TypeGuard
 
 from selfconf.access.beliefs import believed
 from selfconf.access.keys_folder import KeysFolder
@@ -45,29 +45,26 @@ MOST_ADVERTISED = 20_000
 """For how many components another site can vouch."""
 
 
-class _Vouched(NamedTuple):
-    """What a site says of one of its components: which one, and whose certificate its process has."""
-
-    component: IRI
-    program: IRI
-
-
 def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, IRI]) -> AccessRules:
     """The rules that follow from what a site knows by itself; `own` as for a `Doorkeeper`."""
-    return rules_of(ecology, site, _by_program(own.items()), {}, _principals(folder))
+    return rules_of(ecology, site, _processes(own.items()), {}, _principals(folder))
 
 
-def _principals(folder: KeysFolder) -> list[Principal]:
+Process = tuple[Principal, ...]
+"""Whom the certificate of a process speaks for, its subject first."""
+
+
+def _principals(folder: KeysFolder) -> list[Process]:
     """Who has shown a good certificate."""
-    return [one.principal for one in folder.admitted().values()]
+    return [one.principals for one in folder.admitted().values()]
 
 
-def _by_program(components: Iterable[tuple[IRI, IRI]]) -> dict[IRI, list[IRI]]:
-    """The components of each process, by the one that stands for it."""
+def _processes(components: Iterable[tuple[IRI, IRI]]) -> list[Process]:
+    """The processes of components that are given each with the one that stands for its process."""
     found: dict[IRI, list[IRI]] = {}
     for component, program in sorted(components):
         found.setdefault(program, []).append(component)
-    return found
+    return [tuple(map(Principal.component, dict.fromkeys((program, *mine)))) for program, mine in found.items()]
 
 
 class Doorkeeper:
@@ -89,13 +86,14 @@ class Doorkeeper:
     ) -> None:
         """`own` are the components of this site, each with the one whose certificate its process has.
 
-        `rules` are those in force. `of_this_host` are the names of the sites of this host, whose components connect to its hub. `enforce` opens
-        the hub with other rules; it raises NetworkError.
+        `of_this_host` are the names of the sites of this host, whose components connect to its hub. `rules` are those
+        in force; `enforce` opens the hub with others, and raises NetworkError.
         """
         self._bus, self._keys, self._name, self._folder = bus, Keys(ecology), site, keys_folder
         self._credentials, self._own, self._enforce, self._complain = credentials, own, enforce, complain
         self._of_this_host, self._refusals = of_this_host, refusals
-        self._others: dict[str, tuple[_Vouched, ...]] = {}
+        self._others: dict[str, frozenset[IRI]] = {}
+        """The components that other sites advertise."""
         self._revisions: dict[str, int] = {}
         self._disputed: frozenset[IRI] = frozenset()
         self._told: dict[tuple[str, str, str], int] = {}
@@ -165,7 +163,7 @@ class Doorkeeper:
         self._bus.ask(self._keys.advertisements(), known, ANSWERS, self._others_answered)
 
     def _others_answered(self, replies: Replies) -> None:
-        found: dict[str, dict[IRI, IRI]] = {}
+        found: dict[str, set[IRI]] = {}
         for sample in replies.samples:
             try:
                 page, site = decode(sample.attachment, Page), site_of(sample.key)
@@ -177,13 +175,13 @@ class Doorkeeper:
             if page.component is None and self._revisions.get(revision) == page.revision:
                 continue  # as before
             self._revisions = {known: at for known, at in self._revisions.items() if known.partition("/")[0] != site}
-            vouched = found.setdefault(site, {})
+            vouched = found.setdefault(site, set())
             if self._is_advertised(page.component, site, sample.key) and len(vouched) < MOST_ADVERTISED:
-                vouched[page.component] = page.program or page.component
+                vouched.add(page.component)
             if replies.complete:
                 self._revisions[revision] = page.revision
         for site, vouched in found.items():
-            self._others[site] = tuple(_Vouched(*one) for one in sorted(vouched.items()))
+            self._others[site] = frozenset(vouched)
         self._renew_rules()
 
     def _is_advertised(self, component: IRI | None, site: str, key: str) -> TypeGuard[IRI]:
@@ -192,43 +190,35 @@ class Doorkeeper:
     # The rules.
 
     def _made(self) -> AccessRules:
-        principals = _principals(self._folder)
-        sites = {principal.name for principal in principals if principal.kind is PrincipalKind.SITE}
-        advertised = {self._name: tuple(_Vouched(*one) for one in self._own().items())}
-        advertised |= {site: vouched for site, vouched in self._others.items() if site in sites}
+        shown = _principals(self._folder)
+        sites = {process[0].name for process in shown if process[0].kind is PrincipalKind.SITE}
+        own = self._own()
+        advertised = {self._name: frozenset(own), **{s: c for s, c in self._others.items() if s in sites}}
         undisputed = self._undisputed(advertised)
-        local = {self._name, *self._of_this_host()}
-        programs: dict[IRI, list[IRI]] = {}
-        for site in sorted(local & advertised.keys()):
-            mine = undisputed[site]
-            programs |= _by_program(
-                (one.component, one.program if one.program in mine else one.component)
-                for one in advertised[site]
-                if one.component in mine
-            )
+        processes = _processes((component, own[component]) for component in undisputed[self._name])
+        for site in set(self._of_this_host()) & undisputed.keys() - {self._name}:
+            processes += _processes((component, component) for component in undisputed[site])
         others = {site: components for site, components in undisputed.items() if site != self._name}
-        return rules_of(self._keys.ecology, self._name, programs, others, principals)
+        return rules_of(self._keys.ecology, self._name, processes, others, shown)
 
-    def _undisputed(self, advertised: Mapping[str, Iterable[_Vouched]]) -> dict[str, frozenset[IRI]]:
+    def _undisputed(self, advertised: Mapping[str, frozenset[IRI]]) -> dict[str, frozenset[IRI]]:
         """The components that each site speaks for."""
         sites: dict[IRI, list[str]] = {}
-        for site, vouched in sorted(advertised.items()):
-            for one in vouched:
-                sites.setdefault(one.component, []).append(site)
+        for site, components in sorted(advertised.items()):
+            for component in components:
+                sites.setdefault(component, []).append(site)
         decided = believed(self._folder.path)
         disputed = {c: claim for c, claim in sites.items() if len(claim) > 1 and decided.get(c) not in claim}
         for component in sorted(disputed.keys() - self._disputed):
-            claim = " and ".join(disputed[component])
             self._complain(
-                f"{component} is advertised by the sites {claim}; it is nobody's until you say whose: "
-                f"selfconf access --believe SITE {component}"
+                f"{component} is advertised by the sites {' and '.join(disputed[component])}; it is nobody's until you"
+                f" say whose: selfconf access --believe SITE {component}"
             )
         self._disputed = frozenset(disputed)
-        found: dict[str, frozenset[IRI]] = {}
-        for site, vouched in advertised.items():
-            mine = (one.component for one in vouched)
-            found[site] = frozenset(c for c in mine if self._is_whose(c, site, sites[c], decided))
-        return found
+        return {
+            site: frozenset(c for c in components if self._is_whose(c, site, sites[c], decided))
+            for site, components in advertised.items()
+        }
 
     def _is_whose(self, component: IRI, site: str, claim: list[str], decided: Mapping[IRI, str]) -> bool:
         if len(claim) == 1:
@@ -271,9 +261,7 @@ class Doorkeeper:
             if self._folder.is_authority:
                 self._folder.credentials((PrincipalKind.SITE,), self._name)
             changed = self._credentials.certificate.stat().st_mtime_ns
-            for program in set(self._own().values()):
-                if (self._folder.path / "components" / Principal.component(program).common_name).is_dir():
-                    self._folder.component(Principal.component(program))
+            self._folder.renew_components()
         except (SelfconfError, OSError) as error:
             self._tell_once("", str(error), "")
             return

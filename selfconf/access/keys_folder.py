@@ -84,7 +84,7 @@ class KeysFolder:
     @property
     def serves_a_host(self) -> bool:
         """Whether certificates can be issued with this folder to the components of this host."""
-        return (self.path / f"{_HOST_AUTHORITY}.key").is_file()
+        return self.is_authority or (self.path / f"{_HOST_AUTHORITY}.key").is_file()
 
     # What the authority does.
 
@@ -165,24 +165,36 @@ class KeysFolder:
                 _write_file(trusted, together)
         return trusted
 
-    def component(self, principal: Principal) -> Path:
-        """The folder of a component that a site of this host starts, with a certificate made or renewed now."""
+    def component(self, principal: Principal, also: Sequence[Principal] = ()) -> Path:
+        """The folder of a process on this host, by its first component, with a certificate made or renewed now.
+
+        `also` are the other components of the process.
+        """
         folder = self.path / "components" / principal.common_name
         with self._turn():
             authority, key = self._host_authority()
-            if self._stale(folder):
+            if self._stale(folder) or self._certificate(folder / f"{_OWN}.pem").principals[1:] != tuple(also):
                 mine = new_key()
-                certificate = issue(authority, key, principal, mine.public_key(), (), COMPONENT_DAYS)
+                certificate = issue(authority, key, principal, mine.public_key(), (), COMPONENT_DAYS, also)
                 _write_holder(folder, self.authority, certificate, mine)
                 _write_file(folder / f"{_HOST_AUTHORITY}.pem", authority.pem)
         return folder
+
+    def renew_components(self) -> None:
+        """Renew the certificates of the processes of this host that are to be. Raises AuthorError."""
+        for folder in (self.path / "components").glob("*"):
+            try:
+                first, *others = self._certificate(folder / f"{_OWN}.pem").principals
+            except (AuthorError, PeerError):
+                continue  # it is made anew when its process is started
+            self.component(first, others)
 
     def admitted(self) -> dict[str, Certificate]:
         """By name, the certificates that are good: those the authority here has issued, or others have shown."""
         revoked, found = self.revoked(), {}
         shown = [self._certificate(path) for path in (self.path / "admitted").glob("*.pem")]
         for one in sorted((*self.issued(), *shown), key=lambda one: one.begins):
-            if not one.fault((self.authority,)):
+            if not one.fault(self._authorities_for(one)):
                 found[one.common_name] = one
         out = {one.common_name for one in (*self.issued(), *shown) if one.serial in revoked}
         return {name: one for name, one in found.items() if name not in out}
@@ -190,7 +202,7 @@ class KeysFolder:
     def admit(self, pem: bytes) -> Certificate:
         """Keep a certificate that somebody has shown. Raises PeerError for one that is not good."""
         certificate = Certificate.read(pem)
-        fault = certificate.fault((self.authority,))
+        fault = certificate.fault(self._authorities_for(certificate))
         if fault:
             raise PeerError(f"the certificate of {certificate.common_name[:80]!r} {fault}")
         if certificate.serial in self.revoked():
@@ -200,6 +212,11 @@ class KeysFolder:
             _made(path.parent)
             _write_file(path, certificate.pem)
         return certificate
+
+    def _authorities_for(self, certificate: Certificate) -> tuple[Certificate, ...]:
+        """Who may have issued a certificate: to components of this host, its own authority too."""
+        is_component = certificate.common_name.startswith(f"{PrincipalKind.COMPONENT.value}.")
+        return self.believed_authorities() if is_component else (self.authority,)
 
     # How it is kept.
 

@@ -10,13 +10,13 @@ with `@`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import Keys, any_ecology
+from selfconf.protocol.keys import Keys, any_ecology, component_chunk
 from selfconf.protocol.messages import Access
 
 SPEAK = ("put", "delete", "declare_queryable", "reply", "liveliness_token")
@@ -55,25 +55,29 @@ class AccessRules:
 def rules_of(
     ecology: str,
     site: str,
-    own: Mapping[IRI, Iterable[IRI]],
+    processes: Iterable[Sequence[Principal]],
     others: Mapping[str, Collection[IRI]],
-    principals: Iterable[Principal],
+    shown: Iterable[Sequence[Principal]],
 ) -> AccessRules:
-    """The rules of a site.
+    """The rules of a site, in an order that does not depend on chance.
 
-    `own` are the components of this host by whom each certificate is for, with those that share a process with it;
-    `others` the components that each other site vouches for; `principals` who else has shown a certificate.
+    `processes` are those of components of this host, each with whom its certificate speaks for, its subject first;
+    `shown` what other certificates have been shown. `others` are the components that each other site vouches for.
     """
     keys = Keys(ecology)
+    speaks: dict[Principal, dict[Principal, None]] = {}
+    for process in (*processes, *shown):
+        speaks.setdefault(process[0], {}).update(dict.fromkeys(process))
     found = [_everybody(keys), _site_itself(keys, site)]
-    found += [_component(keys, component, sharing) for component, sharing in sorted(own.items())]
-    for principal in sorted(set(principals), key=str):
-        if principal.kind is PrincipalKind.SITE and principal.name != site:
-            found.append(_other_site(keys, principal, others.get(principal.name, ())))
+    for principal in sorted(speaks, key=str):
+        if principal.kind is PrincipalKind.COMPONENT:
+            found.append(_component(keys, principal, speaks[principal]))
         elif principal.kind is PrincipalKind.CONFIGURATOR:
             found.append(_configurator(keys, principal))
         elif principal.kind is PrincipalKind.READER:
             found.append(_reader(keys, principal))
+        elif principal.name != site:
+            found.append(_other_site(keys, principal, others.get(principal.name, ())))
     return AccessRules(tuple(found))
 
 
@@ -96,12 +100,12 @@ def _site_itself(keys: Keys, site: str) -> Access:
     )
 
 
-def _component(keys: Keys, component: IRI, sharing: Iterable[IRI]) -> Access:
-    mine = tuple(dict.fromkeys((component, *sharing)))
-    own = tuple(key for one in mine for key in keys.all_of_component(one))
+def _component(keys: Keys, principal: Principal, process: Iterable[Principal]) -> Access:
+    mine = tuple(sorted(one.name for one in process if one.kind is PrincipalKind.COMPONENT))
+    own = tuple(key for chunk in mine for key in keys.all_of_component(chunk))
     heard = (keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_life(), keys.any_configurator_life())
     return Access(
-        Principal.component(component).common_name,
+        principal.common_name,
         "speaks on its own outputs, FAIL and calls; hears the signals and FAIL of all, and who lives",
         says=own,
         asked=(keys.any_output(), keys.any_fail(), keys.any_free()),
@@ -149,9 +153,9 @@ def _configurator(keys: Keys, principal: Principal) -> Access:
 
 
 def _other_site(keys: Keys, principal: Principal, components: Collection[IRI]) -> Access:
-    vouched = tuple(sorted(components))
+    vouched = tuple(sorted(map(component_chunk, components)))
     said = [*keys.all_of_site(principal.name), *keys.all_of_configurators("*"), keys.task()]
-    said += [key for component in vouched for key in keys.all_of_component(component)]
+    said += [key for chunk in vouched for key in keys.all_of_component(chunk)]
     return Access(
         principal.common_name,
         f"another site: speaks for itself, the {len(vouched)} components that it advertises, and the configurators that"

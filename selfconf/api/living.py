@@ -27,7 +27,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import owner_of, site_of, task_name
+from selfconf.protocol.keys import component_chunk, owner_of, site_of, task_name
 from selfconf.protocol.messages import Access, Notice, Refused, Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
@@ -95,6 +95,8 @@ class SiteAccess:
     site: str
     accesses: tuple[Access, ...]
     refused: tuple[Refused, ...]
+    components: Mapping[str, IRI]
+    """The components of the ecology, by their chunks in keys and common names."""
 
     def access_control(self) -> dict[str, Any]:
         """The rules as Zenoh has them, at the member `access_control` of a configuration."""
@@ -236,8 +238,11 @@ class LivingEcology(Ecology):
                     found.setdefault(site, []).append(decode(sample.payload, Access))
             except PeerError as error:
                 rejected.append(f"left out an answer: {error}")
+        components = {component_chunk(component): component for component in self.discover().found}
         self.complaints = tuple(rejected)
-        return tuple(SiteAccess(site, tuple(found[site]), tuple(refused.get(site, ()))) for site in sorted(found))
+        return tuple(
+            SiteAccess(site, tuple(found[site]), tuple(refused.get(site, ())), components) for site in sorted(found)
+        )
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
         """Whom each component of a deployed task hears, by what its configurator says; None if nobody runs it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -36,6 +36,7 @@ class SecuredSite:
         self._credentials = replace(self._credentials, authorities=self._folder.hub_authorities())
         self._refusals = hear_refusals()
         self._first = AccessRules(())
+        self._programs: Callable[[], Mapping[IRI, IRI]] = dict
 
     def first(self, ecology: str, name: str, shelf: Shelf) -> Security:
         """How its hub is secured to begin with: with the rules that follow from what this site knows by itself."""
@@ -49,17 +50,19 @@ class SecuredSite:
 
     def keys_of(self, program: IRI) -> Path:
         """The folder of keys of a process that this site starts, by the component that stands for it."""
-        return self._folder.component(Principal.component(program))
+        sharing = sorted(c for c, first in self._programs().items() if first == program and c != program)
+        return self._folder.component(Principal.component(program), [Principal.component(c) for c in sharing])
 
     def keep_door(self, site: Site, joining: Joining, complain: Callable[[str], None]) -> None:
         """From now on, let in who shows a good certificate, and renew what expires."""
+        self._programs = lambda: site.programs
         Doorkeeper(
             site.bus,
             site.keys.ecology,
             site.name,
             self._folder,
             self._credentials,
-            lambda: site.programs,
+            self._programs,
             lambda: (one.site for one in rendezvous.local_sites(site.keys.ecology)),
             lambda rules: joining.secure(self._security(rules)),
             complain,

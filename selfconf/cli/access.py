@@ -88,7 +88,7 @@ def _body(site: SiteAccess) -> dict[str, Any]:
                 "says": list(one.says),
                 "asked": list(one.asked),
                 "hears": list(one.hears),
-                "components": list(one.about),
+                "components": [site.components.get(chunk, chunk) for chunk in one.about],
             }
             for one in site.accesses
         ],
@@ -109,8 +109,9 @@ def _body(site: SiteAccess) -> dict[str, Any]:
 def _tell(site: SiteAccess) -> None:
     print(f"site {site.site}")
     for one in site.accesses:
-        about = f" ({', '.join(map(repr, one.about[:3]))}{', ...' * (len(one.about) > 3)})" if one.about else ""
-        print(f"  {one.principal or 'everybody'}{about}: {one.sentence}")
+        about = [site.components.get(chunk, chunk) for chunk in one.about]
+        whose = f" ({', '.join(about[:3])}{', ...' * (len(about) > 3)})" if about else ""
+        print(f"  {one.principal or 'everybody'}{whose}: {one.sentence}")
     print(f"  refused: {'nothing' if not site.refused else ''}")
     for refused in site.refused:
         who = refused.principal or "somebody without a certificate that is believed"

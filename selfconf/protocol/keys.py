@@ -140,9 +140,10 @@ class Keys:
     def any_output(self) -> str:
         return f"selfconf/{self.ecology}/c/*/*/out/*"
 
-    def all_of_component(self, component: IRI) -> tuple[str, ...]:
-        """What a component says, under whatever key."""
-        return self._component(component, "**"), self._component(component, "@ctl/*")
+    def all_of_component(self, chunk: str) -> tuple[str, ...]:
+        """What a component says, given by its chunk, under whatever key."""
+        place = f"selfconf/{self.ecology}/c/{base64.b32decode(chunk.upper())[0]:02x}/{chunk}"
+        return f"{place}/**", f"{place}/@ctl/*"
 
     def fail(self, component: IRI) -> str:
         return self._component(component, "fail")

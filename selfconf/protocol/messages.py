@@ -190,8 +190,6 @@ class Page:
     startable: bool = False
     life: str = ""
     """Which life of the site replies: another one may have its name."""
-    program: IRI | None = None
-    """The component that stands for the process of this one, where several share a process; it has the certificate."""
     insecure: bool = False
     """Whether the site listens beyond its host without keys."""
 
@@ -219,8 +217,8 @@ class Access:
     """As which keys, besides, others may ask for that or listen to it: they know it by wider ones."""
     hears: tuple[str, ...] = ()
     """Under which keys it may ask and listen."""
-    about: tuple[IRI, ...] = ()
-    """The components that it speaks for."""
+    about: tuple[str, ...] = ()
+    """The components that it speaks for, by their chunks."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,8 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     life = os.environ.pop(rendezvous.LIFE_VARIABLE, "")  # it is this process's own: what it starts shall not have it
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
-        host = open_host(given.ecology, given.connect, given.keys, profile_of(kinds[0]).component)
+        components = [profile_of(kind).component for kind in kinds]
+        host = open_host(given.ecology, given.connect, given.keys, components)
         for kind in kinds:
             host.add(kind(), life)
         run_until_ended(host)
@@ -66,16 +67,20 @@ def open_host(
     ecology: str | None = None,
     connect: Sequence[str] = (),
     keys: Path | None = None,
-    component: IRI | None = None,
+    components: Sequence[IRI] = (),
 ) -> Host:
     """A host for components, in the ecology that `selfconf.rendezvous.find` finds.
 
-    `keys` is a folder of keys: a component's own, or that of a site of this host, by which `component` gets a
-    certificate. Raises NetworkError, and AuthorError for keys that are none.
+    `keys` is a folder of keys: that of the process itself, or that of a site of this host, by which the process gets a
+    certificate for its `components`. Raises NetworkError, and AuthorError for keys that are none.
     """
-    shown = rendezvous.component_credentials(keys, component)
+    shown = rendezvous.component_credentials(keys, components)
     name, endpoints = rendezvous.find(ecology, connect, shown)
     bus = client(endpoints, shared_memory=True, credentials=shown)
+    if shown is not None:
+        from selfconf.access import introduce  # what it needs is an extra
+
+        introduce(bus, name, shown)
 
     def hung(what: str) -> None:
         print(what, file=sys.stderr, flush=True)

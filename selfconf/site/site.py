@@ -139,7 +139,6 @@ class Site:
                 request.reply(self.keys.advertisements(self.name).replace("**", "none"), b"", encode(page))
                 return
             for index, one in enumerate(self._served):
-                program = self.programs[one.component]
                 page = Page(
                     index,
                     total,
@@ -148,7 +147,6 @@ class Site:
                     one.source,
                     one.startable,
                     self.life,
-                    None if program == one.component else program,
                     self._insecure,
                 )
                 request.reply(one.key, one.payload, encode(page))
