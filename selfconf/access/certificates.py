@@ -7,6 +7,7 @@ wrong with one is said in a sentence each, since Zenoh itself says only that it 
 from __future__ import annotations
 
 import ipaddress
+import secrets
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
@@ -159,8 +160,11 @@ class Certificate:
 
 
 def new_authority(name: str) -> tuple[Certificate, Key]:
-    """An authority that can issue certificates, but no further authorities, with its key."""
-    key, subject = new_key(), _subject(name)
+    """An authority that can issue certificates, but no further authorities, with its key.
+
+    It is told from others of its name by a random text: who finds a name that it knows would blame the signature.
+    """
+    key, subject = new_key(), _subject(f"{name} {secrets.token_hex(4)}")
     usage = x509.KeyUsage(
         digital_signature=True,
         key_cert_sign=True,

@@ -15,6 +15,8 @@ ANSWER = 2.0
 """Seconds that the sites may take to answer."""
 OPENED_ANEW = 1.0
 """Seconds within which a hub that has learnt a name is opened anew."""
+UNHEARD = 0.2
+"""Seconds after which it is shown again where nobody has answered."""
 ROUNDS = 5
 """How often a certificate is shown at most: a hub may be opened anew for others as well."""
 
@@ -22,7 +24,8 @@ ROUNDS = 5
 def introduce(bus: Bus, ecology: str, credentials: Credentials) -> None:
     """Show a certificate until every site that answers knows it. To be called before the bus runs on its own thread.
 
-    Raises NetworkError if no site lets it in; nothing where no site answers, as that is found out anyway.
+    A site may not answer while its hub is opened anew. Raises NetworkError if no site lets it in; nothing where none
+    answers in the end, as that is found out anyway.
     """
     key, mine = Keys(ecology).introduce("*"), encode(Introduction(credentials.certificate.read_text()))
     for _ in range(ROUNDS):
@@ -31,9 +34,9 @@ def introduce(bus: Bus, ecology: str, credentials: Credentials) -> None:
         known = [_known(sample.payload) for sample in replies.samples]
         if not known and replies.errors:
             raise NetworkError(f"{credentials.name} is not let in: {replies.errors[0]}")
-        if all(known):
+        if known and all(known):
             return
-        deadline = bus.now() + OPENED_ANEW
+        deadline = bus.now() + (OPENED_ANEW if known else UNHEARD)
         bus.run(partial(_opened_anew, bus, link, deadline))
 
 

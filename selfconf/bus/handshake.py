@@ -17,6 +17,7 @@ PATIENCE = 1.5
 """Seconds that the other end may take."""
 _SAID = {
     "UNKNOWN_CA": "it does not know the authority that has issued {name}",
+    "DECRYPT_ERROR": "it does not know the authority that has issued {name}",
     "CERTIFICATE_EXPIRED": "for it, the certificate of {name} has expired; renew it, or are the clocks different?",
     "CERTIFICATE_REQUIRED": "it wants a certificate, and got none",
     "BAD_CERTIFICATE": "it does not believe the certificate of {name}",

@@ -15,6 +15,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from selfconf.access import KeysFolder, PrincipalKind
+from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.errors import PeerError
@@ -26,6 +28,8 @@ from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertiseme
 
 PATIENCE = 60.0
 """Seconds that a process may take for anything, on a busy machine."""
+WITH_KEYS = "SELFCONF_TEST_KEYS" in os.environ
+"""Whether every ecology of real processes has keys."""
 PROGRAM = '''
 """Components for tests: each acts a little, and fails, or dies in `started`, when a file says so."""
 
@@ -177,7 +181,8 @@ class Program:
 class Home:
     """An ecology of real processes."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, keys: bool = WITH_KEYS) -> None:
+        """With `keys` everything is done with those of an authority of this home's own."""
         self.folder, self.ecology = folder, f"test-{secrets.token_hex(4)}"
         self.keys = Keys(self.ecology)
         write_advertisements(folder / "ads")
@@ -189,6 +194,9 @@ class Home:
             "SELFCONF_RUNTIME_DIR": str(self.runtime),
             "PYTHONPATH": str(Path(__file__).parent.parent.parent),
         }
+        self.authority = KeysFolder.init(folder / "keys") if keys else None
+        if self.authority is not None:
+            self.environment["SELFCONF_KEYS"] = str(self.authority.path)
         self._programs: list[Program] = []
         self._bus: ZenohBus | None = None
 
@@ -246,6 +254,15 @@ class Home:
         """The options by which a command in this process finds the ecology."""
         return "--ecology", self.ecology, "--connect", self.endpoint()
 
+    def credentials(self, kind: PrincipalKind = PrincipalKind.CONFIGURATOR) -> Credentials | None:
+        """What a program of this process shows."""
+        return None if self.authority is None else self.authority.credentials((kind,))
+
+    def node(self) -> ZenohBus:
+        """A client of the sites, which may do what a configurator may."""
+        endpoints = [json.loads(path.read_text())["endpoint"] for path in sorted(self.runtime.glob("*.json"))]
+        return client(endpoints, credentials=self.credentials())
+
     # Observing.
 
     def ask(self, key: str, payload: bytes = b"", seconds: float = 10.0) -> Replies:
@@ -253,9 +270,7 @@ class Home:
         if self._bus is None or not self._bus.link:
             if self._bus is not None:
                 self._bus.close()
-            self._bus = client(
-                [json.loads(path.read_text())["endpoint"] for path in sorted(self.runtime.glob("*.json"))]
-            )
+            self._bus = self.node()
         replies: list[Replies] = []
         self._bus.ask(key, payload, seconds, replies.append)
         bus = self._bus
