@@ -39,6 +39,8 @@ ANSWERS = 3.0
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 """Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
 INTRODUCE_AGAIN = 5.0
+LOOKS = 3
+"""After how many looks a refused attempt is told of: what somebody has tried who is let in by then does not count."""
 MOST_TOLD = 20
 """How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
 MOST_ADVERTISED = 20_000
@@ -96,7 +98,8 @@ class Doorkeeper:
         """The components that other sites advertise."""
         self._revisions: dict[str, int] = {}
         self._disputed: frozenset[IRI] = frozenset()
-        self._told: dict[tuple[str, str, str], int] = {}
+        self._seen: dict[tuple[str, str, str], int] = {}
+        """How often each refused attempt was seen in the log."""
         self._tellings: list[float] = []
         self._ask_soon: Undo = lambda: None
         self._renewed_at = credentials.certificate.stat().st_mtime_ns
@@ -127,9 +130,15 @@ class Doorkeeper:
         self._bus.later(0.0, self._renew_rules)  # after the answer is on its way
 
     def _admit(self, certificate: str) -> bool:
-        """Whether the holder of a certificate was known before. Raises PeerError for one that is not good."""
-        before = self._folder.admitted()
-        return self._folder.admit(certificate.encode()).common_name in before
+        """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good.
+
+        What it has tried before it was known was not refused for what it is.
+        """
+        name = self._folder.admit(certificate.encode()).common_name
+        known = any(access.principal == name for access in self.rules.accesses)
+        if not known:
+            self._refusals.forget(name)
+        return known
 
     def _introduce(self) -> None:
         """Show the certificate of this site to all others, and learn theirs."""
@@ -248,12 +257,11 @@ class Doorkeeper:
         self._bus.later(LOOK, self._look)
         self._renew_certificates()
         self._renew_rules()
-        for one in self._refusals.refused:
-            what = one.principal, one.attempt, one.key
-            if self._told.get(what, 0) < one.number:
-                new, self._told[what] = what not in self._told, one.number
-                if new:
-                    self._tell_once(*what)
+        refused = [(one.principal, one.attempt, one.key) for one in self._refusals.refused]
+        self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
+        for what in refused:
+            if self._seen[what] == LOOKS:
+                self._tell_once(*what)
 
     def _renew_certificates(self) -> None:
         """Renew what is half over, and have the hub show the certificate that lies in the folder now."""

@@ -60,6 +60,11 @@ class RefusalLog:
             found = [Refused(*what, number, latest) for what, (number, latest) in self._found.items()]
         return tuple(sorted(found, key=lambda one: -one.latest))
 
+    def forget(self, principal: str) -> None:
+        """Forget what somebody has tried so far."""
+        with self._lock:
+            self._found = {what: found for what, found in self._found.items() if what[0] != principal}
+
     def take(self, line: str) -> None:
         """Read one line."""
         knocked = _KNOCKED.search(line)
