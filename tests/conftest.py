@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import secrets
 from collections.abc import Iterator
 from pathlib import Path
@@ -52,6 +53,25 @@ def runtime_folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest
     for name in ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT", "SELFCONF_PARENT"):
         monkeypatch.delenv(name, raising=False)
     return folder
+
+
+@pytest.fixture(scope="session")
+def keys_of_all(tmp_path_factory: pytest.TempPathFactory) -> Path | None:
+    """The authority of every ecology of real processes, where the tests are run with keys (`make test-keys`)."""
+    if "SELFCONF_TEST_KEYS" not in os.environ:
+        return None
+    from selfconf.access import KeysFolder
+
+    return KeysFolder.init(tmp_path_factory.mktemp("authority") / "keys").path
+
+
+@pytest.fixture(autouse=True)
+def keys_or_none(keys_of_all: Path | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every program of a test has the same keys, or none."""
+    if keys_of_all is None:
+        monkeypatch.delenv("SELFCONF_KEYS", raising=False)
+    else:
+        monkeypatch.setenv("SELFCONF_KEYS", str(keys_of_all))
 
 
 @pytest.fixture

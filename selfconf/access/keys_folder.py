@@ -342,7 +342,10 @@ def _write_file(path: Path, content: bytes) -> None:
 
 
 def _made(folder: Path) -> None:
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    """Make a folder, and those above it that are not there, for its owner alone."""
+    for one in (*reversed(folder.parents), folder):
+        if not one.is_dir():
+            one.mkdir(mode=0o700, exist_ok=True)
 
 
 def _read(path: Path) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -25,8 +26,8 @@ class SecuredSite:
         From now on, what Zenoh logs is read: it must be made before any session is opened.
         """
         self._folder = KeysFolder(keys)
-        kinds = (PrincipalKind.SITE,)
-        self._credentials = self._folder.credentials(kinds, name) if name else self._folder.credentials(kinds)
+        wanted = name or f"s{secrets.token_hex(3)}"  # only an authority can choose
+        self._credentials = self._folder.credentials((PrincipalKind.SITE,), wanted)
         self.name = self._credentials.name.partition(".")[2]
         """The name of the site, as its certificate has it."""
         if name is not None and name != self.name:

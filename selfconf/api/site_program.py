@@ -7,6 +7,7 @@ import os
 import platform
 import re
 import secrets
+import socket
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -103,9 +104,10 @@ def _beyond_loopback(listen: str | None) -> bool:
         return False
     host = listen.partition("/")[2].rpartition(":")[0].strip("[]")
     try:
-        return not ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host != "localhost"
+        found = {str(place[4][0]) for place in socket.getaddrinfo(host or None, None)}
+    except (OSError, UnicodeError):
+        return False  # nothing can listen there
+    return not all(ipaddress.ip_address(address.partition("%")[0]).is_loopback for address in found)
 
 
 def _secured(keys: Path | None, name: str | None) -> SecuredSite | None:

@@ -28,8 +28,6 @@ from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertiseme
 
 PATIENCE = 60.0
 """Seconds that a process may take for anything, on a busy machine."""
-WITH_KEYS = "SELFCONF_TEST_KEYS" in os.environ
-"""Whether every ecology of real processes has keys."""
 PROGRAM = '''
 """Components for tests: each acts a little, and fails, or dies in `started`, when a file says so."""
 
@@ -181,8 +179,8 @@ class Program:
 class Home:
     """An ecology of real processes."""
 
-    def __init__(self, folder: Path, keys: bool = WITH_KEYS) -> None:
-        """With `keys` everything is done with those of an authority of this home's own."""
+    def __init__(self, folder: Path, keys: bool | None = None) -> None:
+        """With `keys` everything is done with those of an authority of this home's own, by default as other tests do."""
         self.folder, self.ecology = folder, f"test-{secrets.token_hex(4)}"
         self.keys = Keys(self.ecology)
         write_advertisements(folder / "ads")
@@ -194,7 +192,8 @@ class Home:
             "SELFCONF_RUNTIME_DIR": str(self.runtime),
             "PYTHONPATH": str(Path(__file__).parent.parent.parent),
         }
-        self.authority = KeysFolder.init(folder / "keys") if keys else None
+        given = os.environ.get("SELFCONF_KEYS") if keys is None else None
+        self.authority = KeysFolder(Path(given)) if given else KeysFolder.init(folder / "keys") if keys else None
         if self.authority is not None:
             self.environment["SELFCONF_KEYS"] = str(self.authority.path)
         self._programs: list[Program] = []

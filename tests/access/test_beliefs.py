@@ -1,0 +1,31 @@
+"""What a person has said about whose a component is stays, and is read as it was written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.access.beliefs import FILE, believe, believed
+from selfconf.errors import AuthorError
+from selfconf.model.term import IRI
+
+
+def test_what_was_said_is_kept(tmp_path: Path) -> None:
+    assert believed(tmp_path) == {}
+    believe(tmp_path, IRI("urn:lamp"), "attic")
+    believe(tmp_path, IRI("urn:bell"), "cellar")
+    believe(tmp_path, IRI("urn:lamp"), "cellar")
+    assert believed(tmp_path) == {IRI("urn:lamp"): "cellar", IRI("urn:bell"): "cellar"}
+
+
+@pytest.mark.parametrize("content", ["", "[]", '{"urn:a": 1}', "{"])
+def test_what_cannot_be_read_is_named(content: str, tmp_path: Path) -> None:
+    (tmp_path / FILE).write_text(content)
+    with pytest.raises(AuthorError, match=FILE):
+        believed(tmp_path)
+
+
+def test_what_cannot_be_written_is_named(tmp_path: Path) -> None:
+    with pytest.raises(AuthorError, match="cannot be written"):
+        believe(tmp_path / "nowhere", IRI("urn:lamp"), "attic")

@@ -1,0 +1,176 @@
+"""The doorkeeper of a site, on a bus in memory: it learns who there is, and has its rules follow."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.access import AccessRules, Doorkeeper, KeysFolder, Principal, PrincipalKind, believe, first_rules
+from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.port import Replies, Request
+from selfconf.bus.refusals import RefusalLog
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Access, Introduction, Page, Refused
+
+KEYS = Keys("lab")
+LAMP, BELL = IRI("urn:lamp"), IRI("urn:bell")
+
+
+class Door:
+    """A doorkeeper of the site `home`, and what it does."""
+
+    def __init__(self, folder: KeysFolder) -> None:
+        self.network, self.folder = Network(1), folder
+        self.bus = self.network.node()
+        self.enforced: list[AccessRules] = []
+        self.said: list[str] = []
+        self.refusals = RefusalLog(clock=lambda: 0.0)
+        credentials = folder.credentials((PrincipalKind.SITE,), "home")
+        self.keeper = Doorkeeper(
+            self.bus,
+            "lab",
+            "home",
+            folder,
+            credentials,
+            lambda: {LAMP: LAMP},
+            lambda: ["home"],
+            self.enforced.append,
+            self.said.append,
+            self.refusals,
+            first_rules("lab", "home", folder, {LAMP: LAMP}),
+        )
+        self.other = self.network.node()
+
+    def ask(self, key: str, payload: bytes = b"") -> Replies:
+        """What is answered to somebody else."""
+        heard: list[Replies] = []
+        self.other.ask(key, payload, 5.0, heard.append)
+        self.other.run(lambda: bool(heard))
+        return heard[0]
+
+    def introduce(self, certificate: str) -> Replies:
+        """What is answered to who shows a certificate."""
+        return self.ask(KEYS.introduce("home"), encode(Introduction(certificate)))
+
+    def pass_time(self, seconds: float) -> None:
+        """Let time pass."""
+        until = self.bus.now() + seconds
+        self.bus.run(lambda: self.bus.now() >= until)
+
+    @property
+    def principals(self) -> set[str]:
+        """Who may do anything."""
+        return {access.principal for access in self.keeper.rules.accesses}
+
+
+@pytest.fixture
+def door(tmp_path: Path) -> Door:
+    """A door."""
+    return Door(KeysFolder.init(tmp_path / "keys"))
+
+
+def test_who_shows_a_good_certificate_is_let_in_and_shown_that_of_the_site(door: Door, tmp_path: Path) -> None:
+    authority = KeysFolder.init(tmp_path / "elsewhere")
+    site = tmp_path / "site"
+    authority.issue(Principal(PrincipalKind.SITE, "home"), site)
+    alice = authority.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice")
+    door = Door(KeysFolder(site))
+    assert "read.alice" not in door.principals
+    (first,) = door.introduce(alice.pem.decode()).samples
+    answer = decode(first.payload, Introduction)
+    assert (answer.known, answer.certificate) == (False, (site / "certificate.pem").read_text())
+    door.pass_time(0.1)
+    assert "read.alice" in door.principals
+    assert door.enforced == [door.keeper.rules]
+    (again,) = door.introduce(alice.pem.decode()).samples
+    assert decode(again.payload, Introduction).known
+    door.pass_time(5.0)
+    assert len(door.enforced) == 1, "nothing has changed since"
+
+
+@pytest.mark.parametrize(
+    "certificate", ["", "nonsense", "-----BEGIN CERTIFICATE-----\nAA==\n-----END CERTIFICATE-----"]
+)
+def test_who_shows_nonsense_is_refused(certificate: str, door: Door) -> None:
+    replies = door.introduce(certificate)
+    assert replies.errors
+    assert not replies.samples
+    assert door.enforced == []
+
+
+def advertise(door: Door, site: str, *components: IRI) -> MemoryBus:
+    """Another site, that has shown its certificate and advertises some components."""
+    bus = door.network.node()
+
+    def answer(request: Request) -> None:
+        for index, component in enumerate(components):
+            page = Page(index, len(components), 1, component, life="1")
+            request.reply(KEYS.advertisement(site, component), b"", encode(page))
+        request.finish()
+
+    bus.serve(KEYS.advertisements(site), answer)
+    bus.announce(KEYS.site_life(site, "1"))
+    door.folder.credentials((PrincipalKind.SITE,), site)  # its certificate is issued
+    door.pass_time(2.0)
+    return bus
+
+
+def vouched(door: Door, site: str) -> set[str]:
+    """The components that another site may speak for."""
+    return {c for access in door.keeper.rules.accesses if access.principal == f"site.{site}" for c in access.about}
+
+
+def test_another_site_speaks_for_what_it_advertises(door: Door) -> None:
+    advertise(door, "attic", BELL)
+    assert vouched(door, "attic") == {Principal.component(BELL).name}
+
+
+def test_what_two_sites_advertise_is_nobodys_until_somebody_says_whose(door: Door) -> None:
+    advertise(door, "attic", BELL)
+    advertise(door, "cellar", BELL)
+    assert vouched(door, "attic") == vouched(door, "cellar") == set()
+    assert [said for said in door.said if "urn:bell is advertised by the sites attic and cellar" in said]
+    believe(door.folder.path, BELL, "cellar")
+    door.pass_time(2.0)
+    assert vouched(door, "attic") == set()
+    assert vouched(door, "cellar") == {Principal.component(BELL).name}
+
+
+def test_a_site_goes_on_with_its_own(door: Door) -> None:
+    advertise(door, "attic", LAMP)
+    assert vouched(door, "attic") == set()
+    assert Principal.component(LAMP).common_name in door.principals
+    assert door.said
+
+
+def test_what_was_refused_is_told_once_and_shown_to_who_asks(door: Door) -> None:
+    for _ in range(3):
+        door.refusals.take("WARN x zenoh_link_tls::unicast: peer sent no certificates. Hint: something")
+    door.pass_time(10.0)
+    assert door.said == ["refused: somebody without a certificate that is believed: peer sent no certificates"]
+    replies = door.ask(KEYS.access("home"))
+    shown = [decode(sample.payload, Refused) for sample in replies.samples if b"refused" in sample.payload[:40]]
+    assert [(one.principal, one.number) for one in shown] == [("", 3)]
+    rules = [decode(sample.payload, Access) for sample in replies.samples if b"access" in sample.payload[:40]]
+    assert tuple(rules) == door.keeper.rules.accesses
+
+
+def test_a_renewed_certificate_is_shown_by_the_hub(door: Door, tmp_path: Path) -> None:
+    certificate = door.folder.path / "own/site.home/certificate.pem"
+    before = certificate.stat()
+    certificate.write_bytes(certificate.read_bytes())
+    assert certificate.stat().st_mtime_ns != before.st_mtime_ns
+    door.pass_time(1.5)
+    assert len(door.enforced) == 1
+
+
+def test_who_is_revoked_is_out(door: Door, tmp_path: Path) -> None:
+    door.folder.issue(Principal(PrincipalKind.CONFIGURATOR, "eve"), tmp_path / "eve")
+    door.pass_time(1.5)
+    assert "conf.eve" in door.principals
+    door.folder.revoke(Principal(PrincipalKind.CONFIGURATOR, "eve"))
+    door.pass_time(1.5)
+    assert "conf.eve" not in door.principals

@@ -1,0 +1,67 @@
+"""A program shows its certificate until the sites know it; the sites of these tests answer on a bus in memory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.access import KeysFolder, PrincipalKind
+from selfconf.access.introduction import ROUNDS, introduce
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Request
+from selfconf.errors import NetworkError
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Introduction
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> KeysFolder:
+    """The folder of an authority."""
+    return KeysFolder.init(tmp_path / "keys")
+
+
+class Door:
+    """A site that knows who has shown a certificate often enough, or lets nobody in."""
+
+    def __init__(self, network: Network, known_after: int = 1, refuses: str = "") -> None:
+        self.shown: list[str] = []
+        self._known_after, self._refuses = known_after, refuses
+        self._key = Keys("lab").introduce("home")
+        network.node().serve(self._key, self.answer)
+
+    def answer(self, request: Request) -> None:
+        """Answer an introduction."""
+        self.shown.append(decode(request.payload, Introduction).certificate)
+        if self._refuses:
+            request.refuse(self._refuses)
+        else:
+            request.reply(self._key, encode(Introduction("mine", len(self.shown) > self._known_after)))
+        request.finish()
+
+
+@pytest.mark.parametrize("known_after", [0, 1, 3])
+def test_a_certificate_is_shown_until_it_is_known(known_after: int, folder: KeysFolder) -> None:
+    network = Network(1)
+    door, mine = Door(network, known_after), folder.credentials((PrincipalKind.READER,))
+    introduce(network.node(), "lab", mine)
+    assert door.shown == [mine.certificate.read_text()] * (known_after + 1)
+
+
+def test_who_is_not_let_in_hears_why(folder: KeysFolder) -> None:
+    network = Network(1)
+    Door(network, refuses="it was revoked")
+    with pytest.raises(NetworkError, match=r"read.main is not let in: it was revoked"):
+        introduce(network.node(), "lab", folder.credentials((PrincipalKind.READER,)))
+
+
+def test_it_is_not_shown_for_ever(folder: KeysFolder) -> None:
+    network = Network(1)
+    door = Door(network, known_after=100)
+    introduce(network.node(), "lab", folder.credentials((PrincipalKind.READER,)))
+    assert len(door.shown) == ROUNDS
+
+
+def test_nobody_need_answer(folder: KeysFolder) -> None:
+    introduce(Network(1).node(), "lab", folder.credentials((PrincipalKind.READER,)))

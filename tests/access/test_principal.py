@@ -1,0 +1,46 @@
+"""Whom a certificate can speak for."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.access import Principal, PrincipalKind
+from selfconf.errors import AuthorError, PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import component_chunk
+
+CLOCK = IRI("https://example.org/my-home#clock")
+
+
+@pytest.mark.parametrize("name", ["site.kitchen", "conf.main", "read.a-b_c.d", f"comp.{component_chunk(CLOCK)}"])
+def test_a_common_name_stands_for_a_principal_and_back(name: str) -> None:
+    assert Principal.of(name).common_name == name == str(Principal.written(name))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        "site",
+        "site.",
+        "boss.main",
+        "conf.a/b",
+        "conf.*",
+        "read." + "a" * 49,
+        "comp.clock",
+        "Site.kitchen",
+        "conf.\n",
+    ],
+)
+def test_other_names_stand_for_nobody(name: str) -> None:
+    with pytest.raises(PeerError, match="no name of"):
+        Principal.of(name)
+    with pytest.raises(AuthorError, match="names nobody"):
+        Principal.written(name)
+
+
+def test_a_component_is_written_as_its_iri() -> None:
+    clock = Principal.component(CLOCK)
+    assert Principal.written(CLOCK) == Principal.written(f"<{CLOCK}>") == clock
+    assert clock == Principal(PrincipalKind.COMPONENT, component_chunk(CLOCK))
+    assert Principal.of(clock.common_name) == clock

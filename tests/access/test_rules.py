@@ -1,0 +1,80 @@
+"""Who may do what, judged by keys: an own reading of Zenoh's rules says what passes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import zenoh
+
+from selfconf.access import AccessRules, Principal, PrincipalKind, rules_of
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys
+
+KEYS = Keys("lab")
+CAMERA, DRIVE, LAMP = IRI("urn:camera"), IRI("urn:drive"), IRI("urn:lamp")
+
+
+def rules() -> AccessRules:
+    """The rules of the site `home`, which knows one of each kind."""
+    return rules_of(
+        "lab",
+        "home",
+        [(Principal.component(CAMERA),), (Principal.component(DRIVE), Principal.component(LAMP))],
+        {"attic": {IRI("urn:bell")}},
+        [(Principal(kind, "alice"),) for kind in (PrincipalKind.CONFIGURATOR, PrincipalKind.READER)]
+        + [(Principal(PrincipalKind.SITE, "attic"),), (Principal(PrincipalKind.SITE, "home"),)],
+    )
+
+
+def passes(principal: str, flow: str, message: str, key: str) -> bool:
+    """Whether a message passes, as Zenoh has it: by default not, and by inclusion of keys."""
+    control: dict[str, Any] = rules().access_control()
+    subjects = {s["id"] for s in control["subjects"] if s.get("cert_common_names", [principal]) == [principal]}
+    allowed = {rule for p in control["policies"] if subjects & set(p["subjects"]) for rule in p["rules"]}
+    return any(
+        rule["id"] in allowed
+        and flow in rule["flows"]
+        and message in rule["messages"]
+        and any(zenoh.KeyExpr(granted).includes(zenoh.KeyExpr(key)) for granted in rule["key_exprs"])
+        for rule in control["rules"]
+    )
+
+
+CAM, DRV = (Principal.component(component).common_name for component in (CAMERA, DRIVE))
+
+
+@pytest.mark.parametrize(
+    ("principal", "message", "key", "allowed"),
+    [
+        (CAM, "put", KEYS.output(CAMERA, "image"), True),
+        (CAM, "put", KEYS.output(DRIVE, "image"), False),
+        (DRV, "put", KEYS.output(LAMP, "light"), True),
+        (CAM, "liveliness_token", KEYS.life(CAMERA, "1"), True),
+        (CAM, "liveliness_token", KEYS.life(DRIVE, "1"), False),
+        (CAM, "query", KEYS.call(DRIVE, "state"), False),
+        (CAM, "declare_subscriber", KEYS.output(DRIVE, "speed"), True),
+        ("conf.alice", "query", KEYS.call(DRIVE, "apply"), True),
+        ("conf.alice", "liveliness_token", KEYS.configurator_life("alice-1", "1"), True),
+        ("conf.alice", "liveliness_token", KEYS.configurator_life("bob-1", "1"), False),
+        ("conf.alice", "liveliness_token", KEYS.configurator_life("alice", "1"), False),
+        ("conf.alice", "put", KEYS.fail(DRIVE), False),
+        ("read.alice", "query", KEYS.advertisements("*"), True),
+        ("read.alice", "query", KEYS.call(DRIVE, "state"), False),
+        ("read.alice", "declare_subscriber", KEYS.output(DRIVE, "speed"), False),
+        ("site.attic", "put", KEYS.output(IRI("urn:bell"), "ring"), True),
+        ("site.attic", "put", KEYS.output(DRIVE, "speed"), False),
+        ("site.attic", "reply", KEYS.advertisement("home", DRIVE), False),
+        ("site.home", "put", KEYS.output(DRIVE, "speed"), True),
+        ("conf.unknown", "query", KEYS.advertisements("*"), False),
+        ("conf.unknown", "query", KEYS.introduce("*"), True),
+    ],
+)
+def test_each_may_do_what_its_name_says(principal: str, message: str, key: str, allowed: bool) -> None:
+    assert passes(principal, "ingress", message, key) is allowed
+
+
+def test_the_rules_do_not_depend_on_an_order() -> None:
+    one = rules_of("lab", "home", [(Principal.component(CAMERA),), (Principal.component(DRIVE),)], {}, [])
+    other = rules_of("lab", "home", [(Principal.component(DRIVE),), (Principal.component(CAMERA),)], {}, [])
+    assert one == other

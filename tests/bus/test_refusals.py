@@ -1,0 +1,76 @@
+"""What Zenoh's log says of refused messages is read, counted and bounded; real lines are in the table of attacks."""
+
+from __future__ import annotations
+
+from selfconf.bus.refusals import MOST, RefusalLog
+
+PEER = "5ec1c06f0c48971bb2c118a3b409706c"
+LINK = f"{PEER} on Interface(lo)+CertCommonName(comp.x)+Transport(Tls)+{PEER}"
+AC = "2026-11-22T19:22:36.669613Z TRACE  rx-1 ThreadId({}) zenoh::net::routing::interceptor::access_control: "
+INTERCEPTED = "2026-11-22T19:22:36.669Z TRACE  rx-1 ThreadId({}) zenoh::net::routing::interceptor: Msg intercepted!"
+
+
+def denied(key: str, what: str = "Put", flow: str = "ingress", thread: int = 11) -> list[str]:
+    """The lines of one refused message."""
+    return [AC.format(thread) + f"{LINK} is unauthorized to {what} ({flow}) on {key}", INTERCEPTED.format(thread)]
+
+
+def log_of(*lines: str) -> RefusalLog:
+    """A log that has read some lines."""
+    log = RefusalLog(clock=lambda: 7.0)
+    for line in lines:
+        log.take(line)
+    return log
+
+
+def found(log: RefusalLog) -> list[tuple[str, str, str, int]]:
+    """What was refused."""
+    return [(one.principal, one.attempt, one.key, one.number) for one in log.refused]
+
+
+def test_a_refused_message_is_counted_for_who_sent_it() -> None:
+    log = log_of(*denied("a/b"), *denied("a/b"), *denied("a/c", "Declare/Undeclare Queryable"))
+    assert sorted(found(log)) == [("comp.x", "Declare/Undeclare Queryable", "a/c", 1), ("comp.x", "Put", "a/b", 2)]
+    assert log.refused[0].latest == 7.0
+
+
+def test_a_cached_refusal_names_the_peer_only_by_its_number() -> None:
+    cached = AC.format(3) + f"Using cached result: {PEER} is unauthorized to Put (ingress) on a/b"
+    assert found(log_of(*denied("x"), cached, INTERCEPTED.format(3)))[-1] == ("comp.x", "Put", "a/b", 1)
+    assert found(log_of(cached, INTERCEPTED.format(3))) == [("?", "Put", "a/b", 1)]
+
+
+def test_what_is_kept_from_somebody_or_allowed_in_the_end_is_no_attempt() -> None:
+    first, last = denied("a/b", flow="egress")
+    assert found(log_of(first, last)) == []
+    assert found(log_of(denied("a/b")[0])) == []
+    assert found(log_of(denied("a/b")[0], INTERCEPTED.format(12))) == [], "another thread"
+
+
+def test_who_knocks_without_a_good_certificate_is_counted() -> None:
+    line = "2026Z  WARN acc-0 ThreadId(06) zenoh_link_tls::unicast: {}. Hint: increase the system open file limit."
+    log = log_of(line.format("peer sent no certificates"), line.format("invalid peer certificate: UnknownIssuer"))
+    assert {attempt for _, attempt, _, _ in found(log)} == {
+        "peer sent no certificates",
+        "invalid peer certificate: UnknownIssuer",
+    }
+
+
+def test_colours_and_ends_of_chunks_do_not_matter() -> None:
+    log = RefusalLog(clock=lambda: 7.0)
+    first, last = denied("a/b")
+    log.take_chunk(f"\x1b[2mnoise\x1b[0m\n{first}".encode())
+    log.take_chunk(f"\x1b[35m{last}\x1b[0m".encode())
+    assert found(log) == [("comp.x", "Put", "a/b", 1)]
+
+
+def test_a_flood_takes_bounded_memory() -> None:
+    log = log_of(*(line for number in range(3 * MOST) for line in denied(f"key/{number}")))
+    assert len(log.refused) <= 2 * MOST
+    assert sum(one.number for one in log.refused) == 3 * MOST
+
+
+def test_nobody_is_asked_about_again_after_being_let_in() -> None:
+    log = log_of(*denied("a/b"))
+    log.forget("comp.x")
+    assert found(log) == []

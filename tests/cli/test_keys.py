@@ -1,0 +1,75 @@
+"""`keys`: from an authority to a holder and back, in words that say what to do next."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.command import run
+
+
+@pytest.fixture
+def authority(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+    """The folder of an authority."""
+    made = run(capsys, "keys", "init", str(tmp_path / "keys"))
+    assert made.code == 0
+    assert "keep it to yourself" in made.out
+    return tmp_path / "keys"
+
+
+def test_a_holder_is_issued_shown_renewed_and_revoked(
+    authority: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, keys = str(tmp_path / "attic"), ("--keys", str(authority))
+    issued = run(capsys, "keys", "issue", "site.attic", *keys, "--host", "10.0.0.7", "--out", folder, "--days", "2")
+    assert (issued.code, issued.err) == (0, "")
+    assert "speaks for site.attic, until" in issued.out
+    shown = run(capsys, "keys", "show", folder, "--format", "json").body
+    (certificate,) = shown["certificates"]
+    assert not shown["authority"]
+    assert (certificate["name"], certificate["fault"]) == ("site.attic", "")
+    assert "10.0.0.7" in certificate["hosts"]
+    assert run(capsys, "keys", "renew", folder, *keys, "--days", "9").code == 0
+    renewed = run(capsys, "keys", "show", folder, "--format", "json").body["certificates"][0]
+    assert renewed["ends"] > certificate["ends"]
+    revoked = run(capsys, "keys", "revoke", "site.attic", *keys)
+    assert "revoked 2 certificates of site.attic" in revoked.out
+    assert "copy" in revoked.out
+    assert "was revoked" in run(capsys, "keys", "show", str(authority)).out
+
+
+def test_what_is_wrong_with_a_holder_is_shown(
+    authority: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = str(tmp_path / "alice")
+    run(capsys, "keys", "issue", "read.alice", "--keys", str(authority), "--out", folder, "--days", "0.000001")
+    shown = run(capsys, "keys", "show", folder)
+    assert shown.code == 1
+    assert "has expired" in shown.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("issue", "boss", "--out", "x"), ("'boss' names nobody", "site.NAME")),
+        (("issue", "read.a", "--out", "."), ("not empty",)),
+        (("issue", "site.a", "--host", "a b", "--out", "x"), ("neither the name of a host",)),
+        (("renew", "nowhere"), ("there is no folder nowhere",)),
+        (("revoke", "read.nobody"), ("nothing to revoke",)),
+        (("show", "nowhere"), ("there is no folder nowhere", "keys init")),
+        (("issue", "read.a", "--out", "x", "--days", "0"), ("no number of days",)),
+        (("issue", "read.a", "--out", "x", "--days", "nan"), ("no number of days",)),
+    ],
+)
+def test_misuse_has_its_sentence(
+    arguments: tuple[str, ...], words: tuple[str, ...], authority: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    keys = () if arguments[0] == "show" else ("--keys", str(authority))
+    assert run(capsys, "keys", *arguments, *keys).is_one_sentence(*words)
+
+
+def test_an_authority_is_needed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "keys", "issue", "read.a", "--out", str(tmp_path / "x")).is_one_sentence("which authority?")
+    assert run(capsys, "keys", "init", str(tmp_path)).code == 0
+    assert run(capsys, "keys", "init", str(tmp_path)).is_one_sentence("not empty")
