@@ -59,11 +59,16 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     site = home.site(SITE, "ads")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
-        patch.setenv("SELFCONF_KEYS", home.environment["SELFCONF_KEYS"])
         wake(home)
         yield home
     assert not site.over, site.complaints
     home.close()
+
+
+@pytest.fixture(autouse=True)
+def its_keys(home: Home, keys_or_none: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands of a test have the keys of the home."""
+    monkeypatch.setenv("SELFCONF_KEYS", home.environment["SELFCONF_KEYS"])
 
 
 def wake(home: Home) -> None:

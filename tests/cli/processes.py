@@ -180,7 +180,7 @@ class Home:
     """An ecology of real processes."""
 
     def __init__(self, folder: Path, keys: bool | None = None) -> None:
-        """With `keys` everything is done with those of an authority of this home's own, by default as other tests do."""
+        """With `keys` everything is done with those of an authority of its own, by default as in other tests."""
         self.folder, self.ecology = folder, f"test-{secrets.token_hex(4)}"
         self.keys = Keys(self.ecology)
         write_advertisements(folder / "ads")

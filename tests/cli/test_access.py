@@ -23,11 +23,16 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     home.site("home", "ads")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
-        patch.setenv("SELFCONF_KEYS", home.environment["SELFCONF_KEYS"])
         task = home.run("--name", "walk")
         task.act("running")
         yield home
     home.close()
+
+
+@pytest.fixture(autouse=True)
+def its_keys(running: Home, keys_or_none: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands of a test have the keys of the home."""
+    monkeypatch.setenv("SELFCONF_KEYS", running.environment["SELFCONF_KEYS"])
 
 
 def test_a_task_with_keys_is_repaired_and_nobody_is_refused(running: Home, capsys: pytest.CaptureFixture[str]) -> None:
