@@ -55,23 +55,16 @@ def runtime_folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest
     return folder
 
 
-@pytest.fixture(scope="session")
-def keys_of_all(tmp_path_factory: pytest.TempPathFactory) -> Path | None:
-    """The authority of every ecology of real processes, where the tests are run with keys (`make test-keys`)."""
-    if "SELFCONF_TEST_KEYS" not in os.environ:
-        return None
-    from selfconf.access import KeysFolder
+@pytest.fixture(scope="session", autouse=True)
+def keys_of_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Every program of the tests has no keys, or, by `make test-keys`, those of one authority."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("SELFCONF_KEYS", raising=False)
+        if "SELFCONF_TEST_KEYS" in os.environ:
+            from selfconf.access import KeysFolder
 
-    return KeysFolder.init(tmp_path_factory.mktemp("authority") / "keys").path
-
-
-@pytest.fixture(autouse=True)
-def keys_or_none(keys_of_all: Path | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every program of a test has the same keys, or none."""
-    if keys_of_all is None:
-        monkeypatch.delenv("SELFCONF_KEYS", raising=False)
-    else:
-        monkeypatch.setenv("SELFCONF_KEYS", str(keys_of_all))
+            patch.setenv("SELFCONF_KEYS", str(KeysFolder.init(tmp_path_factory.mktemp("authority") / "keys").path))
+        yield
 
 
 @pytest.fixture

@@ -33,7 +33,7 @@ CLOCKS_DIFFER = timedelta(minutes=5)
 """By how much the clocks of two hosts may differ: a certificate is valid from so long before it was made."""
 LARGEST_PEM = 1 << 14
 """Bytes of a certificate at most: one with a hundred addresses has 4 KiB."""
-LOOPBACK = ("localhost", "127.0.0.1", "::1")
+EVERY_HOST = ("localhost", "127.0.0.1", "::1")
 """The addresses that every certificate is good for."""
 _ALSO = "urn:selfconf:"
 Key = ec.EllipticCurvePrivateKey
@@ -194,7 +194,7 @@ def issue(
 
     `also` are components that share a process with the one that it is for.
     """
-    names = [_host(host) for host in dict.fromkeys((*LOOPBACK, *hosts))]
+    names = [_host(host) for host in dict.fromkeys((*EVERY_HOST, *hosts))]
     names += [x509.UniformResourceIdentifier(_ALSO + principal.common_name) for principal in also]
     begun = _begun(_subject(principal.common_name), authority.x509.subject, key, days)
     for extension, critical in (

@@ -34,7 +34,7 @@ LOOK = 1.0
 """How often, in seconds, the folder of keys and what was refused are looked at."""
 SOON = 0.05
 """Seconds after which others are asked what they advertise, when something has changed: mostly more does."""
-ANSWERS = 3.0
+SITES_ANSWER = 3.0
 """Seconds that other sites may take to say what they advertise."""
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 """Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
@@ -49,16 +49,16 @@ MOST_ADVERTISED = 20_000
 
 def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, IRI]) -> AccessRules:
     """The rules that follow from what a site knows by itself; `own` as for a `Doorkeeper`."""
-    return rules_of(ecology, site, _processes(own.items()), {}, _principals(folder))
+    return rules_of(ecology, site, _processes(own.items()), {}, _principals(folder, ecology))
 
 
 Process = tuple[Principal, ...]
 """Whom the certificate of a process speaks for, its subject first."""
 
 
-def _principals(folder: KeysFolder) -> list[Process]:
+def _principals(folder: KeysFolder, ecology: str) -> list[Process]:
     """Who has shown a good certificate."""
-    return [one.principals for one in folder.admitted().values()]
+    return [one.principals for one in folder.admitted(ecology).values()]
 
 
 def _processes(components: Iterable[tuple[IRI, IRI]]) -> list[Process]:
@@ -134,7 +134,7 @@ class Doorkeeper:
 
         What it has tried before it was known was not refused for what it is.
         """
-        name = self._folder.admit(certificate.encode()).common_name
+        name = self._folder.admit(self._keys.ecology, certificate.encode()).common_name
         known = any(access.principal == name for access in self.rules.accesses)
         if not known:
             self._refusals.forget(name)
@@ -147,7 +147,7 @@ class Doorkeeper:
         except OSError as error:
             log.error("cannot read %s: %s", self._credentials.certificate, error)
             return
-        self._bus.ask(self._keys.introduce("*"), mine, ANSWERS, self._met)
+        self._bus.ask(self._keys.introduce("*"), mine, SITES_ANSWER, self._met)
 
     def _introduce_again(self) -> None:
         self._introduce()
@@ -169,7 +169,7 @@ class Doorkeeper:
 
     def _ask_others(self) -> None:
         known = encode(Known(dict(self._revisions)))
-        self._bus.ask(self._keys.advertisements(), known, ANSWERS, self._others_answered)
+        self._bus.ask(self._keys.advertisements(), known, SITES_ANSWER, self._others_answered)
 
     def _others_answered(self, replies: Replies) -> None:
         found: dict[str, set[IRI]] = {}
@@ -199,7 +199,7 @@ class Doorkeeper:
     # The rules.
 
     def _made(self) -> AccessRules:
-        shown = _principals(self._folder)
+        shown = _principals(self._folder, self._keys.ecology)
         sites = {process[0].name for process in shown if process[0].kind is PrincipalKind.SITE}
         own = self._own()
         advertised = {self._name: frozenset(own), **{s: c for s, c in self._others.items() if s in sites}}

@@ -7,7 +7,7 @@
     own/NAME/         in the folder of an authority: the certificates of programs that are given the folder itself
     components.pem    the authority of one host, with components.key: it issues to the components that its sites start
     components/NAME/  their certificates
-    admitted/         certificates that others have shown to a site
+    admitted/NAME/    certificates that others have shown to the sites of an ecology
     revoked.pem       what the authority has revoked; a copy of its own
 
 Keys have the mode 0600 and folders 0700; a folder that others may read is refused. The authority of a host is believed
@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from selfconf.access.certificates import (
-    LOOPBACK,
+    EVERY_HOST,
     Certificate,
     Key,
     issue,
@@ -45,6 +45,8 @@ COMPONENT_DAYS = 1.0
 """For how many days that of a component which a site starts is good; the site renews it."""
 MAIN = "main"
 """The name of a program that is given the folder of an authority itself."""
+KNOWN = (f"conf.{MAIN}", f"read.{MAIN}")
+"""Whom every site that is given that folder knows."""
 _AUTHORITY, _HOST_AUTHORITY, _OWN = "authority", "components", "certificate"
 
 
@@ -109,7 +111,7 @@ class KeysFolder:
         principal = _principal(certificate, folder)
         if self._revoked_serials(principal):
             raise AuthorError(f"the certificate of {principal} was revoked")
-        hosts = [host for host in certificate.hosts if host not in LOOPBACK]
+        hosts = [host for host in certificate.hosts if host not in EVERY_HOST]
         return self._issued(principal, folder, key, hosts, days)
 
     def revoke(self, principal: Principal) -> int:
@@ -189,25 +191,26 @@ class KeysFolder:
                 continue  # it is made anew when its process is started
             self.component(first, others)
 
-    def admitted(self) -> dict[str, Certificate]:
-        """By name, the certificates that are good: those the authority here has issued, or others have shown."""
-        revoked, found = self.revoked(), {}
-        shown = [self._certificate(path) for path in (self.path / "admitted").glob("*.pem")]
-        for one in sorted((*self.issued(), *shown), key=lambda one: one.begins):
-            if not one.fault(self._authorities_for(one)):
-                found[one.common_name] = one
-        out = {one.common_name for one in (*self.issued(), *shown) if one.serial in revoked}
-        return {name: one for name, one in found.items() if name not in out}
+    def admitted(self, ecology: str) -> dict[str, Certificate]:
+        """By name, the certificates that sites of an ecology let in: those that were shown, and have stayed good.
 
-    def admit(self, pem: bytes) -> Certificate:
-        """Keep a certificate that somebody has shown. Raises PeerError for one that is not good."""
+        With the folder of an authority also those of the programs that are given it, which nobody need show.
+        """
+        shown = [self._certificate(path) for path in (self.path / "admitted" / ecology).glob("*.pem")]
+        shown += [self._certificate(self.path / "own" / name / f"{_OWN}.pem") for name in KNOWN if self.is_authority]
+        revoked = self.revoked()
+        good = (one for one in shown if one.serial not in revoked and not one.fault(self._authorities_for(one)))
+        return {one.common_name: one for one in good}
+
+    def admit(self, ecology: str, pem: bytes) -> Certificate:
+        """Keep a certificate that somebody has shown to a site. Raises PeerError for one that is not good."""
         certificate = Certificate.read(pem)
         fault = certificate.fault(self._authorities_for(certificate))
         if fault:
             raise PeerError(f"the certificate of {certificate.common_name[:80]!r} {fault}")
         if certificate.serial in self.revoked():
             raise PeerError(f"the certificate of {certificate.common_name} was revoked")
-        path = self.path / "admitted" / f"{certificate.common_name}.pem"
+        path = self.path / "admitted" / ecology / f"{certificate.common_name}.pem"
         if not path.is_file() or path.read_bytes() != certificate.pem:
             _made(path.parent)
             _write_file(path, certificate.pem)

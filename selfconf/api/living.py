@@ -28,7 +28,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk, owner_of, site_of, task_name
-from selfconf.protocol.messages import Access, Notice, Refused, Status, TaskRecord
+from selfconf.protocol.messages import Access, Notice, RefusedAttempt, Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
@@ -94,7 +94,7 @@ class SiteAccess:
 
     site: str
     accesses: tuple[Access, ...]
-    refused: tuple[Refused, ...]
+    refused: tuple[RefusedAttempt, ...]
     components: Mapping[str, IRI]
     """The components of the ecology, by their chunks in keys and common names."""
 
@@ -227,13 +227,13 @@ class LivingEcology(Ecology):
     def access(self) -> tuple[SiteAccess, ...]:
         """Who may do what at the hub of each site that has keys, and what was refused there; sorted by site."""
         found: dict[str, list[Access]] = {}
-        refused: dict[str, list[Refused]] = {}
+        refused: dict[str, list[RefusedAttempt]] = {}
         rejected = []
         for sample in self._ask(self._view.keys.access()).samples:
             try:
                 site = site_of(sample.key)
                 if b'"kind": "refused"' in sample.payload or b'"kind":"refused"' in sample.payload:
-                    refused.setdefault(site, []).append(decode(sample.payload, Refused))
+                    refused.setdefault(site, []).append(decode(sample.payload, RefusedAttempt))
                 else:
                     found.setdefault(site, []).append(decode(sample.payload, Access))
             except PeerError as error:

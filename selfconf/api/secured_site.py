@@ -8,8 +8,17 @@ from dataclasses import replace
 from pathlib import Path
 
 from selfconf import rendezvous
-from selfconf.access import AccessRules, Doorkeeper, KeysFolder, Principal, PrincipalKind, first_rules
+from selfconf.access import (
+    AccessRules,
+    Doorkeeper,
+    KeysFolder,
+    Principal,
+    PrincipalKind,
+    first_rules,
+    introduce,
+)
 from selfconf.api.joining import Joining
+from selfconf.bus.port import Bus
 from selfconf.bus.refusals import hear_refusals
 from selfconf.bus.zenoh_session import Security
 from selfconf.errors import AuthorError
@@ -48,6 +57,10 @@ class SecuredSite:
 
     def _security(self, rules: AccessRules) -> Security:
         return Security(self._credentials, rules.access_control())
+
+    def introduce(self, bus: Bus, ecology: str) -> None:
+        """Show the certificate of the site to the one that relays on this host. Raises NetworkError."""
+        introduce(bus, ecology, self._credentials)
 
     def keys_of(self, program: IRI) -> Path:
         """The folder of keys of a process that this site starts, by the component that stands for it."""

@@ -58,6 +58,8 @@ def serve(
     if ecology is None:
         raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
     checked_name(ecology, "an ecology")
+    if name is not None:
+        checked_name(name, "a site")
     secured = _secured(rendezvous.keys_folder(keys), name)
     name = checked_name(name or (secured.name if secured else f"s{secrets.token_hex(3)}"), "a site")
     beyond = secured is None and _beyond_loopback(listen)
@@ -72,6 +74,8 @@ def serve(
         security = None if secured is None else secured.first(ecology, name, shelf)
         joining = Joining(ecology, name, listen, connect, security)
         bus = joining.bus
+        if secured is not None and not bus.endpoint:
+            secured.introduce(bus, ecology)  # the hub of another site has to know this one
         _refuse_taken(name, ecology, joining)
         life = f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}"
         ended = Termination(bus)

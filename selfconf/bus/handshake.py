@@ -13,7 +13,7 @@ import ssl
 
 from selfconf.bus.credentials import Credentials
 
-PATIENCE = 1.5
+HANDSHAKE = 1.5
 """Seconds that the other end may take."""
 _SAID = {
     "UNKNOWN_CA": "it does not know the authority that has issued {name}",
@@ -36,7 +36,7 @@ def why_refused(endpoint: str, credentials: Credentials) -> str:
     context.load_cert_chain(credentials.certificate, credentials.key)
     try:
         with (
-            contextlib.closing(socket.create_connection((host, int(port)), PATIENCE)) as plain,
+            contextlib.closing(socket.create_connection((host, int(port)), HANDSHAKE)) as plain,
             context.wrap_socket(plain, server_hostname=host) as link,
         ):
             link.recv(1)

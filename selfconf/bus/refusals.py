@@ -21,15 +21,15 @@ import time
 from collections.abc import Callable
 
 from selfconf.bus.zenoh_session import begin_log
-from selfconf.protocol.messages import Refused
+from selfconf.protocol.messages import RefusedAttempt
 
 FILTER = "zenoh::net::routing::interceptor=trace,zenoh_link_tls::unicast=warn"
 """What Zenoh logs, as the variable RUST_LOG has it."""
 ROOM = 1 << 20
 """Bytes that the pipe holds: a hub that writes into a full one would stand still."""
-LAST_LINES = 2000
+LAST_BYTES = 2000
 """Bytes at the end of a chunk that are read whatever they say."""
-MOST = 1000
+MOST_ATTEMPTS = 1000
 """How many different attempts are told apart; further ones are counted as those of their principal alone."""
 LONGEST_KEY = 300
 """Characters of a key that are kept."""
@@ -54,10 +54,10 @@ class RefusalLog:
         self._lock = threading.Lock()
 
     @property
-    def refused(self) -> tuple[Refused, ...]:
+    def refused(self) -> tuple[RefusedAttempt, ...]:
         """What was refused, the latest first."""
         with self._lock:
-            found = [Refused(*what, number, latest) for what, (number, latest) in self._found.items()]
+            found = [RefusedAttempt(*what, number, latest) for what, (number, latest) in self._found.items()]
         return tuple(sorted(found, key=lambda one: -one.latest))
 
     def forget(self, principal: str) -> None:
@@ -87,9 +87,9 @@ class RefusalLog:
     def _count(self, principal: str, attempt: str, key: str) -> None:
         with self._lock:
             what = principal, attempt, key
-            if what not in self._found and len(self._found) >= MOST:
+            if what not in self._found and len(self._found) >= MOST_ATTEMPTS:
                 what = principal, "further attempts", ""
-            if what in self._found or len(self._found) < 2 * MOST:
+            if what in self._found or len(self._found) < 2 * MOST_ATTEMPTS:
                 self._found[what] = self._found.get(what, (0, 0.0))[0] + 1, self._clock()
 
     def take_chunk(self, chunk: bytes) -> None:
@@ -99,7 +99,7 @@ class RefusalLog:
                 self.take(line)
         else:
             self._note_names(chunk)
-            for line in _COLOUR.sub(b"", chunk[-LAST_LINES:]).decode(errors="replace").splitlines():
+            for line in _COLOUR.sub(b"", chunk[-LAST_BYTES:]).decode(errors="replace").splitlines():
                 self.take(line)  # the next chunk may say that this was refused
 
     def _note_names(self, chunk: bytes) -> None:

@@ -28,6 +28,7 @@ import zenoh
 from zenoh.handlers import Callback, FifoChannel
 
 from selfconf.bus.credentials import Credentials
+from selfconf.bus.handshake import why_refused
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.bus.zenoh_relay import Hub, Relay
@@ -112,10 +113,19 @@ def client(
         try:
             return ZenohBus(open_session("client", connect=connect, shared_memory=shared, security=security))
         except NetworkError:
-            if time.monotonic() - began > HANDSHAKE_MS / 1000:
+            if credentials is not None:
+                _raise_if_refused(connect, credentials)
+            elif time.monotonic() - began > HANDSHAKE_MS / 1000:
                 where = ", ".join(connect)
                 raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
     return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security))
+
+
+def _raise_if_refused(connect: Sequence[str], credentials: Credentials) -> None:
+    """Raise NetworkError if this end and an endpoint do not believe each other; a hub may also be opened anew."""
+    why = next((found for endpoint in connect if (found := why_refused(endpoint, credentials))), "")
+    if why:
+        raise NetworkError(why) from None
 
 
 class _Publisher:

@@ -22,7 +22,6 @@ from typing import Any
 import zenoh
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.handshake import why_refused
 from selfconf.errors import NetworkError
 
 LEASE_MS = 1000
@@ -84,10 +83,6 @@ def open_session(
         where = ", ".join(connect if mode == "client" else listen)
         if "Address already in use" in str(error):
             raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
-        if security is not None and mode == "client":
-            why = next((found for endpoint in connect if (found := why_refused(endpoint, security.credentials))), "")
-            if why:
-                raise NetworkError(why) from None
         what = "nobody answers at" if mode == "client" else "cannot listen on"
         raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
 

@@ -222,7 +222,7 @@ class Access:
 
 
 @dataclass(frozen=True, slots=True)
-class Refused:
+class RefusedAttempt:
     """What somebody has tried, and may not."""
 
     principal: str
@@ -347,7 +347,7 @@ Message = (
     | Wake
     | Introduction
     | Access
-    | Refused
+    | RefusedAttempt
     | End
     | Known
     | Notice

@@ -66,7 +66,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
 
 
 @pytest.fixture(autouse=True)
-def its_keys(home: Home, keys_or_none: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def its_keys(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands of a test have the keys of the home."""
     monkeypatch.setenv("SELFCONF_KEYS", home.environment["SELFCONF_KEYS"])
 
@@ -242,7 +242,7 @@ def test_who_has_no_certificate_is_not_let_in(home: Home, capsys: pytest.Capture
 
 
 def test_who_has_no_keys_is_told_so(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("SELFCONF_KEYS")
+    monkeypatch.delenv("SELFCONF_KEYS", raising=False)
     with pytest.raises(NetworkError, match="with keys only"):
         client([home.endpoint(SITE)])
     with pytest.raises(NetworkError, match=r"nobody answers|stays silent"):

@@ -13,7 +13,7 @@ from selfconf.bus.refusals import RefusalLog
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Access, Introduction, Page, Refused
+from selfconf.protocol.messages import Access, Introduction, Page, RefusedAttempt
 
 KEYS = Keys("lab")
 LAMP, BELL = IRI("urn:lamp"), IRI("urn:bell")
@@ -113,7 +113,8 @@ def advertise(door: Door, site: str, *components: IRI) -> MemoryBus:
 
     bus.serve(KEYS.advertisements(site), answer)
     bus.announce(KEYS.site_life(site, "1"))
-    door.folder.credentials((PrincipalKind.SITE,), site)  # its certificate is issued
+    shown = door.folder.credentials((PrincipalKind.SITE,), site).certificate
+    bus.ask(KEYS.introduce("home"), encode(Introduction(shown.read_text())), 5.0, lambda replies: None)
     door.pass_time(2.0)
     return bus
 
@@ -152,7 +153,7 @@ def test_what_was_refused_is_told_once_and_shown_to_who_asks(door: Door) -> None
     door.pass_time(10.0)
     assert door.said == ["refused: somebody without a certificate that is believed: peer sent no certificates"]
     replies = door.ask(KEYS.access("home"))
-    shown = [decode(sample.payload, Refused) for sample in replies.samples if b"refused" in sample.payload[:40]]
+    shown = [decode(sample.payload, RefusedAttempt) for sample in replies.samples if b"refused" in sample.payload[:40]]
     assert [(one.principal, one.number) for one in shown] == [("", 3)]
     rules = [decode(sample.payload, Access) for sample in replies.samples if b"access" in sample.payload[:40]]
     assert tuple(rules) == door.keeper.rules.accesses
@@ -168,8 +169,9 @@ def test_a_renewed_certificate_is_shown_by_the_hub(door: Door, tmp_path: Path) -
 
 
 def test_who_is_revoked_is_out(door: Door, tmp_path: Path) -> None:
-    door.folder.issue(Principal(PrincipalKind.CONFIGURATOR, "eve"), tmp_path / "eve")
-    door.pass_time(1.5)
+    eve = door.folder.issue(Principal(PrincipalKind.CONFIGURATOR, "eve"), tmp_path / "eve")
+    door.introduce(eve.pem.decode())
+    door.pass_time(0.1)
     assert "conf.eve" in door.principals
     door.folder.revoke(Principal(PrincipalKind.CONFIGURATOR, "eve"))
     door.pass_time(1.5)

@@ -53,7 +53,7 @@ def test_with_the_folder_of_an_authority_a_program_gets_what_it_needs(authority:
     assert authority.credentials((CONF, READ)).name == "conf.main"
     assert authority.credentials((SITE,), "attic").name == "site.attic"
     assert authority.credentials((SITE,), "attic") == authority.credentials((SITE,), "attic")
-    assert {"conf.main", "read.main", "site.attic"} == authority.admitted().keys()
+    assert {"conf.main", "read.main"} == authority.admitted("lab").keys()
 
 
 def test_a_certificate_is_renewed_for_the_same_key(authority: KeysFolder, tmp_path: Path) -> None:
@@ -86,14 +86,16 @@ def test_what_is_half_over_is_renewed_by_itself(authority: KeysFolder, monkeypat
 
 def test_who_is_revoked_is_admitted_no_more_and_gets_no_new_certificate(authority: KeysFolder, tmp_path: Path) -> None:
     certificate = authority.issue(ALICE, tmp_path / "alice")
-    assert "read.alice" in authority.admitted()
+    authority.admit("lab", certificate.pem)
+    assert "read.alice" in authority.admitted("lab")
+    assert "read.alice" not in authority.admitted("home")
     assert authority.revoke(ALICE) == 1
     assert authority.revoked() == {certificate.serial}
-    assert "read.alice" not in authority.admitted()
+    assert "read.alice" not in authority.admitted("lab")
     for forbidden in (
         lambda: authority.issue(ALICE, tmp_path / "again"),
         lambda: authority.renew(tmp_path / "alice"),
-        lambda: authority.admit(certificate.pem),
+        lambda: authority.admit("lab", certificate.pem),
     ):
         with pytest.raises((AuthorError, PeerError), match="revoked"):
             forbidden()
@@ -107,17 +109,17 @@ def test_a_site_admits_whom_its_authority_vouches_for(authority: KeysFolder, tmp
     authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
     alice = authority.issue(ALICE, tmp_path / "alice")
     site = KeysFolder(tmp_path / "attic")
-    assert site.admitted() == {}
-    site.admit(alice.pem)
-    assert site.admitted() == {"read.alice": alice}
+    assert site.admitted("lab") == {}
+    site.admit("lab", alice.pem)
+    assert site.admitted("lab") == {"read.alice": alice}
     stranger = KeysFolder.init(tmp_path / "other").issue(ALICE, tmp_path / "eve")
     with pytest.raises(PeerError, match="another authority"):
-        site.admit(stranger.pem)
+        site.admit("lab", stranger.pem)
     with pytest.raises(PeerError, match="no certificate"):
-        site.admit(b"nonsense")
+        site.admit("lab", b"nonsense")
     authority.revoke(ALICE)
     (tmp_path / "attic/revoked.pem").write_bytes((authority.path / "revoked.pem").read_bytes())
-    assert site.admitted() == {}
+    assert site.admitted("lab") == {}
 
 
 def test_what_a_host_issues_to_its_components_opens_no_other_door(authority: KeysFolder, tmp_path: Path) -> None:
@@ -127,9 +129,9 @@ def test_what_a_host_issues_to_its_components_opens_no_other_door(authority: Key
     first, second = Principal.component(IRI("urn:a")), Principal.component(IRI("urn:b"))
     component = KeysFolder(attic.component(first, [second]))
     assert component.credentials((COMP,)).name == first.common_name
-    assert attic.admit(component.own().pem).principals == (first, second)
+    assert attic.admit("lab", component.own().pem).principals == (first, second)
     with pytest.raises(PeerError, match="another authority"):
-        cellar.admit(component.own().pem)
+        cellar.admit("lab", component.own().pem)
     assert component.own().fault((*cellar.believed_authorities(), authority.authority))
     assert component.own().fault(())
     assert not component.own().fault(attic.believed_authorities())
@@ -143,7 +145,7 @@ def test_a_host_cannot_make_itself_a_configurator(authority: KeysFolder, tmp_pat
     attic = KeysFolder(tmp_path / "attic")
     forged = attic.component(Principal(CONF, "main"))
     with pytest.raises(PeerError, match="another authority"):
-        attic.admit(KeysFolder(forged).own().pem)
+        attic.admit("lab", KeysFolder(forged).own().pem)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.bus.refusals import MOST, RefusalLog
+from selfconf.bus.refusals import MOST_ATTEMPTS, RefusalLog
 
 PEER = "5ec1c06f0c48971bb2c118a3b409706c"
 LINK = f"{PEER} on Interface(lo)+CertCommonName(comp.x)+Transport(Tls)+{PEER}"
@@ -65,9 +65,9 @@ def test_colours_and_ends_of_chunks_do_not_matter() -> None:
 
 
 def test_a_flood_takes_bounded_memory() -> None:
-    log = log_of(*(line for number in range(3 * MOST) for line in denied(f"key/{number}")))
-    assert len(log.refused) <= 2 * MOST
-    assert sum(one.number for one in log.refused) == 3 * MOST
+    log = log_of(*(line for number in range(3 * MOST_ATTEMPTS) for line in denied(f"key/{number}")))
+    assert len(log.refused) <= 2 * MOST_ATTEMPTS
+    assert sum(one.number for one in log.refused) == 3 * MOST_ATTEMPTS
 
 
 def test_nobody_is_asked_about_again_after_being_let_in() -> None:
