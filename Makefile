@@ -12,7 +12,7 @@ SEEDS  ?= 20
 # as containers with this variable have it, costs a minute and more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test quick nightly faults fuzz check package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test test-keys quick nightly faults fuzz check package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -25,6 +25,10 @@ PARALLEL := --numprocesses $(shell echo $$((1 + $$(nproc 2>/dev/null || echo 2))
 test: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
 	$(BIN)/python -m pytest $(PARALLEL) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.alone $(VENV)/tests.xml
+
+# The tests that start programs once more, each ecology with keys.
+test-keys: $(VENV)/with-dev
+	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) -m process tests/access tests/cli tests/api
 
 # The inner loop: without tests that start processes or are slow, and a tenth of the examples of each property.
 quick: $(VENV)/with-dev

@@ -9,7 +9,20 @@ from typing import Any
 
 from selfconf import library
 
-COMMANDS = ("configure", "partition", "query", "validate", "import", "run", "discover", "status", "tasks", "stop", "access", "keys")
+COMMANDS = (
+    "configure",
+    "partition",
+    "query",
+    "validate",
+    "import",
+    "run",
+    "discover",
+    "status",
+    "tasks",
+    "stop",
+    "access",
+    "keys",
+)
 """The commands with a schema, in the order of the page; each schema is named after its command."""
 INTRODUCTION = """\
 # What the commands print as JSON

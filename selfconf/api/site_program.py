@@ -58,10 +58,7 @@ def serve(
     if ecology is None:
         raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
     checked_name(ecology, "an ecology")
-    if name is not None:
-        checked_name(name, "a site")
-    secured = _secured(rendezvous.keys_folder(keys), name)
-    name = checked_name(name or (secured.name if secured else f"s{secrets.token_hex(3)}"), "a site")
+    secured, name = _named(rendezvous.keys_folder(keys), name)
     beyond = secured is None and _beyond_loopback(listen)
     if beyond and not insecure:
         raise AuthorError(
@@ -114,13 +111,16 @@ def _beyond_loopback(listen: str | None) -> bool:
     return not all(ipaddress.ip_address(address.partition("%")[0]).is_loopback for address in found)
 
 
-def _secured(keys: Path | None, name: str | None) -> SecuredSite | None:
-    """The keys of a site, if it has any. Raises AuthorError."""
+def _named(keys: Path | None, name: str | None) -> tuple[SecuredSite | None, str]:
+    """The keys of a site, if it has any, and its name: one of its own if none is given. Raises AuthorError."""
+    if name is not None:
+        checked_name(name, "a site")
     if keys is None:
-        return None
+        return None, name or f"s{secrets.token_hex(3)}"
     from selfconf.api.secured_site import SecuredSite  # what it needs is an extra
 
-    return SecuredSite(keys, name)
+    secured = SecuredSite(keys, name)
+    return secured, secured.name
 
 
 _HOST = re.sub(r"[^A-Za-z0-9-]", "-", platform.node())[:32] or "unknown"

@@ -8,18 +8,18 @@ from hypothesis import strategies as st
 
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.protocol.messages import (
+    Access,
     Apply,
     CallAnswer,
     Cause,
     End,
     Fail,
     Free,
-    Access,
     Introduction,
     Known,
-    RefusedAttempt,
     Notice,
     Page,
+    RefusedAttempt,
     Release,
     Reserve,
     SignalEncoding,
