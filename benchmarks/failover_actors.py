@@ -13,9 +13,22 @@ import time
 from pathlib import Path
 
 from selfconf.sdk import Component, Host, Signal, Termination
+from selfconf.sdk.host import profile_of
 from selfconf.sdk.program import open_host
 
+UNTIL_OFF = 0.05
+"""Seconds after FAIL, in which it is turned off, until it comes back."""
 ADVERTISEMENTS = Path(__file__).parent / "failover"
+
+POSE = {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"}
+VELOCITY = {"linear": 0.1, "angular": 0.0}
+SIGNALS = {
+    "pose": POSE,
+    "set.velocity": VELOCITY,
+    "odometry": {**POSE, **VELOCITY},
+    "ranges": {"angles": [0.0], "ranges": [1.0], "max_range": 4.0},
+}
+"""A signal of the type that each output promises."""
 
 
 class Actor(Component):
@@ -26,7 +39,7 @@ class Actor(Component):
     def started(self) -> None:
         """A signal at once."""
         if self.output:
-            self.emit(self.output, {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"})
+            self.emit(self.output, SIGNALS[self.output])
 
 
 class Navigator(Actor):
@@ -59,29 +72,31 @@ class Phoenix:
     """Keeps a component that fails on command and comes back in a new life."""
 
     def __init__(self, host: Host, kind: type[Actor]) -> None:
-        self._host, self._kind, self._raised = host, kind, 0.0
+        self._host, self._kind = host, kind
         self._component = host.add(kind())
         threading.Thread(target=self._obey, daemon=True).start()
 
     def _obey(self) -> None:
         for _ in sys.stdin:
-            self._raised = time.time()
+            raised = time.time()
             self._component.fail("told to")
-            self._host.bus.wake_up(self._rise)
+            threading.Event().wait(UNTIL_OFF)
+            say("fail", raised)  # not before: whoever reads it would take a core from those who are measured
+            self._rise()
+            say("back", time.time())
 
     def _rise(self) -> None:
-        self._host.bus.later(0.05, self._reborn)
-
-    def _reborn(self) -> None:
-        say("fail", self._raised)  # not before: whoever reads it would take a core from those who are measured
-        self._host.runtimes.pop().close()
+        """End the life that has failed, and begin another; not on the thread of the bus, which has to do it."""
+        runtime, ended = self._host.runtimes.pop(), threading.Event()
+        self._host.bus.wake_up(lambda: runtime.close(ended.set))
+        ended.wait()
         self._component = self._host.add(self._kind())
 
 
 def main() -> None:
     """Run one actor until told to end."""
     name = sys.argv[1]
-    host = open_host()
+    host = open_host(components=[profile_of(actor(name)).component])
     ending = Termination(host.bus)
     if name.startswith("position"):
         Phoenix(host, actor(name))

@@ -133,7 +133,7 @@ def main() -> int:
     parser.add_argument("--record", type=Path)
     parser.add_argument("--gui", action="store_true")
     given = parser.parse_args()
-    host = open_host(given.ecology, given.connect)
+    host = open_host(given.ecology, given.connect, given.keys)
     home = PeisHome(host, read_apartment(), given.seed, given.speed, given.place, given.gui)
     say("ready", time=home.world.time)
     try:
