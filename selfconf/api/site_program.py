@@ -9,6 +9,7 @@ import re
 import secrets
 import socket
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,6 +29,8 @@ from selfconf.termination import Termination
 if TYPE_CHECKING:
     from selfconf.api.secured_site import SecuredSite
 
+Beside = Callable[[str, Sequence[str]], AbstractContextManager[None]]
+"""Something that lives with a site: it is entered with the ecology and the endpoints where that is reached."""
 WORK_CHECK = 0.2
 """How often, in seconds, a site looks whether it is to end."""
 
@@ -43,6 +46,7 @@ def serve(
     log: Path | None = None,
     keys: Path | None = None,
     insecure: bool = False,
+    beside: Beside = lambda ecology, endpoints: nullcontext(),
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
 
@@ -50,7 +54,8 @@ def serve(
     `complain` hears what is left out, and where it listens. In the folder `state` are the tasks that it keeps, in the
     folder `log` what the components print that it starts; by default both are folders of the runtime folder. With the
     folder `keys` only those are let in whom its authority vouches for; without it the site listens beyond loopback
-    only if it may be `insecure`. Raises AuthorError and NetworkError.
+    only if it may be `insecure`. `beside` is what lives with the site, from when it listens to when it ends. Raises
+    AuthorError and NetworkError.
     """
     for path in paths:
         existing(path)
@@ -91,8 +96,9 @@ def serve(
     complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}{how}")
     bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
     try:
-        while not ended():
-            work.next(WORK_CHECK)
+        with beside(ecology, joining.endpoints):
+            while not ended():
+                work.next(WORK_CHECK)
     finally:
         joining.leave()
         bus.wake_up(keeper.close)

@@ -3,18 +3,47 @@
 `import_descriptions` is one import from sources to files; its answer is an `ImportReport` with an `ImportedFile` for
 each file and its `FileState`, an `Omission` for what is not in them, and a `Renaming` where a name was taken.
 `IMPORT_FORMATS` are the formats by name.
+
+For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `described_things` reads each
+`DescribedThing` of them and notes in an `ImportLedger` what it leaves out. An `ImportedComponent` with its
+`ImportedPort`s is a component; as an `ImportedDocument`, `described_text` writes it as Turtle, in which a `NestedNode`
+has no name. `slug` makes a name of a text.
 """
 
 from selfconf.importing.conversion import IMPORT_FORMATS, ImportedFile, ImportReport, import_descriptions
 from selfconf.importing.folder import FileState
-from selfconf.importing.imported import Omission, Renaming
+from selfconf.importing.imported import (
+    ImportedComponent,
+    ImportedDocument,
+    ImportedPort,
+    NestedNode,
+    Omission,
+    Renaming,
+)
+from selfconf.importing.ledger import ImportLedger
+from selfconf.importing.naming import slug
+from selfconf.importing.sources import LARGEST_SOURCE, SourceDocument, gather
+from selfconf.importing.turtle_text import described_text
+from selfconf.importing.wot import DescribedThing, described_things
 
 __all__ = [
     "IMPORT_FORMATS",
+    "LARGEST_SOURCE",
+    "DescribedThing",
     "FileState",
+    "ImportLedger",
     "ImportReport",
+    "ImportedComponent",
+    "ImportedDocument",
     "ImportedFile",
+    "ImportedPort",
+    "NestedNode",
     "Omission",
     "Renaming",
+    "SourceDocument",
+    "described_text",
+    "described_things",
+    "gather",
     "import_descriptions",
+    "slug",
 ]

@@ -53,7 +53,7 @@ class ImportedPort:
     unit: IRI | None = None
     optional: bool = False
     depth: int | None = None
-    properties: tuple[tuple[IRI, Term], ...] = ()
+    properties: tuple[tuple[IRI, DescribedValue], ...] = ()
 
     def node(self) -> NestedNode:
         """The port as an advertisement states it."""
@@ -124,7 +124,7 @@ class ImportedComponent:
         return Description(self.iri, tuple((predicate, values) for predicate, values in statements if values))
 
 
-def _nested(*pairs: tuple[IRI, Term | None]) -> NestedNode:
+def _nested(*pairs: tuple[IRI, DescribedValue | None]) -> NestedNode:
     """A node with those of some statements that have a value."""
     return NestedNode(grouped((predicate, value) for predicate, value in pairs if value is not None))
 

@@ -34,12 +34,16 @@ _STEP = "    "
 
 def turtle(document: ImportedDocument, form: str) -> str:
     """The text of a file, with a first line that says what it was made from."""
+    source = "".join(letter if letter.isprintable() else "?" for letter in document.source)
+    return f"{MARK} {form}` from {source}; importing again replaces this file.\n\n{described_text(document)}"
+
+
+def described_text(document: ImportedDocument) -> str:
+    """The prefixes that a document needs, and the block of each of its descriptions."""
     writer = _Writer(document.prefixes)
     blocks = [writer.block(description) for description in document.descriptions]
     declared = "".join(f"@prefix {prefix}: <{base}> .\n" for prefix, base in writer.used())
-    source = "".join(letter if letter.isprintable() else "?" for letter in document.source)
-    head = f"{MARK} {form}` from {source}; importing again replaces this file.\n"
-    return "\n".join([head, declared, *blocks]) if declared else "\n".join([head, *blocks])
+    return "\n".join([declared, *blocks] if declared else blocks)
 
 
 class _Writer:

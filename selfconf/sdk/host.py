@@ -51,13 +51,17 @@ class Host:
         if not self.code.inline:
             bus.wake_up(self._watch_code)
 
-    def add(self, component: _Kind, life: str = "") -> _Kind:
+    def add(self, component: _Kind, life: str = "", advertisement: Path | None = None) -> _Kind:
         """Let a component join the ecology.
 
-        Raises AuthorError for an advertisement that cannot be read, and NetworkError if the component lives already.
+        `advertisement` is the file that says what it is, where that is not said by its class: one class may stand for
+        many things. Raises AuthorError for an advertisement that cannot be read, and NetworkError if the component
+        lives already.
         """
-        profile = profile_of(type(component))
-        fields = signal_fields_of(type(component), profile)
+        kind = type(component)
+        path = advertisement or kind.advertisement_path()
+        profile = _profile(path, kind.__name__, kind.component)
+        fields = signal_fields_of(path, profile)
         self._check_alone(profile)
 
         def join(done: Callable[[ComponentRuntime], None]) -> None:
@@ -67,6 +71,12 @@ class Host:
 
         self.runtimes.append(self._on_bus_thread(join))
         return component
+
+    def remove(self, component: Component) -> None:
+        """Turn a component off and let it leave the ecology; nothing happens if it has left already."""
+        for runtime in [one for one in self.runtimes if one.component is component]:
+            self.runtimes.remove(runtime)
+            self.bus.wake_up(runtime.close)
 
     def poll(self, seconds: float = 0.0) -> None:
         """Let the components hear everything there is to hear; wait up to that long if there is nothing."""
@@ -164,11 +174,9 @@ class Host:
                 self._hung(f"{runtime.profile.component}: `{overdue.what}` has not returned within {overdue.limit:g} s")
 
 
-def signal_fields_of(kind: type[Component], profile: Profile) -> Mapping[IRI, SignalFields]:
+def signal_fields_of(path: Path, profile: Profile) -> Mapping[IRI, SignalFields]:
     """The fields of the signals that a component emits, as its advertisement and the ontologies of selfconf say."""
-    return _signal_fields(
-        kind.advertisement_path(), frozenset(signal for port in profile.outputs for signal in port.signals)
-    )
+    return _signal_fields(path, frozenset(signal for port in profile.outputs for signal in port.signals))
 
 
 @cache
@@ -178,14 +186,18 @@ def _signal_fields(path: Path, signals: frozenset[IRI]) -> Mapping[IRI, SignalFi
 
 def profile_of(kind: type[Component]) -> Profile:
     """The profile of a component class, read from its advertisement."""
-    path = kind.advertisement_path()
+    return _profile(kind.advertisement_path(), kind.__name__, kind.component)
+
+
+def _profile(path: Path, name: str, component: str) -> Profile:
+    """The profile of the component in an advertisement's file, which may have to say which one it is."""
     if not path.is_file():
-        raise ProgrammerError(f"the advertisement of {kind.__name__} is not there: {path}")
+        raise ProgrammerError(f"the advertisement of {name} is not there: {path}")
     good, bad = files.advertisements(path)
     for malformed in bad:
         raise AuthorError(f"{malformed.component}: {malformed.problems[0]}", file=str(path))
-    wanted = [a.profile for a in good if not kind.component or a.profile.component == kind.component]
+    wanted = [a.profile for a in good if not component or a.profile.component == component]
     if len(wanted) != 1:
         names = ", ".join(a.profile.component for a in good) or "none"
-        raise ProgrammerError(f"{kind.__name__} must say by `component` which one of {path} it is; there: {names}")
+        raise ProgrammerError(f"{name} must say by `component` which one of {path} it is; there: {names}")
     return wanted[0]

@@ -122,6 +122,11 @@ class ComponentRuntime:
         """Whether the component acts: unlike `activation` it ends in the thread and the moment of a FAIL."""
         return self.code.active
 
+    @property
+    def closed(self) -> bool:
+        """Whether the component has left the ecology."""
+        return self._closed
+
     def close(self, closed: Callable[[], None] = lambda: None) -> None:
         """Turn the component off and leave the ecology; `closed` is called when its code is at rest."""
         if self._closed:

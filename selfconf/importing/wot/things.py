@@ -7,7 +7,9 @@ with what `tm:ref` takes from the same document. The two differ in their `@type`
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import groupby
 from typing import Any
 
 from selfconf.errors import AuthorError
@@ -41,8 +43,29 @@ _UNUSED = {
 _KNOWN = {"@context", "@type", "@id", "id", "title", "titles", "description", "descriptions", *AFFORDANCES}
 
 
+@dataclass(frozen=True, slots=True)
+class DescribedThing:
+    """A thing: the component that it is, and its description, completed by what its references lead to."""
+
+    component: ImportedComponent
+    description: dict[str, Any]
+    source: SourceDocument = field(compare=False)
+    prefixes: Mapping[str, str]
+    """The prefixes that the document declares."""
+
+
 def import_things(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
     """The things that JSON documents describe: each holds one, or an array of them as a directory answers with."""
+    for _, group in groupby(described_things(sources, ledger), lambda thing: id(thing.source)):
+        things = list(group)
+        source = things[0].source
+        prefixes = {prefix: base for thing in things for prefix, base in thing.prefixes.items()}
+        descriptions = tuple(thing.component.described() for thing in things)
+        yield ImportedDocument(stem(source), source.name, descriptions, prefixes)
+
+
+def described_things(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[DescribedThing]:
+    """The things that JSON documents describe, one document after the other."""
     parsed: list[tuple[SourceDocument, Any]] = []
     for source in sources:
         try:
@@ -55,16 +78,12 @@ def import_things(sources: Iterable[SourceDocument], ledger: ImportLedger) -> It
             ledger.leave_out(f"earlier values of {name[:40]!r}", "a JSON object has each name once", source)
     references = ModelReferences({source.name: value for source, value in parsed}, ledger)
     for source, value in parsed:
-        prefixes: dict[str, str] = {}
-        components = list(_components(value, source, ledger, references, prefixes))
-        if components:
-            descriptions = tuple(component.described() for component in components)
-            yield ImportedDocument(stem(source), source.name, descriptions, prefixes)
+        yield from _things(value, source, ledger, references)
 
 
-def _components(
-    value: Any, source: SourceDocument, ledger: ImportLedger, references: ModelReferences, prefixes: dict[str, str]
-) -> Iterator[ImportedComponent]:
+def _things(
+    value: Any, source: SourceDocument, ledger: ImportLedger, references: ModelReferences
+) -> Iterator[DescribedThing]:
     things = value if isinstance(value, list) else [value]
     if not things:
         ledger.leave_out("empty documents", "there is no thing in them", source)
@@ -73,9 +92,10 @@ def _components(
             ledger.leave_out("documents that describe no thing", "they have neither a title nor an affordance", source)
             continue
         meanings = TermMeanings(thing.get("@context"))
-        prefixes.update(meanings.prefixes)
         position = (str(number),) if len(things) > 1 else ()
-        yield _ThingReader(references.resolved(thing, source), meanings, source, ledger).component(position)
+        whole = references.resolved(thing, source)
+        component = _ThingReader(whole, meanings, source, ledger).component(position)
+        yield DescribedThing(component, whole, source, meanings.prefixes)
 
 
 def _describes_a_thing(thing: dict[str, Any]) -> bool:

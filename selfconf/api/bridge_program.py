@@ -1,0 +1,62 @@
+"""A bridge as a program: a site whose components are foreign."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from selfconf.api.reading import existing
+from selfconf.api.site_program import serve
+from selfconf.bridging import Bridge, ForeignWorld
+
+
+def serve_bridge(
+    world: ForeignWorld,
+    ecology: str | None,
+    name: str | None,
+    listen: str | None,
+    connect: Sequence[str],
+    complain: Callable[[str], None],
+) -> None:
+    """Bridge a world to an ecology until SIGINT or SIGTERM, as a site that listens and connects as `serve` says.
+
+    Raises AuthorError and NetworkError.
+    """
+    with tempfile.TemporaryDirectory(prefix="selfconf-bridge-") as folder:
+        bridge = Bridge(Path(folder), complain)
+        serve(
+            [Path(folder)],
+            ecology,
+            name,
+            listen,
+            connect,
+            complain,
+            beside=lambda ecology, endpoints: bridge.living(world, ecology, endpoints),
+        )
+
+
+def serve_things(
+    sources: Sequence[str],
+    rate: float,
+    credentials: Path | None,
+    hosts: Sequence[str],
+    ecology: str | None,
+    name: str | None,
+    listen: str | None,
+    connect: Sequence[str],
+    complain: Callable[[str], None],
+) -> None:
+    """Bridge the things that some files, folders and URLs describe. Raises AuthorError and NetworkError.
+
+    `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with what
+    origins are told; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
+    """
+    from selfconf.bridging.wot import Credentials, ThingSettings, ThingWorld, is_url, read_credentials  # loads aiohttp
+
+    for source in sources:
+        if not is_url(source):
+            existing(Path(source))
+    told = Credentials() if credentials is None else read_credentials(credentials)
+    world = ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts)))
+    serve_bridge(world, ecology, name, listen, connect, complain)

@@ -1,0 +1,135 @@
+"""A bridge: it advertises what is foreign, and lives as it for as long as it is there.
+
+A file in the folder of the bridge is an advertisement; the site of the bridge serves the folder, and sees within a
+second what has come or gone. A life begins and ends on the thread of the components' code, in the order in which it was
+asked for; that thread does no work for the other side, which has a thread of its own, so that no foreign component
+waits for another.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Protocol
+
+from selfconf.bus.zenoh_bus import client
+from selfconf.errors import NetworkError, SelfconfError
+from selfconf.importing import ImportedDocument, described_text, slug
+from selfconf.model.term import IRI
+from selfconf.sdk import Component, Host
+
+
+class ForeignWorld(Protocol):
+    """The other side of a bridge."""
+
+    def open(self, bridge: Bridge) -> None:
+        """Begin to look for what lives there, and tell the bridge. Raises NetworkError where it cannot be reached."""
+        ...
+
+    def close(self) -> None:
+        """Look no more; nothing is told to the bridge once this has returned."""
+        ...
+
+
+class Bridge:
+    """The components of this side that stand for what lives on the other one."""
+
+    def __init__(self, folder: Path, complain: Callable[[str], None]) -> None:
+        """`folder` is where the advertisements go; `complain` hears, on any thread, what cannot be bridged, and why."""
+        self.complain = complain
+        self._folder = folder
+        self._paths: dict[IRI, Path] = {}
+        self._living: dict[IRI, Component] = {}
+        self._host: Host | None = None
+        self._ended = False
+
+    def advertise(self, component: IRI, document: ImportedDocument) -> None:
+        """Say what a component is, from now on; what was said of it before is replaced as a whole."""
+        path = self._paths.get(component)
+        if path is None:
+            name = slug(component.rpartition("/")[2].rpartition("#")[2] or component)[:80]
+            path = self._paths[component] = self._folder / f"{name}-{len(self._paths) + 1}.ttl"
+        written = path.with_suffix(".new")
+        written.write_text(f"# Bridged from {document.source!r}.\n\n{described_text(document)}", "utf-8")
+        written.replace(path)
+
+    def withdraw(self, component: IRI) -> None:
+        """Advertise a component no more, and end its life."""
+        self.end_life(component, self._living.get(component))
+        path = self._paths.get(component)
+        if path is not None:
+            path.unlink(missing_ok=True)
+
+    def begin_life(self, component: IRI, code: Component) -> Future[str | None]:
+        """Let a component that is advertised live, by its code; the result says what keeps it from that.
+
+        May be called from any thread, which may wait for the result.
+        """
+        outcome: Future[str | None] = Future()
+
+        def begin() -> None:
+            host = self._running_host()
+            try:
+                host.add(code, advertisement=self._paths[component])
+            except SelfconfError as error:
+                outcome.set_result(str(error))
+            else:
+                self._living[component] = code
+                outcome.set_result(None)
+
+        self._running_host().code.call(begin)
+        return outcome
+
+    def end_life(self, component: IRI, code: Component | None) -> None:
+        """Let a component live no more by this code; nothing happens if it does not, or lives by another one.
+
+        May be called from any thread.
+        """
+
+        def end() -> None:
+            if code is not None and self._living.get(component) is code:
+                del self._living[component]
+                self._running_host().remove(code)
+
+        self._running_host().code.call(end)
+
+    def lives(self, component: IRI) -> bool:
+        """Whether a component lives here; it may have had to leave, where another process is the same one."""
+        return component in self._living
+
+    @contextmanager
+    def living(self, world: ForeignWorld, ecology: str, endpoints: Sequence[str]) -> Iterator[None]:
+        """Bridge a world to an ecology inside the `with` block. Raises NetworkError where one cannot be reached."""
+        self._host = Host(client(endpoints, shared_memory=True), ecology, self.complain)
+        thread = threading.Thread(target=self._run, args=(self._host,), name="code of foreign components")
+        thread.start()
+        try:
+            world.open(self)
+            try:
+                yield
+            finally:
+                world.close()
+        finally:
+            self._ended = True
+            self._host.code.wake_up()
+            thread.join()
+
+    def _run(self, host: Host) -> None:
+        """Run the code of the components until the bridge ends; one that has to leave leaves alone."""
+        while not self._ended:
+            try:
+                host.run(lambda: self._ended)
+            except NetworkError as error:
+                self.complain(str(error))
+                host.superseded = None
+                left = [runtime.component for runtime in host.runtimes if runtime.closed]
+                for component in [one for one, code in self._living.items() if code in left]:
+                    host.remove(self._living.pop(component))
+        host.close()
+
+    def _running_host(self) -> Host:
+        assert self._host is not None, "a bridge has components only while it lives"
+        return self._host

@@ -1,0 +1,222 @@
+"""HTTP as a bridge speaks it: bounded in time and in bytes, without redirects, cookies, proxies or compression.
+
+What a thing answers is judged here, so that whoever asks receives a value or a `ThingError`, whose text is a sentence.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import aiohttp
+from yarl import URL
+
+from selfconf.bridging.wot.forms import JSON, ThingForm
+from selfconf.importing import LARGEST_SOURCE
+
+CONNECTIONS = 32
+"""How many connections to one host are open at once; an output that is followed keeps one."""
+_LINE_END = b"\n"
+
+
+@dataclass(frozen=True, slots=True)
+class ThingLimits:
+    """How long a thing may take, in seconds, and how much it may answer, in bytes."""
+
+    answer: float = 3.0
+    """To read or write a property; less than four periods of the usual rate, so that silence has this reason."""
+    action: float = 60.0
+    """To carry out an action."""
+    size: int = LARGEST_SOURCE
+
+
+class ThingError(Exception):
+    """A thing has not answered as its description says; the text is a sentence."""
+
+
+class ThingAnswer(NamedTuple):
+    """A value with the media type of what carried it; that is empty for JSON."""
+
+    value: Any
+    media: str = ""
+
+
+class ThingClient:
+    """Makes requests; all of its methods are called on one event loop."""
+
+    def __init__(self, limits: ThingLimits) -> None:
+        self._limits = limits
+        self._session = aiohttp.ClientSession(
+            connector=aiohttp.TCPConnector(limit=0, limit_per_host=CONNECTIONS),
+            cookie_jar=aiohttp.DummyCookieJar(),  # what one thing sets, another one must not be sent
+            auto_decompress=False,  # what is compressed may be a thousand times larger than it looks
+            headers={"Accept-Encoding": "identity", "User-Agent": "selfconf"},
+            trust_env=False,
+        )
+
+    async def close(self) -> None:
+        """Close every connection."""
+        await self._session.close()
+
+    async def read(self, form: ThingForm, patience: float | None = None) -> ThingAnswer:
+        """What a thing answers, within so many seconds; None: as long as it may take to answer. Raises ThingError."""
+        async with self._asked(form, patience or self._limits.answer) as answer:
+            return _value(form, answer, await self._body(form, answer))
+
+    async def send(self, form: ThingForm, value: Any, media: str = "", action: bool = False) -> None:
+        """Write a value, or call an action with it; None is sent as nothing. Raises ThingError."""
+        body = _encoded(form, value, media)
+        headers = {} if body is None else {"Content-Type": media or form.media}
+        seconds = self._limits.action if action else self._limits.answer
+        async with self._asked(form, seconds, body, headers) as answer:
+            await self._body(form, answer)
+
+    async def wait(self, form: ThingForm) -> ThingAnswer | None:
+        """The next value of a long poll, however long that takes; None if the thing has let go of it for now."""
+        async with self._asked(form, None) as answer:
+            body = await self._body(form, answer)
+            return None if answer.status == 204 or (not body and not answer.content_type) else _value(form, answer, body)
+
+    async def events(self, form: ThingForm) -> AsyncIterator[ThingAnswer]:
+        """The values of a stream of server-sent events, until the thing ends it (HTML, section 9.2)."""
+        async with self._asked(form, None) as answer:
+            if answer.content_type != "text/event-stream":
+                raise ThingError(f"{form} answers {answer.content_type}, where text/event-stream is expected")
+            lines: list[bytes] = []
+            size = 0
+            async for line in self._lines(form, answer):
+                size += len(line)
+                if size > self._limits.size:
+                    raise self._too_large(form)
+                if line.startswith(b"data:"):
+                    lines.append(line[5:].removeprefix(b" "))
+                elif not line:
+                    if lines:
+                        yield ThingAnswer(_json(form, b"\n".join(lines)))
+                    lines, size = [], 0
+
+    async def reach(self, form: ThingForm) -> None:
+        """See whether something listens where a form leads. Raises ThingError."""
+        url = URL(form.url)
+        try:
+            _, writer = await asyncio.wait_for(asyncio.open_connection(url.host, url.port), self._limits.answer)
+            writer.close()
+        except (OSError, asyncio.TimeoutError) as error:
+            raise ThingError(f"{url.origin()} does not answer: {_reason(error)}") from None
+
+    @asynccontextmanager
+    async def _asked(
+        self, form: ThingForm, seconds: float | None, body: bytes | None = None, more: dict[str, str] | None = None
+    ) -> AsyncIterator[aiohttp.ClientResponse]:
+        """A request that was answered without an error; the body may not have come yet. Raises ThingError."""
+        media = "text/event-stream" if form.subprotocol == "sse" else form.media
+        headers = {"Accept": media, **form.headers, **(more or {})}
+        time = aiohttp.ClientTimeout(total=seconds, sock_connect=self._limits.answer)
+        try:
+            url = URL(form.url).update_query(form.query) if form.query else URL(form.url)
+            async with self._session.request(
+                form.method, url, data=body, headers=headers, allow_redirects=False, timeout=time
+            ) as answer:
+                self._check(form, answer)
+                yield answer
+        except asyncio.TimeoutError:
+            raise ThingError(f"{form} has not answered in full within {seconds or self._limits.answer:g} s") from None
+        except (aiohttp.ClientError, OSError, ValueError) as error:
+            raise ThingError(f"{form} does not answer: {_reason(error)}") from None
+
+    def _check(self, form: ThingForm, answer: aiohttp.ClientResponse) -> None:
+        where = answer.headers.get("Location")
+        if where is not None and 300 <= answer.status < 400:
+            raise ThingError(f"{form} answers {answer.status}, go to {where[:120]!r}; no redirect is followed")
+        if answer.status >= 300:
+            raise ThingError(f"{form} answers {answer.status}")
+        if answer.headers.get("Content-Encoding", "identity") != "identity":
+            raise ThingError(f"{form} answers in a compressed form, though it was asked not to")
+        if (answer.content_length or 0) > self._limits.size:
+            raise self._too_large(form)
+
+    async def _body(self, form: ThingForm, answer: aiohttp.ClientResponse) -> bytes:
+        """The body of an answer, piece by piece, so that a long one is not read to its end."""
+        pieces, size = [], 0
+        async for piece in answer.content.iter_any():
+            size += len(piece)
+            if size > self._limits.size:
+                raise self._too_large(form)
+            pieces.append(piece)
+        return b"".join(pieces)
+
+    async def _lines(self, form: ThingForm, answer: aiohttp.ClientResponse) -> AsyncIterator[bytes]:
+        """The lines of an answer that has no end, each as it comes, without its end."""
+        rest = b""
+        async for piece in answer.content.iter_any():
+            *lines, rest = (rest + piece).split(_LINE_END)
+            for line in lines:
+                yield line.removesuffix(b"\r")
+            if len(rest) > self._limits.size:
+                raise self._too_large(form)
+
+    def _too_large(self, form: ThingForm) -> ThingError:
+        return ThingError(f"{form} answers more than {self._limits.size >> 20} MiB, which is more than is read")
+
+
+def _value(form: ThingForm, answer: aiohttp.ClientResponse, body: bytes) -> ThingAnswer:
+    """What a body says, by the media type that it has, or else by that of the form. Raises ThingError."""
+    media = answer.content_type if "Content-Type" in answer.headers else _bare(form.media)
+    if _is_json(media):
+        return ThingAnswer(_json(form, body))
+    if media != _bare(form.media):
+        raise ThingError(f"{form} answers {media}, where {_bare(form.media)} is expected")
+    return ThingAnswer(body, media)
+
+
+def _json(form: ThingForm, body: bytes) -> Any:
+    def no_number(name: str) -> None:
+        raise ValueError(f"{name} is no number of JSON")
+
+    try:
+        return json.loads(body, parse_constant=no_number)
+    except (ValueError, RecursionError):
+        raise ThingError(f"{form} answers what is not JSON: {body[:40]!r}") from None
+
+
+def _encoded(form: ThingForm, value: Any, media: str) -> bytes | None:
+    """A value as a body. Raises ThingError where the form asks for something else."""
+    if value is None:
+        return None
+    if isinstance(value, bytes):
+        return value
+    if _is_json(_bare(form.media)):
+        try:
+            return json.dumps(value, separators=(",", ":"), allow_nan=False, default=_elements).encode()
+        except (AttributeError, ValueError):  # an array that is no list either, NaN and infinity
+            raise ThingError(f"{form} takes JSON, which cannot say what was received") from None
+    if form.media.startswith("text/") and not isinstance(value, dict | list):
+        return (value if isinstance(value, str) else json.dumps(value)).encode()
+    raise ThingError(f"{form} takes {form.media}, which cannot be made of a value of JSON")
+
+
+def _elements(array: Any) -> Any:
+    """The elements of an array, for JSON."""
+    return array.tolist()
+
+
+def _bare(media: str) -> str:
+    """A media type without its parameters."""
+    return media.partition(";")[0].strip().lower()
+
+
+def _is_json(media: str) -> bool:
+    return media == JSON or media.endswith("+json")
+
+
+def _reason(error: Exception) -> str:
+    """Why there is no connection, in a few words."""
+    if isinstance(error, asyncio.TimeoutError):
+        return "nothing has come in time"
+    number = getattr(error, "errno", None)
+    return os.strerror(number) if number and number > 0 else (str(error) or type(error).__name__)[:120]

@@ -1,0 +1,141 @@
+"""The component that stands for a thing: it reads, follows, writes and calls while it is active.
+
+The code of the component itself only hands over: requests are made on the event loop of the world, so that a thing that
+takes its time holds up nobody. A request that goes wrong is FAIL, with its sentence as the reason.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from selfconf.bridging.wot.interactions import ThingInput, ThingInteractions, ThingOutput
+from selfconf.bridging.wot.thing_client import ThingAnswer, ThingClient, ThingError
+from selfconf.errors import ProgrammerError
+from selfconf.sdk import Component, Signal
+
+log = logging.getLogger(__name__)
+
+MOST_COMMANDS = 16
+"""How many calls of an action wait for the ones before; of what is written to a property only the newest does."""
+AGAIN = 0.2
+"""Seconds from one request by which a thing is followed to the next, where the first has brought nothing."""
+SOONEST = 0.01
+"""Seconds from one to the next where it has: a thing that answers a long poll at once is followed that often."""
+
+
+class ThingComponent(Component):
+    """A thing as a component."""
+
+    def __init__(
+        self,
+        thing: ThingInteractions,
+        client: ThingClient,
+        loop: asyncio.AbstractEventLoop,
+        rate: float,
+        lost: Callable[[str], None],
+    ) -> None:
+        """`lost` is called on the loop, with a sentence, when the thing has not done what its description says."""
+        self._thing, self._client, self._loop, self._rate, self._lost = thing, client, loop, rate, lost
+        self._work: list[asyncio.Task[None]] = []
+        self._waiting: dict[str, asyncio.Queue[Signal]] = {}
+        """The signals that are to be sent, for each input; replaced with each activation."""
+
+    # On the thread of the component's code.
+
+    def started(self) -> None:
+        """Begin to feed the outputs, and to take what the inputs receive."""
+        waiting = {
+            each.name: asyncio.Queue[Signal](MOST_COMMANDS if each.action else 1) for each in self._thing.inputs
+        }
+        self._waiting = waiting
+        self._loop.call_soon_threadsafe(self._begin, waiting)
+
+    def stopped(self) -> None:
+        """End every request; what has reached the thing by then, the thing may still carry out."""
+        self._waiting = {}
+        self._loop.call_soon_threadsafe(self._end)
+
+    def received(self, port: str, signal: Signal) -> None:
+        """Have a signal sent to the thing."""
+        queue = self._waiting.get(port)
+        if queue is not None:
+            self._loop.call_soon_threadsafe(self._append, port, queue, signal)
+
+    # On the loop.
+
+    def _begin(self, waiting: dict[str, asyncio.Queue[Signal]]) -> None:
+        work = [self._feed(each) for each in self._thing.outputs]
+        work += [self._send(each, waiting[each.name]) for each in self._thing.inputs]
+        self._work = [asyncio.ensure_future(self._guarded(one)) for one in work]
+
+    def _end(self) -> None:
+        for task in self._work:
+            task.cancel()
+        self._work = []
+
+    def _append(self, port: str, queue: asyncio.Queue[Signal], signal: Signal) -> None:
+        if queue.full():
+            queue.get_nowait()
+            if queue.maxsize > 1:
+                log.warning("%s: dropped a call of %s: %d wait already", self._name, port, queue.maxsize)
+        queue.put_nowait(signal)
+
+    @property
+    def _name(self) -> str:
+        return self._thing.component.iri.short
+
+    async def _guarded(self, work: Awaitable[None]) -> None:
+        try:
+            await work
+        except (ThingError, ProgrammerError) as error:  # the latter for a value that no signal can carry
+            self.fail(str(error))
+            self._lost(str(error))
+
+    async def _feed(self, output: ThingOutput) -> None:
+        """Issue what the thing says on an output, for as long as this task runs."""
+        if output.read is not None:
+            self._issue(output, await self._client.read(output.read))
+        if output.follow is None:
+            await self._poll(output)
+        else:
+            await self._follow(output)
+
+    async def _poll(self, output: ThingOutput) -> None:
+        """Read at the rate; a reading that was late is not made up for."""
+        due = self._loop.time()
+        while output.read is not None:
+            due = max(due + 1 / self._rate, self._loop.time())
+            await asyncio.sleep(due - self._loop.time())
+            self._issue(output, await self._client.read(output.read))
+
+    async def _follow(self, output: ThingOutput) -> None:
+        form = output.follow
+        while form is not None:
+            began, pause = self._loop.time(), AGAIN
+            if form.subprotocol == "sse":
+                async for answer in self._client.events(form):
+                    self._issue(output, answer)
+            elif (found := await self._client.wait(form)) is not None:
+                pause = SOONEST
+                self._issue(output, found)
+            await asyncio.sleep(max(0.0, began + pause - self._loop.time()))
+
+    def _issue(self, output: ThingOutput, answer: ThingAnswer) -> None:
+        value = answer.value
+        if output.field is not None and not answer.media and not isinstance(value, dict):
+            value = {output.field: value}
+        self.emit(output.name, value, media=answer.media)
+
+    async def _send(self, taken: ThingInput, queue: asyncio.Queue[Signal]) -> None:
+        while True:
+            signal = await queue.get()
+            value = None if taken.empty else _unwrapped(signal.value, taken.field)
+            await self._client.send(taken.form, value, signal.media, taken.action)
+
+
+def _unwrapped(value: Any, field: str | None) -> Any:
+    """The value of a field, where a signal has that one and the thing takes no object."""
+    return value[field] if field is not None and isinstance(value, dict) and field in value else value

@@ -1,0 +1,247 @@
+"""The world of the things that some sources describe: files, folders, URLs, and directories of things.
+
+Sources are read again at intervals, so that the things of a directory come and go. Each thing is looked for at
+intervals too: it lives on this side while it answers. One that does not do what its description says is lost at once,
+and lives again when it answers; each time sooner lost again, it waits longer for that.
+
+Nothing is requested but what the user has named: the sources, and what the descriptions in files lead to. A description
+that was fetched leads to the host that it came from, to the hosts of the other sources, and to those named in addition.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Coroutine, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import urlsplit
+
+from selfconf.bridging.bridge import Bridge
+from selfconf.bridging.wot.credentials import Credentials
+from selfconf.bridging.wot.forms import ThingForms
+from selfconf.bridging.wot.interactions import ThingInteractions, interactions
+from selfconf.bridging.wot.thing_client import ThingClient, ThingError, ThingLimits
+from selfconf.bridging.wot.thing_component import ThingComponent
+from selfconf.errors import AuthorError
+from selfconf.importing import DescribedThing, ImportedDocument, ImportLedger, described_things, gather
+from selfconf.model.term import IRI
+
+ENDINGS = (".json", ".jsonld")
+NAMESPACE = "urn:selfconf:wot:"
+"""What the IRIs of things begin with to which their descriptions give none."""
+MOST_THINGS = 2000
+"""How many things one bridge stands for."""
+LETTING_GO = 0.5
+"""Seconds from FAIL to the end of a life, in which a configurator can still release the component in good order."""
+ENDING = 5.0
+"""Seconds that the requests that are under way may take to end with the bridge."""
+
+
+@dataclass(frozen=True, slots=True)
+class ThingSettings:
+    """How a bridge treats things; times are in seconds."""
+
+    rate: float = 1.0
+    """How often a property is read that cannot be followed, in hertz."""
+    credentials: Credentials = field(default_factory=Credentials)
+    hosts: frozenset[str] = frozenset()
+    """The hosts to which descriptions may lead that were fetched from another one."""
+    look: float = 2.0
+    """From one look whether a thing is there to the next."""
+    reread: float = 5.0
+    """From one reading of a source to the next."""
+    longest_wait: float = 60.0
+    """How long at most a thing that was lost again and again waits until it may live again."""
+    limits: ThingLimits = ThingLimits()
+
+
+class ThingWorld:
+    """The other side of a bridge to things."""
+
+    def __init__(self, sources: Sequence[str], settings: ThingSettings) -> None:
+        self._sources, self._settings = sources, settings
+        self._hosts = settings.hosts | {
+            urlsplit(source).hostname or "" for source in sources if is_url(source)
+        }
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, name="things")
+        self._told: set[str] = set()
+
+    def open(self, bridge: Bridge) -> None:
+        """Begin to read the sources, and to look for the things in them."""
+        self._thread.start()
+        self._call(self._open(bridge))
+
+    def close(self) -> None:
+        """End every request and every look."""
+        self._call(self._close())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    def _call(self, work: Coroutine[Any, Any, None]) -> None:
+        asyncio.run_coroutine_threadsafe(work, self._loop).result()
+
+    # On the loop.
+
+    async def _open(self, bridge: Bridge) -> None:
+        self._bridge, self._client = bridge, ThingClient(self._settings.limits)
+        self._watches: dict[IRI, ThingWatch] = {}
+        self._found: dict[str, list[DescribedThing]] = {}
+        self._readings = [asyncio.ensure_future(self._follow(source)) for source in self._sources]
+
+    async def _close(self) -> None:
+        tasks = [*self._readings, *(watch.end() for watch in self._watches.values())]
+        for task in tasks:
+            task.cancel()
+        if tasks:
+            await asyncio.wait(tasks, timeout=ENDING)
+        await self._client.close()
+
+    async def _follow(self, source: str) -> None:
+        """Read a source again and again; what was in it stays where it cannot be read."""
+        while True:
+            found = await asyncio.to_thread(self._read, source)
+            if found is not None:
+                self._found[source] = found
+                self._compare()
+            await asyncio.sleep(self._settings.reread)
+
+    def _read(self, source: str) -> list[DescribedThing] | None:
+        """The things of a source; None if it cannot be read. On a thread of its own."""
+        unreadable: list[AuthorError] = []
+        ledger = ImportLedger(NAMESPACE, unreadable.append)
+        found = list(described_things(gather([source], ENDINGS, unreadable.append), ledger))
+        for error in unreadable:
+            self._tell(str(error))
+        return None if unreadable and not found else found
+
+    def _compare(self) -> None:
+        """Let the things come that are new or described anew, and go that are described no more."""
+        here: dict[IRI, DescribedThing] = {}
+        for source in self._sources:
+            for thing in self._found.get(source, ()):
+                iri = thing.component.iri
+                if iri in here:
+                    self._tell(f"{thing.source.shown}: {iri} is described twice; the first description counts")
+                elif len(here) == MOST_THINGS:
+                    self._tell(f"there are more than {MOST_THINGS} things; a bridge stands for so many")
+                here.setdefault(iri, thing)
+        for iri in self._watches.keys() - here.keys():
+            self._watches.pop(iri).leave()
+        for iri, thing in list(here.items())[:MOST_THINGS]:
+            watch = self._watches.get(iri)
+            if watch is None or watch.thing != thing:
+                if watch is not None:
+                    watch.leave()
+                self._watches[iri] = ThingWatch(thing, self._interactions(thing), self._bridge, self._client, self._settings)
+
+    def _interactions(self, thing: DescribedThing) -> ThingInteractions:
+        shown = thing.source.shown
+        fetched = is_url(shown)
+
+        def reachable(host: str) -> bool:
+            return not fetched or host in self._hosts
+
+        forms = ThingForms(thing.description, shown if fetched else "", self._settings.credentials, reachable)
+        found = interactions(thing, forms, self._settings.rate)
+        for problem in found.problems:
+            self._tell(f"{shown}: {thing.component.iri.short}: {problem}")
+        return found
+
+    def _tell(self, sentence: str) -> None:
+        """Complain of what was not complained of before: sources are read again and again."""
+        if sentence not in self._told and len(self._told) < MOST_THINGS:
+            self._told.add(sentence)
+            self._bridge.complain(sentence)
+
+
+class ThingWatch:
+    """Looks whether one thing is there, and lets it live on this side while it is."""
+
+    def __init__(
+        self,
+        thing: DescribedThing,
+        found: ThingInteractions,
+        bridge: Bridge,
+        client: ThingClient,
+        settings: ThingSettings,
+    ) -> None:
+        self.thing = thing
+        self._found, self._bridge, self._client, self._settings = found, bridge, client, settings
+        self._iri = found.component.iri
+        self._code: ThingComponent | None = None
+        self._since = 0.0
+        """Since when it lives here, by the clock of the loop."""
+        self._waits = self._not_before = 0.0
+        self._trouble = ""
+        """What it was last complained of."""
+        document = ImportedDocument("", thing.source.shown, (found.component.described(),), thing.prefixes)
+        bridge.advertise(self._iri, document)
+        self._looking = asyncio.ensure_future(self._look())
+
+    def end(self) -> asyncio.Task[None]:
+        """Look no more; the result is what ends."""
+        self._looking.cancel()
+        return self._looking
+
+    def leave(self) -> None:
+        """The thing is described no more, or otherwise."""
+        self.end()
+        self._bridge.withdraw(self._iri)
+
+    async def _look(self) -> None:
+        loop = asyncio.get_running_loop()
+        while True:
+            trouble = await self._probe()
+            if trouble is not None:
+                self._lose(trouble)
+            elif not self._bridge.lives(self._iri) and loop.time() >= self._not_before:
+                await self._begin(loop)
+            await asyncio.sleep(self._settings.look)
+
+    async def _probe(self) -> str | None:
+        """Why the thing is not there, in a sentence; None if it is."""
+        probe = self._found.probe
+        if probe is None:
+            return "there is no form by which it could be reached"
+        try:
+            if self._found.readable:
+                await self._client.read(probe)
+            else:
+                await self._client.reach(probe)
+        except ThingError as error:
+            return str(error)
+        return None
+
+    async def _begin(self, loop: asyncio.AbstractEventLoop) -> None:
+        code = ThingComponent(self._found, self._client, loop, self._settings.rate, self._lose)
+        trouble = await asyncio.wrap_future(self._bridge.begin_life(self._iri, code))
+        self._tell(trouble or "")
+        if trouble is None:
+            self._code, self._since = code, loop.time()
+            self._bridge.complain(f"{self._iri.short} is here, as {self.thing.source.shown} describes it")
+
+    def _lose(self, reason: str) -> None:
+        """The thing is not there, or does not do what its description says."""
+        self._tell(reason)
+        code, self._code = self._code, None
+        if code is None:
+            return
+        now = asyncio.get_running_loop().time()
+        again = now - self._since < self._settings.longest_wait
+        self._waits = min(2 * self._waits, self._settings.longest_wait) if again and self._waits else self._settings.look
+        self._not_before = now + self._waits
+        code.fail(reason)
+        asyncio.get_running_loop().call_later(LETTING_GO, self._bridge.end_life, self._iri, code)
+
+    def _tell(self, trouble: str) -> None:
+        if trouble and trouble != self._trouble:
+            self._bridge.complain(f"{self._iri.short}: {trouble}")
+        self._trouble = trouble
+
+
+def is_url(source: str) -> bool:
+    """Whether a source is fetched, and no path."""
+    return source.lower().startswith(("http://", "https://"))

@@ -1,0 +1,97 @@
+"""`bridge`: a site whose components are Things, which know nothing of selfconf."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+from pathlib import Path
+
+from selfconf.cli.terminal import complain
+from selfconf.errors import InstallationError
+
+EXAMPLE = """  selfconf bridge wot examples/wot/lamp.td.json --ecology home
+  selfconf bridge wot http://192.0.2.7/things --rate 5 --credentials things.json --ecology home"""
+MOST_HERTZ = 100.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    worlds = parser.add_subparsers(dest="world", metavar="WORLD", required=True)
+    wot = worlds.add_parser(
+        "wot",
+        help="Things of the W3C's Web of Things, by their descriptions, over HTTP",
+        description="Let Things play in an ecology, by their descriptions, over HTTP.",
+        epilog=f"example:\n{EXAMPLE}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    wot.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="+",
+        help="Thing Descriptions: a file, a folder with *.json and *.jsonld below it, or an http or https URL, that of"
+        " a directory included; read again every 5 seconds",
+    )
+    wot.add_argument(
+        "--rate",
+        metavar="HZ",
+        type=_rate,
+        default=1.0,
+        help="how often a property is read that cannot be observed (default: %(default)g)",
+    )
+    wot.add_argument(
+        "--credentials",
+        metavar="FILE",
+        type=Path,
+        help="a JSON file that only you can read, with username and password, token or key for each origin",
+    )
+    wot.add_argument(
+        "--host",
+        metavar="HOST",
+        action="append",
+        default=[],
+        help="a host to which a description may lead that was fetched from another one; repeatable",
+    )
+    _add_site_arguments(wot)
+
+
+def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--ecology", metavar="NAME", help="the ecology that this site is part of (default: $SELFCONF_ECOLOGY)"
+    )
+    parser.add_argument("--name", metavar="SITE", help="the name of the site; by default one of its own")
+    parser.add_argument("--listen", metavar="ENDPOINT", help="where to listen, as for `selfconf site`")
+    parser.add_argument(
+        "--connect",
+        metavar="ENDPOINT",
+        action="append",
+        default=[],
+        help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
+        " are found by themselves",
+    )
+
+
+def run(given: argparse.Namespace) -> int:
+    """Bridge until SIGINT or SIGTERM; then 0."""
+    _require("aiohttp", "wot")
+    from selfconf.api.bridge_program import serve_things
+
+    site = given.ecology, given.name, given.listen, given.connect
+    serve_things(given.sources, given.rate, given.credentials, given.host, *site, complain)
+    return 0
+
+
+def _require(module: str, extra: str) -> None:
+    """Raise InstallationError where a module of an extra is not installed."""
+    if importlib.util.find_spec(module) is None:
+        raise InstallationError(f"{module} is missing; install the extra `{extra}`")
+
+
+def _rate(text: str) -> float:
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 0.001 <= rate <= MOST_HERTZ:
+        raise argparse.ArgumentTypeError(f"{text!r} is no rate; it takes a number of hertz from 0.001 to 100")
+    return rate

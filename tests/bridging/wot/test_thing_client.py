@@ -1,0 +1,243 @@
+"""HTTP towards a real server: what is sent, and how every bad answer becomes one sentence within its bounds."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from array import array
+from collections.abc import Callable, Coroutine
+from http.server import BaseHTTPRequestHandler
+from typing import Any, TypeVar
+
+import pytest
+
+from selfconf.bridging.wot.forms import ThingForm
+from selfconf.bridging.wot.thing_client import ThingAnswer, ThingClient, ThingError, ThingLimits
+from tests.bridging.thing_server import ThingServer, reply
+
+Answer = TypeVar("Answer")
+LIMITS = ThingLimits(answer=0.5, action=0.5, size=1 << 20)
+Start = Callable[[], ThingServer]
+
+
+def asked(
+    work: Callable[[ThingClient], Coroutine[Any, Any, Answer]], limits: ThingLimits = ThingLimits(answer=30.0)
+) -> Answer:
+    """What comes of some requests."""
+
+    async def ask() -> Answer:
+        client = ThingClient(limits)
+        try:
+            return await work(client)
+        finally:
+            await client.close()
+
+    return asyncio.run(ask())
+
+
+def trouble(server: ThingServer, path: str, limits: ThingLimits = ThingLimits(answer=30.0, size=1 << 20)) -> str:
+    """What is wrong with an answer; it is found out at once."""
+    began = time.monotonic()
+    with pytest.raises(ThingError) as raised:
+        asked(lambda client: client.read(ThingForm(server.url + path, "GET")), limits)
+    assert time.monotonic() - began < 20.0
+    return str(raised.value).replace(server.url, "")
+
+
+def test_a_value_is_read_written_and_sent(thing_server: Start) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+
+    async def work(client: ThingClient) -> list[ThingAnswer]:
+        read, write = ThingForm(server.url + "/on", "GET"), ThingForm(server.url + "/on", "PUT")
+        before = await client.read(read)
+        await client.send(write, True)
+        await client.send(ThingForm(server.url + "/blink", "POST"), None, action=True)
+        return [before, await client.read(read)]
+
+    assert asked(work) == [ThingAnswer(False), ThingAnswer(True)]
+    assert server.sent("PUT") == [b"true"]
+    assert server.sent("POST") == [b""]
+    put = next(one for one in server.received if one.method == "PUT")
+    assert put.headers["Content-Type"] == "application/json"
+
+
+def test_a_form_sends_what_its_security_asks_for(thing_server: Start) -> None:
+    server = thing_server()
+    server.values["/on"] = 1
+    form = ThingForm(server.url + "/on?a=1", "GET", headers={"X-Key": "k"}, query=(("api", "s p"),))
+    assert asked(lambda client: client.read(form)).value == 1
+    (one,) = server.received
+    assert one.path == "/on?a=1&api=s+p"
+    assert one.headers["X-Key"] == "k"
+    assert one.headers["Accept-Encoding"] == "identity"
+
+
+def test_bytes_and_arrays_travel_too(thing_server: Start) -> None:
+    server = thing_server()
+    server.answers["/picture"] = lambda handler: reply(handler, b"\x89PNG", media="image/png; q=1")
+    picture = ThingForm(server.url + "/picture", "GET", "image/png")
+    assert asked(lambda client: client.read(picture)) == ThingAnswer(b"\x89PNG", "image/png")
+
+    async def work(client: ThingClient) -> None:
+        await client.send(ThingForm(server.url + "/show", "POST", "image/png"), b"\x89PNG", "image/png")
+        await client.send(ThingForm(server.url + "/say", "POST", "text/plain"), "good evening")
+        await client.send(ThingForm(server.url + "/list", "POST"), memoryview(array("d", [1.0, 2.5])))
+
+    asked(work)
+    assert server.sent("POST") == [b"\x89PNG", b"good evening", b"[1.0,2.5]"]
+
+
+@pytest.mark.parametrize(
+    ("value", "media", "words"),
+    [({"on": 1}, "text/plain", "takes text/plain"), (memoryview(array("d", [float("nan")])), "application/json", "JSON")],
+)
+def test_what_cannot_be_sent_is_said(value: Any, media: str, words: str) -> None:
+    with pytest.raises(ThingError, match=words):
+        asked(lambda client: client.send(ThingForm("http://127.0.0.1:1/", "POST", media), value))
+
+
+def test_html_is_no_value(thing_server: Start) -> None:
+    server = thing_server()
+    server.answers["/on"] = lambda handler: reply(handler, b"<html>login", media="text/html; charset=utf-8")
+    assert trouble(server, "/on") == "GET /on answers text/html, where application/json is expected"
+
+
+@pytest.mark.parametrize("body", [b"{", b"NaN", b"\xff", b"[" * 100_000])
+def test_what_is_not_json_is_said_with_its_beginning(thing_server: Start, body: bytes) -> None:
+    server = thing_server()
+    server.answers["/on"] = lambda handler: reply(handler, body)
+    assert trouble(server, "/on").startswith("GET /on answers what is not JSON: b'")
+
+
+def test_an_error_and_a_redirect_are_said(thing_server: Start) -> None:
+    server, other = thing_server(), thing_server()
+    server.answers["/moved"] = lambda handler: reply(handler, b"", 302, Location=f"{other.url}/on")
+    assert trouble(server, "/none") == "GET /none answers 404"
+    assert "answers 302, go to " in trouble(server, "/moved")
+    assert other.received == []
+
+
+def test_twenty_megabytes_are_not_read_whether_they_are_announced_or_not(thing_server: Start) -> None:
+    server = thing_server()
+    size = 20 << 20
+    written: list[int] = []
+
+    def announced(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "application/json")
+        handler.send_header("Content-Length", str(size))
+        handler.end_headers()
+        server.released.wait(30.0)
+
+    def streamed(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "application/json")
+        handler.send_header("Connection", "close")
+        handler.end_headers()
+        for _ in range(size >> 16):
+            written.append(handler.wfile.write(b"1" * (1 << 16)))
+
+    server.answers.update({"/announced": announced, "/streamed": streamed})
+    for path in ("/announced", "/streamed"):
+        assert trouble(server, path) == f"GET {path} answers more than 1 MiB, which is more than is read"
+    assert sum(written) < size
+
+
+def test_what_is_compressed_is_refused(thing_server: Start) -> None:
+    server = thing_server()
+    server.answers["/on"] = lambda handler: reply(handler, b"\x1f\x8b", Content_Encoding="gzip")
+    assert "compressed" in trouble(server, "/on")
+
+
+def test_a_thing_that_is_slow_has_its_time_and_no_more(thing_server: Start) -> None:
+    server = thing_server()
+
+    def trickle(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "application/json")
+        handler.send_header("Content-Length", "1000")
+        handler.end_headers()
+        while not server.released.wait(0.05):
+            handler.wfile.write(b"1")
+
+    server.answers.update({"/silent": lambda _: None if server.released.wait(30.0) else None, "/trickle": trickle})
+    for path in ("/silent", "/trickle"):
+        assert trouble(server, path, LIMITS) == f"GET {path} has not answered in full within 0.5 s"
+
+
+def test_nobody_there_is_said_in_few_words(thing_server: Start) -> None:
+    server = thing_server()
+    server.close()
+    assert trouble(server, "/on") == "GET /on does not answer: Connection refused"
+    with pytest.raises(ThingError, match="does not answer: Connection refused"):
+        asked(lambda client: client.reach(ThingForm(server.url + "/on", "POST")))
+
+
+def test_something_that_listens_can_be_reached(thing_server: Start) -> None:
+    server = thing_server()
+    asked(lambda client: client.reach(ThingForm(server.url + "/on", "POST")))
+    assert server.received == []
+
+
+def test_server_sent_events_come_one_by_one(thing_server: Start) -> None:
+    server = thing_server()
+
+    def stream(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "text/event-stream")
+        handler.send_header("Connection", "close")
+        handler.end_headers()
+        handler.wfile.write(b": hello\n\nid: 1\nda")
+        handler.wfile.flush()
+        handler.wfile.write(b"ta: 1\r\n\r\ndata: {\ndata: }\n\nevent: x\ndata:true\n\n")
+        handler.close_connection = True
+
+    server.answers["/on"] = stream
+
+    async def work(client: ThingClient) -> list[Any]:
+        return [answer.value async for answer in client.events(ThingForm(server.url + "/on", "GET", subprotocol="sse"))]
+
+    assert asked(work) == [1, {}, True]
+    assert server.received[0].headers["Accept"] == "text/event-stream"
+
+
+@pytest.mark.parametrize("text", [b"data: 1", b"data: 1\n"])
+def test_a_stream_without_end_of_line_or_of_event_is_bounded(thing_server: Start, text: bytes) -> None:
+    server = thing_server()
+
+    def stream(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "text/event-stream")
+        handler.send_header("Connection", "close")
+        handler.end_headers()
+        while not server.released.is_set():
+            handler.wfile.write(text * 10_000)
+
+    server.answers["/on"] = stream
+
+    async def work(client: ThingClient) -> list[Any]:
+        return [answer async for answer in client.events(ThingForm(server.url + "/on", "GET", subprotocol="sse"))]
+
+    with pytest.raises(ThingError, match="more than 1 MiB"):
+        asked(work, LIMITS)
+
+
+def test_a_long_poll_waits_for_longer_than_an_answer_may_take(thing_server: Start) -> None:
+    server = thing_server()
+    turns: list[int] = []
+
+    def poll(handler: BaseHTTPRequestHandler) -> None:
+        turns.append(1)
+        if len(turns) == 1:
+            server.released.wait(0.8)
+        reply(handler, b"" if len(turns) == 2 else json.dumps(len(turns)).encode(), 204 if len(turns) == 2 else 200)
+
+    server.answers["/on"] = poll
+
+    async def work(client: ThingClient) -> list[ThingAnswer | None]:
+        form = ThingForm(server.url + "/on", "GET", subprotocol="longpoll")
+        return [await client.wait(form) for _ in range(3)]
+
+    assert asked(work, LIMITS) == [ThingAnswer(1), None, ThingAnswer(3)]
