@@ -27,7 +27,14 @@ def commands() -> str:
         help_ = subparsers.choices[name].format_help().rstrip()
         pages.append(f"## selfconf {name}\n\n{COMMANDS[name][0].upper()}{COMMANDS[name][1:]}.\n")
         pages.append(f"```text\n{help_}\n```\n")
+        pages += [f"```text\n{one.format_help().rstrip()}\n```\n" for one in _subcommands(subparsers.choices[name])]
     return "\n".join(pages)
+
+
+def _subcommands(command: argparse.ArgumentParser) -> list[argparse.ArgumentParser]:
+    """The parsers of the commands below a command, in their order."""
+    nested = (action for action in command._actions if isinstance(action, argparse._SubParsersAction))
+    return [parser for action in nested for parser in action.choices.values()]
 
 
 def codes() -> str:

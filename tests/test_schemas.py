@@ -42,6 +42,7 @@ WITHOUT_SCHEMA = {
     "new": "prints no results",
     "site": "prints no results",
     "serve": "prints no results",
+    "bridge": "prints no results",
     "why": "prints sentences for people",
     "demo": "shows the lines of `run` in words",
 }

@@ -45,7 +45,7 @@ class Player:
         def found() -> list[str]:
             return [line for line in self.lines if words in line]
 
-        until(lambda: len(found()) >= times, f"{words!r} from {self.process.args}")
+        until(lambda: len(found()) >= times, f"{words!r}")
         return found()[times - 1]
 
     def shines(self) -> bool:
@@ -84,7 +84,9 @@ def main() -> None:
             stack.callback(player.end)
             return player
 
-        things = [play(str(HERE / "thing.py"), *who) for who in (("switch", "hall"), ("lamp", "desk"), ("lamp", "shelf"))]
+        things = [
+            play(str(HERE / "thing.py"), *who) for who in (("switch", "hall"), ("lamp", "desk"), ("lamp", "shelf"))
+        ]
         urls = [thing.says("http://") for thing in things]
         bridge = play("-m", "selfconf", "bridge", "wot", *urls, "--rate", "5", "--ecology", ecology)
         bridge.says("is here", times=len(things))

@@ -65,7 +65,8 @@ class Thing(BaseHTTPRequestHandler):
         before = self.on
         while True:
             with self.changed:
-                self.changed.wait_for(lambda: Thing.on != before, timeout=5.0)
+                if Thing.on == before:
+                    self.changed.wait(5.0)
                 news, before = Thing.on != before, Thing.on
             try:
                 self.wfile.write(f"data: {json.dumps(before)}\n\n".encode() if news else b": still here\n\n")

@@ -30,7 +30,7 @@ class ForeignWorld(Protocol):
         ...
 
     def close(self) -> None:
-        """Look no more; nothing is told to the bridge once this has returned."""
+        """Look no more, and end all that is under way; every component has come to rest before."""
         ...
 
 
@@ -47,7 +47,8 @@ class Bridge:
         self._ended = False
 
     def advertise(self, component: IRI, document: ImportedDocument) -> None:
-        """Say what a component is, from now on; what was said of it before is replaced as a whole."""
+        """Say what a component is, from now on; by what was said of it before it lives no more."""
+        self.end_life(component, self._living.get(component))
         path = self._paths.get(component)
         if path is None:
             name = slug(component.rpartition("/")[2].rpartition("#")[2] or component)[:80]
@@ -106,16 +107,17 @@ class Bridge:
         self._host = Host(client(endpoints, shared_memory=True), ecology, self.complain)
         thread = threading.Thread(target=self._run, args=(self._host,), name="code of foreign components")
         thread.start()
+        opened = False
         try:
             world.open(self)
-            try:
-                yield
-            finally:
-                world.close()
-        finally:
+            opened = True
+            yield
+        finally:  # the components first: at rest they ask nothing of their world any more
             self._ended = True
             self._host.code.wake_up()
             thread.join()
+            if opened:
+                world.close()
 
     def _run(self, host: Host) -> None:
         """Run the code of the components until the bridge ends; one that has to leave leaves alone."""

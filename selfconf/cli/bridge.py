@@ -9,7 +9,7 @@ from pathlib import Path
 from selfconf.cli.terminal import complain
 from selfconf.errors import InstallationError
 
-EXAMPLE = """  selfconf bridge wot examples/wot/lamp.td.json --ecology home
+EXAMPLE = """  selfconf bridge wot examples/imports/lamp.td.json --ecology home
   selfconf bridge wot http://192.0.2.7/things --rate 5 --credentials things.json --ecology home"""
 MOST_HERTZ = 100.0
 

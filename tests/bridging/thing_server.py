@@ -89,6 +89,10 @@ class ThingServer:
     def _note(self, handler: BaseHTTPRequestHandler, body: bytes) -> None:
         self.received.append(Received(handler.command, handler.path, dict(handler.headers), body))
 
+    def say_nothing(self, _: BaseHTTPRequestHandler) -> None:
+        """Answer a request never, until the test ends."""
+        self.released.wait(60.0)
+
     def sent(self, method: str) -> list[bytes]:
         """The bodies that came with a method."""
         return [one.body for one in self.received if one.method == method]

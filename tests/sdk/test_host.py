@@ -193,3 +193,31 @@ def test_closing_a_host_waits_until_its_components_are_at_rest(living: LivingSta
     host.close()
     assert not lamp.lit
     assert not lamp.active
+
+
+def test_one_class_may_stand_for_several_things(tmp_path: Path) -> None:
+    network, folder = Network(), write_advertisements(tmp_path)
+    host = Host(network.node(), "lab")
+    tracker, drive = Component(), Component()
+    for component, name in ((tracker, "tracker"), (drive, "drive")):
+        host.add(component, advertisement=folder / f"{name}.ttl")
+    assert [runtime.profile.component for runtime in host.runtimes] == [iri("person-tracker"), iri("astrid-drive")]
+    host.close()
+
+
+def test_a_component_that_is_removed_leaves_and_may_come_again(tmp_path: Path) -> None:
+    network, folder = Network(), write_advertisements(tmp_path, "tracker")
+    host, observer = Host(network.node(), "lab"), network.node()
+    component = host.add(kind(folder / "tracker.ttl")())
+    (runtime,) = host.runtimes
+    for _ in range(2):
+        host.remove(component)
+    host.poll(0.1)
+    assert runtime.closed
+    called: list[tuple[str, ...]] = []
+    observer.roll_call(Keys("lab").any_life(), 1.0, called.append)
+    network.run(lambda: bool(called))
+    assert called == [()]
+    host.add(component)
+    assert not host.runtimes[0].closed
+    host.close()

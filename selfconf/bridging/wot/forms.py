@@ -7,15 +7,15 @@ what came of the others. (W3C Web of Things Thing Description 1.1, sections 5.3.
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
-from urllib.parse import quote, urljoin, urlsplit, urlunsplit
+from urllib.parse import urljoin, urlsplit, urlunsplit
 
 from selfconf.bridging.wot.credentials import Credentials, origin
+from selfconf.bridging.wot.security_schemes import UnusableFormError, proof_of_identity
 
-METHODS = {
+USUAL_METHODS = {
     "readproperty": "GET",
     "writeproperty": "PUT",
     "observeproperty": "GET",
@@ -23,7 +23,7 @@ METHODS = {
     "subscribeevent": "GET",
 }
 """The method of an operation where its form names none (section 8.3.1, table 30)."""
-WITHOUT_OP = METHODS.keys() - {"observeproperty"}
+WITHOUT_OP = USUAL_METHODS.keys() - {"observeproperty"}
 """The operations that a form may serve if it does not say which; its affordance decides among them."""
 FOLLOWED = ("sse", "longpoll")
 """The subprotocols by which a bridge follows a property or an event."""
@@ -33,7 +33,7 @@ _KNOWN_METHODS = frozenset(("GET", "PUT", "POST", "PATCH", "DELETE"))
 
 @dataclass(frozen=True, slots=True)
 class ThingForm:
-    """One HTTP request that can be made: `repr` shows neither its headers nor what a security scheme adds to its URL."""
+    """One HTTP request that can be made; `repr` shows no header, and nothing that security adds to the URL."""
 
     url: str
     method: str
@@ -66,79 +66,56 @@ class ThingForms:
         self.problems: dict[str, None] = {}
         """Why forms cannot be used: sentences, each once, in order."""
 
-    def find(self, affordance: Mapping[str, Any], operation: str, subprotocols: Iterable[str] = ("",)) -> ThingForm | None:
+    def find(
+        self, affordance: Mapping[str, Any], operation: str, subprotocols: Iterable[str] = ("",)
+    ) -> ThingForm | None:
         """The first form for an operation that can be used, by one of some subprotocols, the first preferred."""
         forms = [one for one in _as_list(affordance.get("forms")) if isinstance(one, dict) and _serves(one, operation)]
         for subprotocol in subprotocols:
             for form in forms:
                 if form.get("subprotocol", "") == subprotocol:
-                    found = self._form(form, operation)
-                    if isinstance(found, ThingForm):
-                        return found
-                    self.problems[found] = None
+                    try:
+                        return self._form(form, operation)
+                    except UnusableFormError as error:
+                        self.problems[str(error)] = None
         return None
 
-    def _form(self, form: Mapping[str, Any], operation: str) -> ThingForm | str:
-        """The request that a form stands for, or a sentence that says why it cannot be made."""
-        href = form.get("href")
+    def _form(self, form: Mapping[str, Any], operation: str) -> ThingForm:
+        """The request that a form stands for. Raises UnusableFormError."""
+        url, method = self._url(form.get("href")), form.get("htv:methodName", USUAL_METHODS[operation])
+        if method not in _KNOWN_METHODS:
+            raise UnusableFormError(f"a form has the HTTP method {str(method)[:20]!r}")
+        where, told = origin(url), self._credentials.for_url(url)
+        names = _as_list(form.get("security", self._security))
+        found = [proof_of_identity(str(name), self._definitions.get(str(name)), told, where) for name in names]
+        proofs = [proof for proof in found if proof is not None]
+        media = form.get("contentType", JSON)
+        return ThingForm(
+            url,
+            method,
+            media if isinstance(media, str) and media.isascii() and media.isprintable() else JSON,
+            str(form.get("subprotocol", "")),
+            dict(proof.header for proof in proofs if proof.header is not None),
+            tuple((proof.name, proof.text) for proof in proofs if proof.header is None),
+        )
+
+    def _url(self, href: object) -> str:
+        """Where a form leads. Raises UnusableFormError."""
         if not isinstance(href, str):
-            return "a form has no href"
+            raise UnusableFormError("a form has no href")
         if "{" in href:
-            return f"the form {href[:80]!r} has URI variables, which a signal does not set"
+            raise UnusableFormError(f"the form {href[:80]!r} has URI variables, which a signal does not set")
         try:
             url = _plain(urljoin(self._base, href))
-            where = origin(url)
+            origin(url)
         except ValueError:
-            return f"the form {href[:80]!r} leads to no http or https URL"
+            raise UnusableFormError(f"the form {href[:80]!r} leads to no http or https URL") from None
         host = urlsplit(url).hostname or ""
         if not self._reachable(host):
-            return f"its forms lead to {host}, which its description does not come from; allow it with --host {host}"
-        method = form.get("htv:methodName", METHODS[operation])
-        if method not in _KNOWN_METHODS:
-            return f"the form {href[:80]!r} has the HTTP method {str(method)[:20]!r}"
-        headers: dict[str, str] = {}
-        query: list[tuple[str, str]] = []
-        for name in _as_list(form.get("security", self._security)):
-            trouble = self._secure(str(name), where, url, headers, query)
-            if trouble:
-                return trouble
-        media = form.get("contentType", JSON)
-        media = media if isinstance(media, str) and media.isascii() and media.isprintable() else JSON
-        return ThingForm(url, method, media, str(form.get("subprotocol", "")), headers, tuple(query))
-
-    def _secure(
-        self, name: str, where: str, url: str, headers: dict[str, str], query: list[tuple[str, str]]
-    ) -> str | None:
-        """Add what a security scheme asks for (section 5.3.3); a sentence if that cannot be had."""
-        scheme = self._definitions.get(name)
-        kind = scheme.get("scheme") if isinstance(scheme, dict) else None
-        if kind == "nosec":
-            return None
-        if not isinstance(scheme, dict) or kind not in ("basic", "bearer", "apikey"):
-            return f"it asks for the security scheme {str(kind or name)[:40]!r}; a bridge knows nosec, basic, bearer, apikey"
-        told = self._credentials.for_url(url)
-        wanted = {"basic": ("username", "password"), "bearer": ("token",), "apikey": ("key",)}[kind]
-        missing = [member for member in wanted if member not in told]
-        if missing:
-            return f"{where} asks for {' and '.join(missing)}; put them into a file and give it with --credentials"
-        value = told[wanted[0]]
-        if kind == "basic":
-            value = "Basic " + base64.b64encode(f"{value}:{told['password']}".encode()).decode()
-        elif kind == "bearer":
-            value = f"Bearer {value}"
-        place = scheme.get("in", "query" if kind == "apikey" else "header")
-        field_name = scheme.get("name", "Authorization" if place == "header" else "")
-        if not isinstance(field_name, str) or not field_name or not _is_token(field_name):
-            return f"its security scheme {name[:40]!r} does not say the name of its {str(place)[:20]}"
-        if place == "header":
-            headers[field_name] = value
-        elif place == "query":
-            query.append((field_name, value))
-        elif place == "cookie":
-            headers["Cookie"] = f"{field_name}={quote(value, safe='')}"
-        else:
-            return f"its security scheme {name[:40]!r} goes into {str(place)[:20]!r}; a bridge knows header, query, cookie"
-        return None
+            raise UnusableFormError(
+                f"its forms lead to {host}, which its description does not come from; allow it with --host {host}"
+            )
+        return url
 
 
 def _plain(url: str) -> str:
@@ -152,11 +129,6 @@ def _plain(url: str) -> str:
 def _serves(form: Mapping[str, Any], operation: str) -> bool:
     """Whether a form is for an operation; one that does not say it is for those of its affordance but to observe."""
     return operation in _as_list(form["op"]) if "op" in form else operation in WITHOUT_OP
-
-
-def _is_token(name: str) -> bool:
-    """Whether a text can name a header (RFC 9110, section 5.6.2), and so a cookie or a part of a query too."""
-    return name.isascii() and all(letter.isalnum() or letter in "!#$%&'*+-.^_`|~" for letter in name)
 
 
 def _as_list(value: Any) -> list[Any]:

@@ -73,27 +73,25 @@ class ThingInteractions:
 
 def interactions(thing: DescribedThing, forms: ThingForms, rate: float) -> ThingInteractions:
     """What a bridge does with a thing; `rate` is how often it reads what it cannot follow, in hertz."""
-    fields = _fields(thing.component)
-    affordances = _Affordances(thing.description)
-    outputs = [
-        found for port in thing.component.outputs if (found := _output(port, affordances, forms, fields)) is not None
-    ]
-    inputs = [found for port in thing.component.inputs if (found := _write(port, affordances, forms, fields))]
-    calls = _calls(thing.component, affordances, forms, fields, {each.name for each in inputs})
-    ports = {port.name: port for port in thing.component.outputs}
-    component = replace(
-        thing.component,
-        outputs=tuple(_promised(ports[each.name], rate) if each.polled else ports[each.name] for each in outputs),
-        inputs=(
-            *(port for port in thing.component.inputs if any(port.name == each.name for each in inputs)),
-            *(port for port, _ in calls),
-        ),
+    component, fields, affordances = thing.component, _fields(thing.component), _Affordances(thing.description)
+    fed = {port: _output(port, affordances, forms, fields) for port in component.outputs}
+    outputs = {port: output for port, output in fed.items() if output is not None}
+    written = {port: _write(port, affordances, forms, fields) for port in component.inputs}
+    inputs = {port: taken for port, taken in written.items() if taken is not None}
+    inputs |= _calls(component, affordances, forms, fields, {port.name for port in inputs})
+    bridged = replace(
+        component,
+        outputs=tuple(_promised(port, rate) if output.polled else port for port, output in outputs.items()),
+        inputs=tuple(inputs),
         operations=(),
     )
-    takes = (*inputs, *(call for _, call in calls))
-    probe = next((each.read for each in outputs if each.read is not None), None)
-    probe = probe or next((each.form for each in takes), next((each.follow for each in outputs), None))
-    return ThingInteractions(component, tuple(outputs), takes, probe, tuple(forms.problems))
+    probes = [
+        *(output.read for output in outputs.values()),
+        *(taken.form for taken in inputs.values()),
+        *(output.follow for output in outputs.values()),
+    ]
+    probe = next((form for form in probes if form is not None), None)
+    return ThingInteractions(bridged, tuple(outputs.values()), tuple(inputs.values()), probe, tuple(forms.problems))
 
 
 class _Affordances:
@@ -131,7 +129,9 @@ def _write(
 ) -> ThingInput | None:
     affordance = affordances.find("properties", port.name)
     form = forms.find(affordance, "writeproperty")
-    return form and ThingInput(port.name, form, False, _plain_field(affordance, port.types, fields))
+    if form is None:
+        return None
+    return ThingInput(port.name, form, False, _plain_field(affordance, port.types, fields))
 
 
 def _calls(
@@ -140,9 +140,9 @@ def _calls(
     forms: ThingForms,
     fields: Mapping[IRI, SignalFields],
     taken: set[str],
-) -> list[tuple[ImportedPort, ThingInput]]:
+) -> dict[ImportedPort, ThingInput]:
     """The actions as inputs; one with the name of a property that can be written too is called `call NAME`."""
-    found = []
+    found = {}
     for operation in component.operations:
         affordance = affordances.find("actions", operation.name)
         form = forms.find(affordance, "invokeaction")
@@ -151,8 +151,8 @@ def _calls(
         name = f"call {operation.name}" if operation.name in taken else operation.name
         types = () if operation.request is None else (operation.request,)
         one = _plain_field(_schema(affordance, "input"), types, fields)
-        called = ThingInput(name, form, True, one, empty="input" not in affordance)
-        found.append((ImportedPort(name, types, optional=True), called))
+        port = ImportedPort(name, types, optional=True)
+        found[port] = ThingInput(name, form, True, one, empty="input" not in affordance)
     return found
 
 
@@ -167,9 +167,7 @@ def _schema(affordance: Mapping[str, Any], member: str) -> Mapping[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-def _plain_field(
-    schema: Mapping[str, Any], types: tuple[IRI, ...], fields: Mapping[IRI, SignalFields]
-) -> str | None:
+def _plain_field(schema: Mapping[str, Any], types: tuple[IRI, ...], fields: Mapping[IRI, SignalFields]) -> str | None:
     """The field that a value of a schema stands for, if it is no object, and its type has one required field."""
     if schema.get("type") == "object":
         return None

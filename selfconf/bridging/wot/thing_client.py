@@ -80,7 +80,9 @@ class ThingClient:
         """The next value of a long poll, however long that takes; None if the thing has let go of it for now."""
         async with self._asked(form, None) as answer:
             body = await self._body(form, answer)
-            return None if answer.status == 204 or (not body and not answer.content_type) else _value(form, answer, body)
+            return (
+                None if answer.status == 204 or (not body and not answer.content_type) else _value(form, answer, body)
+            )
 
     async def events(self, form: ThingForm) -> AsyncIterator[ThingAnswer]:
         """The values of a stream of server-sent events, until the thing ends it (HTML, section 9.2)."""

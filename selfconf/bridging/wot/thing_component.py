@@ -47,9 +47,7 @@ class ThingComponent(Component):
 
     def started(self) -> None:
         """Begin to feed the outputs, and to take what the inputs receive."""
-        waiting = {
-            each.name: asyncio.Queue[Signal](MOST_COMMANDS if each.action else 1) for each in self._thing.inputs
-        }
+        waiting = {each.name: asyncio.Queue[Signal](MOST_COMMANDS if each.action else 1) for each in self._thing.inputs}
         self._waiting = waiting
         self._loop.call_soon_threadsafe(self._begin, waiting)
 

@@ -27,14 +27,15 @@ from selfconf.errors import AuthorError
 from selfconf.importing import DescribedThing, ImportedDocument, ImportLedger, described_things, gather
 from selfconf.model.term import IRI
 
-ENDINGS = (".json", ".jsonld")
+DESCRIPTIONS = (".json", ".jsonld")
+"""The endings of files in a folder that are descriptions."""
 NAMESPACE = "urn:selfconf:wot:"
 """What the IRIs of things begin with to which their descriptions give none."""
 MOST_THINGS = 2000
 """How many things one bridge stands for."""
 LETTING_GO = 0.5
 """Seconds from FAIL to the end of a life, in which a configurator can still release the component in good order."""
-ENDING = 5.0
+LAST_REQUESTS = 5.0
 """Seconds that the requests that are under way may take to end with the bridge."""
 
 
@@ -53,7 +54,7 @@ class ThingSettings:
     """From one reading of a source to the next."""
     longest_wait: float = 60.0
     """How long at most a thing that was lost again and again waits until it may live again."""
-    limits: ThingLimits = ThingLimits()
+    limits: ThingLimits = field(default_factory=ThingLimits)
 
 
 class ThingWorld:
@@ -61,15 +62,13 @@ class ThingWorld:
 
     def __init__(self, sources: Sequence[str], settings: ThingSettings) -> None:
         self._sources, self._settings = sources, settings
-        self._hosts = settings.hosts | {
-            urlsplit(source).hostname or "" for source in sources if is_url(source)
-        }
-        self._loop = asyncio.new_event_loop()
-        self._thread = threading.Thread(target=self._loop.run_forever, name="things")
+        self._hosts = settings.hosts | {urlsplit(source).hostname or "" for source in sources if is_url(source)}
         self._told: set[str] = set()
 
     def open(self, bridge: Bridge) -> None:
         """Begin to read the sources, and to look for the things in them."""
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, name="things")
         self._thread.start()
         self._call(self._open(bridge))
 
@@ -92,11 +91,11 @@ class ThingWorld:
         self._readings = [asyncio.ensure_future(self._follow(source)) for source in self._sources]
 
     async def _close(self) -> None:
-        tasks = [*self._readings, *(watch.end() for watch in self._watches.values())]
+        tasks = asyncio.all_tasks() - {asyncio.current_task()}
         for task in tasks:
             task.cancel()
         if tasks:
-            await asyncio.wait(tasks, timeout=ENDING)
+            await asyncio.wait(tasks, timeout=LAST_REQUESTS)
         await self._client.close()
 
     async def _follow(self, source: str) -> None:
@@ -112,7 +111,7 @@ class ThingWorld:
         """The things of a source; None if it cannot be read. On a thread of its own."""
         unreadable: list[AuthorError] = []
         ledger = ImportLedger(NAMESPACE, unreadable.append)
-        found = list(described_things(gather([source], ENDINGS, unreadable.append), ledger))
+        found = list(described_things(gather([source], DESCRIPTIONS, unreadable.append), ledger))
         for error in unreadable:
             self._tell(str(error))
         return None if unreadable and not found else found
@@ -129,13 +128,15 @@ class ThingWorld:
                     self._tell(f"there are more than {MOST_THINGS} things; a bridge stands for so many")
                 here.setdefault(iri, thing)
         for iri in self._watches.keys() - here.keys():
-            self._watches.pop(iri).leave()
+            self._watches.pop(iri).end()
+            self._bridge.withdraw(iri)
         for iri, thing in list(here.items())[:MOST_THINGS]:
             watch = self._watches.get(iri)
             if watch is None or watch.thing != thing:
                 if watch is not None:
-                    watch.leave()
-                self._watches[iri] = ThingWatch(thing, self._interactions(thing), self._bridge, self._client, self._settings)
+                    watch.end()
+                found = self._interactions(thing)
+                self._watches[iri] = ThingWatch(thing, found, self._bridge, self._client, self._settings)
 
     def _interactions(self, thing: DescribedThing) -> ThingInteractions:
         shown = thing.source.shown
@@ -181,15 +182,9 @@ class ThingWatch:
         bridge.advertise(self._iri, document)
         self._looking = asyncio.ensure_future(self._look())
 
-    def end(self) -> asyncio.Task[None]:
-        """Look no more; the result is what ends."""
+    def end(self) -> None:
+        """Look no more: the thing is described no more, or otherwise."""
         self._looking.cancel()
-        return self._looking
-
-    def leave(self) -> None:
-        """The thing is described no more, or otherwise."""
-        self.end()
-        self._bridge.withdraw(self._iri)
 
     async def _look(self) -> None:
         loop = asyncio.get_running_loop()
@@ -231,7 +226,9 @@ class ThingWatch:
             return
         now = asyncio.get_running_loop().time()
         again = now - self._since < self._settings.longest_wait
-        self._waits = min(2 * self._waits, self._settings.longest_wait) if again and self._waits else self._settings.look
+        self._waits = (
+            min(2 * self._waits, self._settings.longest_wait) if again and self._waits else self._settings.look
+        )
         self._not_before = now + self._waits
         code.fail(reason)
         asyncio.get_running_loop().call_later(LETTING_GO, self._bridge.end_life, self._iri, code)

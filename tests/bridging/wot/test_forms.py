@@ -15,7 +15,9 @@ BASE = "http://192.0.2.7/"
 
 def one(form: dict[str, Any], operation: str = "readproperty", **thing: Any) -> Any:
     """The form that is found for an affordance with one, or the sentence that says why there is none."""
-    forms = forms_of({"base": BASE, **thing}, {"http://192.0.2.7": {"username": "u", "password": "p", "token": "t", "key": "k"}})
+    forms = forms_of(
+        {"base": BASE, **thing}, {"http://192.0.2.7": {"username": "u", "password": "p", "token": "t", "key": "k"}}
+    )
     return forms.find({"forms": [form]}, operation, ("", *FOLLOWED)) or next(iter(forms.problems), None)
 
 
@@ -108,7 +110,8 @@ def test_nothing_that_is_told_stands_in_a_repr() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "words"), [("body", "header, query, cookie"), ("nameless", "the name"), ("oauth", "'oauth2'"), ("x", "'x'")]
+    ("name", "words"),
+    [("body", "header, query and cookie"), ("nameless", "the name"), ("oauth", "'oauth2'"), ("x", "'x'")],
 )
 def test_a_scheme_that_cannot_be_served_is_named(name: str, words: str) -> None:
     assert words in secured(name)

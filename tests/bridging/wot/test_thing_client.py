@@ -18,12 +18,12 @@ from tests.bridging.thing_server import ThingServer, reply
 
 Answer = TypeVar("Answer")
 LIMITS = ThingLimits(answer=0.5, action=0.5, size=1 << 20)
+PATIENT = ThingLimits(answer=30.0, size=1 << 20)
+"""For what is found out at once, however busy the machine is."""
 Start = Callable[[], ThingServer]
 
 
-def asked(
-    work: Callable[[ThingClient], Coroutine[Any, Any, Answer]], limits: ThingLimits = ThingLimits(answer=30.0)
-) -> Answer:
+def asked(work: Callable[[ThingClient], Coroutine[Any, Any, Answer]], limits: ThingLimits = PATIENT) -> Answer:
     """What comes of some requests."""
 
     async def ask() -> Answer:
@@ -36,7 +36,7 @@ def asked(
     return asyncio.run(ask())
 
 
-def trouble(server: ThingServer, path: str, limits: ThingLimits = ThingLimits(answer=30.0, size=1 << 20)) -> str:
+def trouble(server: ThingServer, path: str, limits: ThingLimits = PATIENT) -> str:
     """What is wrong with an answer; it is found out at once."""
     began = time.monotonic()
     with pytest.raises(ThingError) as raised:
@@ -91,7 +91,10 @@ def test_bytes_and_arrays_travel_too(thing_server: Start) -> None:
 
 @pytest.mark.parametrize(
     ("value", "media", "words"),
-    [({"on": 1}, "text/plain", "takes text/plain"), (memoryview(array("d", [float("nan")])), "application/json", "JSON")],
+    [
+        ({"on": 1}, "text/plain", "takes text/plain"),
+        (memoryview(array("d", [float("nan")])), "application/json", "JSON"),
+    ],
 )
 def test_what_cannot_be_sent_is_said(value: Any, media: str, words: str) -> None:
     with pytest.raises(ThingError, match=words):
@@ -162,7 +165,7 @@ def test_a_thing_that_is_slow_has_its_time_and_no_more(thing_server: Start) -> N
         while not server.released.wait(0.05):
             handler.wfile.write(b"1")
 
-    server.answers.update({"/silent": lambda _: None if server.released.wait(30.0) else None, "/trickle": trickle})
+    server.answers.update({"/silent": server.say_nothing, "/trickle": trickle})
     for path in ("/silent", "/trickle"):
         assert trouble(server, path, LIMITS) == f"GET {path} has not answered in full within 0.5 s"
 

@@ -1,0 +1,43 @@
+"""A bridge as a program refuses what it cannot bridge before it opens anything, and leaves no folder behind."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import pytest
+
+import selfconf as sc
+from selfconf.api.bridge_program import serve_bridge, serve_things
+
+
+class World:
+    """A world that must not be opened."""
+
+    def open(self, bridge: object) -> None:
+        raise AssertionError("nothing is to be opened")
+
+    def close(self) -> None:
+        raise AssertionError("nothing was opened")
+
+
+@pytest.mark.parametrize(("ecology", "name"), [("no/name", None), ("home", "no/name"), (None, None)])
+def test_a_name_that_is_none_ends_it(
+    ecology: str | None, name: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    said: list[str] = []
+    with pytest.raises(sc.SelfconfError):
+        serve_bridge(World(), ecology, name, None, (), said.append)
+    assert said == []
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_sources_and_credentials_have_to_be_there(tmp_path: Path) -> None:
+    pytest.importorskip("aiohttp", reason="the extra `wot` is not installed")
+    for sources, credentials, words in (
+        ([str(tmp_path / "none.json")], None, "no file or folder"),
+        ([str(tmp_path)], tmp_path / "none.json", "cannot read the credentials"),
+    ):
+        with pytest.raises(sc.SelfconfError, match=words):
+            serve_things(sources, 1.0, credentials, (), "home", None, None, (), print)

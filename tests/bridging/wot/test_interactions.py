@@ -1,0 +1,98 @@
+"""What becomes of each affordance of a thing, and which component the thing therefore is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from selfconf.bridging.wot.interactions import ThingInteractions, interactions
+from selfconf.importing import ImportedDocument, described_text
+from selfconf.rdf.advertisements import read_advertisements
+from tests.bridging.thing_server import CONTEXT
+from tests.bridging.wot.things import described, forms_of
+
+SWITCH = {"@type": "rob:Switch", "type": "boolean"}
+
+
+def found(rate: float = 2.0, **members: Any) -> ThingInteractions:
+    description = {"@context": CONTEXT, "id": "urn:thing:lamp", "title": "lamp", "base": "http://192.0.2.7/", **members}
+    return interactions(described(description), forms_of(description), rate)
+
+
+def test_what_can_be_observed_is_followed_and_the_rest_promises_the_rate() -> None:
+    sse = {"href": "on/changes", "op": "observeproperty", "subprotocol": "sse"}
+    thing = found(
+        properties={
+            "on": {**SWITCH, "readOnly": True, "forms": [{"href": "on"}, sse]},
+            "level": {"type": "number", "readOnly": True, "forms": [{"href": "level"}]},
+        },
+        events={"pressed": {"forms": [{"href": "pressed", "subprotocol": "longpoll"}]}},
+    )
+    on, level, pressed = thing.outputs
+    assert on.read is not None
+    assert on.follow is not None
+    assert (on.polled, level.polled, pressed.polled) == (False, True, False)
+    assert pressed.read is None
+    assert thing.probe is on.read
+    assert thing.readable
+    text = described_text(ImportedDocument("", "", (thing.component.described(),), {}))
+    ((advertisement,), bad) = read_advertisements(text.encode(), "lamp.ttl", "file:///lamp.ttl")
+    assert not bad
+    assert {port.name: port.rate for port in advertisement.profile.outputs} == {
+        "on": None,
+        "level": 2.0,
+        "pressed": None,
+    }
+
+
+def test_a_plain_value_is_the_one_field_of_its_type() -> None:
+    thing = found(
+        properties={
+            "on": {**SWITCH, "forms": [{"href": "a"}]},
+            "whole": {"@type": "rob:Switch", "type": "object", "forms": [{"href": "b"}]},
+            "pose": {"@type": "rob:PlanarPose2D", "forms": [{"href": "c"}]},
+            "other": {"type": "boolean", "forms": [{"href": "d"}]},
+        }
+    )
+    assert {each.name: each.field for each in thing.outputs} == {"on": "on", "whole": None, "pose": None, "other": None}
+    assert {each.name: each.field for each in thing.inputs} == {"on": "on", "whole": None, "pose": None, "other": None}
+
+
+def test_an_action_is_an_input_that_calls_it() -> None:
+    thing = found(
+        properties={"fade": {"type": "number", "forms": [{"href": "a"}]}},
+        actions={
+            "fade": {"@type": "rob:Switch", "input": {"type": "boolean"}, "forms": [{"href": "b"}]},
+            "blink": {"forms": [{"href": "c"}]},
+        },
+    )
+    assert [(each.name, each.action, each.empty, each.field) for each in thing.inputs] == [
+        ("fade", False, False, None),
+        ("call fade", True, False, "on"),
+        ("blink", True, True, None),
+    ]
+    assert [port.name for port in thing.component.inputs] == ["fade", "call fade", "blink"]
+    assert all(port.optional for port in thing.component.inputs)
+    assert thing.component.operations == ()
+
+
+def test_what_has_no_form_that_can_be_used_is_not_advertised_and_named() -> None:
+    thing = found(
+        properties={
+            "on": {**SWITCH, "forms": [{"href": "coap://192.0.2.7/on"}]},
+            "off": {**SWITCH},
+        },
+        actions={"blink": {"forms": [{"href": "mqtt://192.0.2.7/x"}]}},
+    )
+    assert thing.component.inputs == thing.component.outputs == ()
+    assert thing.probe is None
+    assert thing.problems == (
+        "the form 'coap://192.0.2.7/on' leads to no http or https URL",
+        "the form 'mqtt://192.0.2.7/x' leads to no http or https URL",
+    )
+
+
+def test_a_thing_that_cannot_be_read_is_looked_for_where_it_takes_something() -> None:
+    thing = found(actions={"blink": {"forms": [{"href": "blink"}]}})
+    assert thing.probe is not None
+    assert thing.probe.method == "POST"
+    assert not thing.readable

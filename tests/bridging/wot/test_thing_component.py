@@ -1,0 +1,184 @@
+"""A thing as a component: it reads, follows, writes and calls while it is active, and fails by its sentence."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from http.server import BaseHTTPRequestHandler
+from pathlib import Path
+
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Reserve, Wire
+from selfconf.sdk import Component
+from tests.bridging.thing_server import ROB, ThingServer, reply
+from tests.bridging.wot.bridged import Bridged, bridging, written
+from tests.sdk.living import LivingStage, until
+
+Start = Callable[[], ThingServer]
+SWITCH = {"@type": "rob:Switch", "type": "boolean"}
+
+
+class Button(Component):
+    """What commands a thing."""
+
+
+def active(found: Bridged, **inputs: tuple[Wire, ...]) -> None:
+    """Activate the lamp, with its inputs fed."""
+    assert until(lambda: found.lives("lamp")), found.complaints
+    held = found.stage.call("urn:thing:lamp", "reserve", Reserve(1, found.stage.supervisor, "task~1"))
+    assert until(lambda: held)
+    answers = found.stage.apply("urn:thing:lamp", inputs=inputs)
+    assert until(lambda: answers)
+    assert answers[0].active, answers
+
+
+def button(stage: LivingStage) -> Button:
+    """A button that is active."""
+    kind = stage.advertised(
+        Button,
+        f'<urn:c:button> a sc:Component, :Button ; sc:hasOutput [ sc:name "on" ; sc:signalType <{ROB}Switch> ] .',
+    )
+    component = stage.component(kind())
+    answers = stage.apply("urn:c:button")
+    assert until(lambda: answers)
+    return component
+
+
+WIRE = (Wire(IRI("urn:c:button"), "on"),)
+
+
+def test_a_property_is_read_at_the_rate_and_issued_as_its_signal_type(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe())) as found:
+        values = found.heard("lamp", "on")
+        active(found)
+        assert until(lambda: len(values) > 5)
+        assert values[-1] == {"on": True}
+        server.values["/on"] = False
+        assert until(lambda: values[-1] == {"on": False})
+
+
+def test_what_is_observed_is_issued_as_it_comes(thing_server: Start, living: LivingStage, tmp_path: Path) -> None:
+    server = thing_server()
+    server.values["/a"] = server.values["/b"] = False
+    turns = iter(range(3))
+
+    def stream(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "text/event-stream")
+        handler.end_headers()
+        handler.wfile.write(b"data: true\n\n")
+        server.released.wait(60.0)
+
+    def poll(handler: BaseHTTPRequestHandler) -> None:
+        turn = next(turns, None)
+        if turn is None:
+            server.released.wait(60.0)
+        reply(handler, json.dumps(bool(turn)).encode())
+
+    server.answers.update({"/a/changes": stream, "/b/changes": poll})
+    description = server.describe(
+        properties={
+            name: {
+                **SWITCH,
+                "readOnly": True,
+                "forms": [{"href": name}, {"href": f"{name}/changes", "op": "observeproperty", "subprotocol": how}],
+            }
+            for name, how in (("a", "sse"), ("b", "longpoll"))
+        }
+    )
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        a, b = found.heard("lamp", "a"), found.heard("lamp", "b")
+        active(found)
+        assert until(lambda: a[-1:] == [{"on": True}] and b[-1:] == [{"on": True}])
+
+
+def test_a_signal_writes_a_property_and_calls_an_action(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    description = server.describe(actions={"blink": {"@type": "rob:Switch", "forms": [{"href": "blink"}]}})
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        source = button(living)
+        active(found, on=WIRE, blink=WIRE)
+        source.emit("on", {"on": True})
+        assert until(lambda: server.sent("PUT") and server.sent("POST"))
+    assert server.values["/on"] is True
+    assert server.sent("POST") == [b""]
+
+
+def test_a_flood_of_signals_costs_a_slow_thing_the_newest_alone(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    description = server.describe()
+    description["properties"]["on"]["writeOnly"] = True
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        source = button(living)
+        active(found, on=WIRE)
+        for number in range(3000):
+            source.emit("on", {"on": number % 2 == 0})
+
+        def ends_on() -> bool:
+            source.emit("on", {"on": True})  # again and again: the network may drop any signal of a flood
+            return server.sent("PUT")[-1:] == [b"true"]
+
+        assert until(ends_on)
+        assert len(server.sent("PUT")) < 1000
+    assert found.causes() == []
+
+
+def test_a_thing_that_ends_fails_by_its_sentence_and_lives_again_when_it_is_back(
+    thing_server: Callable[[int], ThingServer], living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server(0)
+    server.values["/on"] = True
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe())) as found:
+        active(found)
+        server.close()
+        assert until(lambda: found.causes())
+        assert found.causes()[0].startswith(f"GET {server.url}/on does not answer")
+        assert until(lambda: not found.lives("lamp"))
+        again = thing_server(server.port)
+        again.values["/on"] = True
+        assert until(lambda: found.lives("lamp"))
+        values = found.heard("lamp", "on")
+        active(found)
+        assert until(lambda: values)
+
+
+def test_a_thing_that_answers_html_fails_and_disturbs_no_other(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    good, bad = thing_server(), thing_server()
+    good.values["/on"] = bad.values["/on"] = True
+    source = written(tmp_path, good.describe("fine"), bad.describe("lamp"))
+    with bridging(living, tmp_path / "ads", source) as found:
+        active(found)
+        assert until(lambda: found.lives("fine"))
+        values = found.heard("fine", "on")
+        answers = living.apply("urn:thing:fine")
+        assert until(lambda: answers and values)
+        bad.answers["/on"] = lambda handler: reply(handler, b"<html>", media="text/html")
+        assert until(lambda: found.causes())
+        assert "answers text/html, where application/json is expected" in found.causes()[0]
+        before = len(values)
+        assert until(lambda: len(values) > before + 5)
+        assert found.lives("fine")
+
+
+def test_a_value_that_is_not_of_its_signal_type_is_blamed_on_the_thing(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe())) as found:
+        active(found)
+        server.values["/on"] = "maybe"
+        assert until(lambda: found.causes())
+        assert "what it emits on 'on'" in found.causes()[0]

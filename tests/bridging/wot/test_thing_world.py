@@ -1,0 +1,136 @@
+"""The things of files, URLs and directories: they come, go, are described anew, and are looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from selfconf.bridging.wot.thing_client import ThingLimits
+from selfconf.bridging.wot.thing_world import is_url
+from selfconf.files import advertisements
+from tests.bridging.thing_server import ThingServer, reply
+from tests.bridging.wot.bridged import HASTY, bridging, written
+from tests.sdk.living import LivingStage, until
+
+Start = Callable[[], ThingServer]
+
+
+def test_the_things_of_a_directory_come_and_go(thing_server: Start, living: LivingStage, tmp_path: Path) -> None:
+    server = thing_server()
+    server.values.update({"/on": True, "/things": [server.describe("a")]})
+    with bridging(living, tmp_path / "ads", f"{server.url}/things") as found:
+        assert until(lambda: found.lives("a"))
+        server.values["/things"] = [server.describe("b"), server.describe("c")]
+        assert until(lambda: found.lives("b") and found.lives("c") and not found.lives("a"))
+        advertised = [one.component for path in found.folder.glob("*.ttl") for one in advertisements(path)[0]]
+        assert sorted(advertised) == ["urn:thing:b", "urn:thing:c"]
+        server.answers["/things"] = lambda handler: reply(handler, b"", 500)
+        assert until(lambda: found.complained("answers 500"))
+        assert found.lives("b")
+
+
+def test_a_thing_that_is_described_anew_is_another_component(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    source = written(tmp_path, server.describe())
+    with bridging(living, tmp_path / "ads", source) as found:
+        assert until(lambda: found.lives("lamp"))
+        (path,) = found.folder.glob("*.ttl")
+        written(tmp_path, server.describe(**{"@type": "rob:Display"}))
+        assert until(lambda: "rob:Display" in path.read_text() and found.lives("lamp"))
+        assert len(list(found.folder.glob("*.ttl"))) == 1
+
+
+def test_a_thing_lives_as_long_as_it_answers(
+    thing_server: Callable[[int], ThingServer], living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server(0)
+    server.values["/on"] = True
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe())) as found:
+        assert until(lambda: found.lives("lamp"))
+        server.close()
+        assert until(lambda: not found.lives("lamp"))
+        assert found.complained("lamp: GET http")
+        again = thing_server(server.port)
+        again.values["/on"] = True
+        assert until(lambda: found.lives("lamp"))
+
+
+def test_a_thing_without_anything_to_read_is_there_while_it_listens(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    description = server.describe(properties={}, actions={"blink": {"forms": [{"href": "blink"}]}})
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        assert until(lambda: found.lives("lamp"))
+        assert server.received == []
+        server.close()
+        assert until(lambda: not found.lives("lamp"))
+
+
+def test_a_thing_that_is_slow_is_a_sentence_and_holds_up_nobody(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    good, slow = thing_server(), thing_server()
+    good.values["/on"] = True
+    slow.answers["/on"] = slow.say_nothing
+    source = written(tmp_path, slow.describe("slow"), good.describe("fine"))
+    hasty = replace(HASTY, limits=ThingLimits(answer=2.0))
+    with bridging(living, tmp_path / "ads", source, settings=hasty) as found:
+        assert until(lambda: found.lives("fine"))
+        assert until(lambda: found.complained("slow: GET"))
+        assert found.complained("has not answered in full within 2 s")
+        assert not found.lives("slow")
+
+
+def test_a_description_that_was_fetched_leads_to_its_own_host_alone(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server, private = thing_server(), thing_server()
+    private.values["/on"] = True
+    server.values["/td"] = server.describe(base=f"http://localhost:{private.port}/")
+    with bridging(living, tmp_path / "ads", f"{server.url}/td") as found:
+        assert until(lambda: found.complained("allow it with --host localhost"))
+        assert until(lambda: found.complained("there is no form by which it could be reached"))
+        assert not found.lives("lamp")
+    assert private.received == []
+    allowed = replace(HASTY, hosts=frozenset(("localhost",)))
+    with bridging(living, tmp_path / "ads", f"{server.url}/td", settings=allowed) as found:
+        assert until(lambda: found.lives("lamp"))
+
+
+def test_what_cannot_be_read_is_named_once_and_hinders_nothing(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    folder = tmp_path / "things"
+    folder.mkdir()
+    (folder / "broken.json").write_text('{"title": ')
+    written(folder, server.describe(), server.describe())
+    with bridging(living, tmp_path / "ads", str(folder)) as found:
+        assert until(lambda: found.lives("lamp") and found.complained("broken.json:1:11: this is not JSON"))
+        requests = len(server.received)
+        assert until(lambda: len(server.received) > requests + 10)
+        assert sum("broken.json" in complaint for complaint in found.complaints) == 1
+
+
+def test_a_component_that_lives_elsewhere_is_left_to_live(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    source = written(tmp_path, server.describe())
+    with bridging(living, tmp_path / "one", source) as first:
+        assert until(lambda: first.lives("lamp"))
+        with bridging(living, tmp_path / "two", source) as second:
+            assert until(lambda: second.complained("urn:thing:lamp is alive already"))
+        assert first.lives("lamp")
+
+
+def test_a_url_is_told_from_a_path() -> None:
+    assert is_url("HTTP://192.0.2.7/")
+    assert not is_url("http/lamp.json")
