@@ -60,3 +60,19 @@ def serve_things(
     told = Credentials() if credentials is None else read_credentials(credentials)
     world = ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts)))
     serve_bridge(world, ecology, name, listen, connect, complain)
+
+
+def serve_nodes(
+    endpoint: str,
+    domain: int,
+    ecology: str | None,
+    name: str | None,
+    listen: str | None,
+    connect: Sequence[str],
+    complain: Callable[[str], None],
+) -> None:
+    """Bridge the nodes of a ROS 2 domain, whose router listens at an endpoint. Raises AuthorError and NetworkError."""
+    from selfconf.bridging.ros2 import RosWorld
+    from selfconf.bus.zenoh_bus import client
+
+    serve_bridge(RosWorld(lambda: client([endpoint]), domain), ecology, name, listen, connect, complain)

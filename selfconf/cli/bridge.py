@@ -1,4 +1,4 @@
-"""`bridge`: a site whose components are Things, which know nothing of selfconf."""
+"""`bridge`: a site whose components are Things or nodes of ROS 2, which know nothing of selfconf."""
 
 from __future__ import annotations
 
@@ -9,9 +9,13 @@ from pathlib import Path
 from selfconf.cli.terminal import complain
 from selfconf.errors import InstallationError
 
-EXAMPLE = """  selfconf bridge wot examples/imports/lamp.td.json --ecology home
+WOT_EXAMPLE = """  selfconf bridge wot examples/imports/lamp.td.json --ecology home
   selfconf bridge wot http://192.0.2.7/things --rate 5 --credentials things.json --ecology home"""
+ROS2_EXAMPLE = """  selfconf bridge ros2 --connect tcp/127.0.0.1:7447 --domain 0 --ecology home"""
+EXAMPLE = f"{WOT_EXAMPLE}\n{ROS2_EXAMPLE}"
 MOST_HERTZ = 100.0
+MOST_DOMAIN = 232
+"""The greatest ROS_DOMAIN_ID that ROS 2 takes."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "wot",
         help="Things of the W3C's Web of Things, by their descriptions, over HTTP",
         description="Let Things play in an ecology, by their descriptions, over HTTP.",
-        epilog=f"example:\n{EXAMPLE}",
+        epilog=f"example:\n{WOT_EXAMPLE}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
@@ -53,6 +57,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a host to which a description may lead that was fetched from another one; repeatable",
     )
     _add_site_arguments(wot)
+    ros2 = worlds.add_parser(
+        "ros2",
+        help="nodes of ROS 2 over rmw_zenoh: jazzy, kilted and lyrical",
+        description="Let the nodes of a ROS 2 domain play in an ecology, over rmw_zenoh.",
+        epilog=f"example:\n{ROS2_EXAMPLE}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    ros2.add_argument(
+        "--connect",
+        metavar="ENDPOINT",
+        default="tcp/127.0.0.1:7447",
+        help="where the router of ROS 2 listens (default: %(default)s)",
+    )
+    ros2.add_argument(
+        "--domain", metavar="N", type=_domain, default=0, help="the ROS_DOMAIN_ID of the nodes (default: %(default)s)"
+    )
+    _add_site_arguments(ros2)
 
 
 def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
@@ -62,7 +84,7 @@ def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--name", metavar="SITE", help="the name of the site; by default one of its own")
     parser.add_argument("--listen", metavar="ENDPOINT", help="where to listen, as for `selfconf site`")
     parser.add_argument(
-        "--connect",
+        "--sites",
         metavar="ENDPOINT",
         action="append",
         default=[],
@@ -73,10 +95,16 @@ def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Bridge until SIGINT or SIGTERM; then 0."""
+    site = given.ecology, given.name, given.listen, given.sites
+    if given.world == "ros2":
+        _require("rosbags", "ros2")
+        from selfconf.api.bridge_program import serve_nodes
+
+        serve_nodes(given.connect, given.domain, *site, complain)
+        return 0
     _require("aiohttp", "wot")
     from selfconf.api.bridge_program import serve_things
 
-    site = given.ecology, given.name, given.listen, given.connect
     serve_things(given.sources, given.rate, given.credentials, given.host, *site, complain)
     return 0
 
@@ -85,6 +113,12 @@ def _require(module: str, extra: str) -> None:
     """Raise InstallationError where a module of an extra is not installed."""
     if importlib.util.find_spec(module) is None:
         raise InstallationError(f"{module} is missing; install the extra `{extra}`")
+
+
+def _domain(text: str) -> int:
+    if not text.isdecimal() or int(text) > MOST_DOMAIN:
+        raise argparse.ArgumentTypeError(f"{text!r} is no domain; it takes a number from 0 to {MOST_DOMAIN}")
+    return int(text)
 
 
 def _rate(text: str) -> float:

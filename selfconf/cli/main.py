@@ -26,7 +26,7 @@ COMMANDS = {
     "configure": "compute a configuration for a template, or say why there is none; changes nothing",
     "query": "ask the ecology something in SPARQL, over files, at an endpoint, or over everything that is alive",
     "site": "serve the advertisements of this host to an ecology, and watch their files",
-    "bridge": "let Things that know nothing of selfconf play in an ecology as they are",
+    "bridge": "let Things and ROS 2 nodes, which know nothing of selfconf, play in an ecology as they are",
     "discover": "show what is out there: every advertised component, its site, and whether it lives",
     "run": "configure, deploy, monitor and configure again, until Ctrl-C takes everything down",
     "status": "show what is deployed, by whom, and since when",

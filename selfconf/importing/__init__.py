@@ -7,7 +7,8 @@ each file and its `FileState`, an `Omission` for what is not in them, and a `Ren
 For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `described_things` reads each
 `DescribedThing` of them and notes in an `ImportLedger` what it leaves out. An `ImportedComponent` with its
 `ImportedPort`s is a component; as an `ImportedDocument`, `described_text` writes it as Turtle, in which a `NestedNode`
-has no name. `slug` makes a name of a text.
+has no name and a `TermList` is a list. `NodeReader` makes a component of a ROS 2 node's `NodeInterface`s, each of an
+`InterfaceKind`; `ROS2` are the terms for them. `slug` makes a name of a text.
 """
 
 from selfconf.importing.conversion import IMPORT_FORMATS, ImportedFile, ImportReport, import_descriptions
@@ -19,9 +20,11 @@ from selfconf.importing.imported import (
     NestedNode,
     Omission,
     Renaming,
+    TermList,
 )
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import slug
+from selfconf.importing.ros2 import ROS2, InterfaceKind, NodeInterface, NodeReader
 from selfconf.importing.sources import LARGEST_SOURCE, SourceDocument, gather
 from selfconf.importing.turtle_text import described_text
 from selfconf.importing.wot import DescribedThing, described_things
@@ -29,6 +32,7 @@ from selfconf.importing.wot import DescribedThing, described_things
 __all__ = [
     "IMPORT_FORMATS",
     "LARGEST_SOURCE",
+    "ROS2",
     "DescribedThing",
     "FileState",
     "ImportLedger",
@@ -37,10 +41,14 @@ __all__ = [
     "ImportedDocument",
     "ImportedFile",
     "ImportedPort",
+    "InterfaceKind",
     "NestedNode",
+    "NodeInterface",
+    "NodeReader",
     "Omission",
     "Renaming",
     "SourceDocument",
+    "TermList",
     "described_text",
     "described_things",
     "gather",

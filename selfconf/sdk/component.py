@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from selfconf import ros_messages
 from selfconf.errors import ProgrammerError
 from selfconf.model.term import IRI
 
@@ -24,7 +25,8 @@ class Signal:
     """What an output issued, with its source, its time, and its number.
 
     The value is what JSON has, or bytes, or an array: one of NumPy, which is not to be written to, or, where NumPy is
-    not installed, a memoryview.
+    not installed, a memoryview. A message of a ROS 2 node is an object with its fields, if the extra `ros2` is
+    installed and its type is known, and else bytes.
     """
 
     value: Any
@@ -48,6 +50,14 @@ class Component:
     """The IRI of the component, needed only where the file advertises several."""
 
     _runtime: ComponentRuntime | None = None
+
+    @staticmethod
+    def signal_value(value: Any, media: str) -> Any:
+        """What is received of a value with its media type: of a message of ROS 2 its fields, else the value as it is.
+
+        Raises ValueError for what is not what its media type says: it is passed over, and the log says so.
+        """
+        return ros_messages.received(value, media)
 
     def started(self) -> None:
         """The component has been activated. Raise Refused if it cannot act.

@@ -20,7 +20,9 @@ import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
+from selfconf import ros_messages
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
@@ -70,8 +72,17 @@ class InputEvents:
 class Inputs:
     """The subscriptions of one component, by input and output."""
 
-    def __init__(self, bus: Bus, keys: Keys, code: CodeThread, profile: Profile, events: InputEvents) -> None:
-        self._bus, self._keys, self._code, self._events = bus, keys, code, events
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        code: CodeThread,
+        profile: Profile,
+        events: InputEvents,
+        read: Callable[[Any, str], Any] = ros_messages.received,
+    ) -> None:
+        """`read` makes of a value and its media type what the component receives; it may raise ValueError."""
+        self._bus, self._keys, self._code, self._events, self._read_value = bus, keys, code, events, read
         self._depths = {port.name: port.depth for port in profile.inputs}
         self._subscriptions: dict[tuple[str, Wire], InputSubscription] = {}
         self._wanted: frozenset[tuple[str, Wire]] = frozenset()
@@ -157,7 +168,9 @@ class Inputs:
 
     def _subscription(self, port: str, wire: Wire) -> InputSubscription:
         queue = SignalQueue(self._depths.get(port) or (1 if wire.period is not None else None))
-        return InputSubscription(self._bus, self._keys, self._code, port, wire, queue, self._events, self._lost)
+        return InputSubscription(
+            self._bus, self._keys, self._code, port, wire, queue, self._events, self._lost, self._read_value
+        )
 
     def _lost(self, port: str) -> None:
         """One output that an input follows is lost; the input is unfed if that was the last one."""
@@ -188,7 +201,9 @@ class InputSubscription:
         queue: SignalQueue,
         events: InputEvents,
         lost: Callable[[str], None],
+        read: Callable[[Any, str], Any],
     ) -> None:
+        self._read_value = read
         self._bus, self._keys, self._code, self._port, self._wire = bus, keys, code, port, wire
         self._events, self._report_lost = events, lost
         self.muted = True
@@ -266,7 +281,7 @@ class InputSubscription:
             return
         try:
             raw, stamp = self._stamps.read(sample.attachment)
-            value = read_payload(sample.payload, raw, stamp.encoding)
+            value = self._read_value(read_payload(sample.payload, raw, stamp.encoding), stamp.encoding.media)
         except (PeerError, ValueError, RecursionError) as error:
             log.warning("passed over a signal on %s: %s", sample.key, error)
             return

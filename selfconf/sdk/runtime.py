@@ -109,7 +109,7 @@ class ComponentRuntime:
             partial(self.fail, cause=Cause.MALFORMED),
         )
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
-        self.inputs = Inputs(bus, keys, thread, profile, heard)
+        self.inputs = Inputs(bus, keys, thread, profile, heard, component.signal_value)
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
         self._served = bus.serve(keys.call(profile.component), self._call)

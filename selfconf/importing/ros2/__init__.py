@@ -1,8 +1,12 @@
 """ROS 2 nodes and systems as components and templates: models of the RosTooling project, and NoDL.
 
-`import_nodes` reads `.ros2` and `.rossystem` models and NoDL in XML, all at once, because systems refer to nodes.
+`import_nodes` reads `.ros2` and `.rossystem` models and NoDL in XML, all at once, because systems refer to nodes. A
+`NodeReader` makes a component of what a node is said to have: each `NodeInterface`, of an `InterfaceKind`. `ROS2` are
+the terms for it.
 """
 
+from selfconf.importing.ros2.components import NodeReader
+from selfconf.importing.ros2.interfaces import ROS2, InterfaceKind, NodeInterface
 from selfconf.importing.ros2.nodes import import_nodes
 
-__all__ = ["import_nodes"]
+__all__ = ["ROS2", "InterfaceKind", "NodeInterface", "NodeReader", "import_nodes"]

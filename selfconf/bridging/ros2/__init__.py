@@ -1,0 +1,8 @@
+"""The side of the nodes of ROS 2: found by their tokens in a domain over rmw_zenoh, relayed as CDR.
+
+`RosWorld` is the world of the nodes of one domain.
+"""
+
+from selfconf.bridging.ros2.ros_world import RosWorld
+
+__all__ = ["RosWorld"]

@@ -1,0 +1,172 @@
+"""The world of the nodes of a ROS 2 domain: found by their tokens, advertised as they come and go.
+
+All of this happens on the thread of the bus that is connected to the router of ROS 2. The tokens of a node come one
+after the other, so a node is advertised once no more have come for a moment. A node that has gone is FAIL; one that
+offers more than before is advertised anew when no task holds it, and one that offers less at once.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+
+from selfconf.bridging.bridge import Bridge
+from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
+from selfconf.bridging.ros2.node_component import NodeComponent, RosDomain, bridge_token
+from selfconf.bridging.ros2.tokens import NODE, PUBLISHER, ROOT, RosEndpoint, RosNodeId, RosToken
+from selfconf.bus.port import Bus, Undo
+from selfconf.errors import PeerError
+from selfconf.importing import ImportedDocument
+from selfconf.model.term import IRI
+
+SETTLING = 0.3
+"""Seconds without a new token after which those of a node are complete."""
+PUTTING_OFF = 1.0
+"""Seconds after which it is looked again whether a node may be advertised anew."""
+RELEASING = 0.5
+"""Seconds from the FAIL of a node that has gone to the end of its life, in which it can still be released."""
+MOST_NODES = 2000
+"""How many nodes one bridge stands for."""
+
+
+@dataclass
+class RosNode:
+    """A node of the domain, as its tokens say, and what was made of it."""
+
+    token: RosToken
+    tokens: dict[str, RosToken] = field(default_factory=dict)
+    advertised: frozenset[RosEndpoint] | None = None
+    """The endpoints that it was last advertised with; None while it is not."""
+    code: NodeComponent | None = None
+    settle: Undo = lambda: None
+
+    @property
+    def endpoints(self) -> frozenset[RosEndpoint]:
+        """What it publishes and takes now."""
+        return frozenset(token.endpoint for token in self.tokens.values() if token.endpoint is not None)
+
+
+class RosWorld:
+    """The other side of a bridge to ROS 2."""
+
+    def __init__(self, connect: Callable[[], Bus], domain: int) -> None:
+        """`connect` opens a node of the network of ROS 2; it may raise NetworkError."""
+        self._connect, self._number = connect, domain
+        self._nodes: dict[RosNodeId, RosNode] = {}
+        self._by_name: dict[IRI, RosNodeId] = {}
+
+    def open(self, bridge: Bridge) -> None:
+        """Begin to follow the tokens of the domain. Raises NetworkError."""
+        self._bridge, self._bus = bridge, self._connect()
+        self._domain = RosDomain(self._bus, self._number, bridge.complain)
+        begun = threading.Event()
+
+        def begin() -> None:
+            self._bus.announce(bridge_token(self._domain).key())
+            self._bus.watch(f"{ROOT}/{self._number}/**", self._changed)
+            begun.set()
+
+        self._bus.wake_up(begin)
+        if self._bus.run_aside():
+            begun.wait()
+
+    def close(self) -> None:
+        """Leave the domain."""
+        self._bus.close()
+
+    def _changed(self, key: str, alive: bool) -> None:
+        try:
+            token = RosToken.parse(key)
+        except PeerError as error:
+            self._domain.tell(f"left out of the domain {self._number} of ROS 2: {error}")
+            return
+        if token.node.session == self._domain.session:
+            return
+        if token.kind == PUBLISHER and token.endpoint is not None:
+            sources, publisher = (
+                self._domain.sources(token.endpoint.key(self._number)),
+                (token.node, token.endpoint.entity),
+            )
+            sources.add(publisher) if alive else sources.remove(publisher)
+        if is_bridged(token):
+            self._come(key, token) if alive else self._go(key, token)
+
+    def _come(self, key: str, token: RosToken) -> None:
+        if token.node not in self._nodes and len(self._nodes) >= MOST_NODES:
+            self._domain.tell(f"there are more than {MOST_NODES} nodes; a bridge stands for so many")
+            return
+        node = self._nodes.setdefault(token.node, RosNode(token))
+        node.tokens[key] = token
+        self._settle(node, SETTLING)
+
+    def _go(self, key: str, token: RosToken) -> None:
+        node = self._nodes.get(token.node)
+        if node is None:
+            return
+        node.tokens.pop(key, None)
+        if token.kind == NODE or not node.tokens:
+            self._end(node, f"the node {token.full_name} has left the domain {self._number} of ROS 2")
+        else:
+            self._settle(node, SETTLING)
+
+    def _settle(self, node: RosNode, seconds: float) -> None:
+        node.settle()
+        node.settle = self._bus.later(seconds, lambda: self._settled(node))
+
+    def _settled(self, node: RosNode) -> None:
+        """Advertise a node as it is now, if that is another than it was."""
+        endpoints, iri = node.endpoints, node_iri(node.token)
+        if endpoints == node.advertised:
+            return
+        if self._by_name.setdefault(iri, node.token.node) != node.token.node:
+            name = node.token.full_name
+            self._domain.tell(f"two nodes are called {name}; the first one counts, as long as it is there")
+            return
+        if node.code is not None and node.code.active:
+            if node.advertised is not None and endpoints >= node.advertised:
+                self._settle(node, PUTTING_OFF)
+                return
+            node.code.fail(f"the node {node.token.full_name} offers less than before")
+        node.advertised = endpoints
+        outputs, inputs = ports_of(endpoints)
+        component = described_node(node.token, outputs, inputs)
+        self._bridge.advertise(iri, ImportedDocument("", _place(node.token), (component.described(),), {}))
+        code = node.code = NodeComponent(self._domain, node.token, outputs, inputs)
+        self._bridge.begin_life(iri, code).add_done_callback(lambda outcome: self._begun(node, outcome))
+
+    def _begun(self, node: RosNode, outcome: Future[str | None]) -> None:
+        """Say whether a node lives here; on the thread of the components' code."""
+        trouble = outcome.result()
+        name = node.token.full_name
+        self._domain.tell(
+            f"{name} is here, in the domain {self._number} of ROS 2" if trouble is None else f"{name}: {trouble}"
+        )
+
+    def _end(self, node: RosNode, reason: str) -> None:
+        """A node has gone: what it was held for has to know why, before it lives no more."""
+        node.settle()
+        del self._nodes[node.token.node]
+        iri = node_iri(node.token)
+        if self._by_name.get(iri) != node.token.node:
+            return
+        del self._by_name[iri]
+        if node.code is not None and node.code.active:
+            node.code.fail(reason)
+        code = node.code
+        self._bus.later(RELEASING, lambda: self._withdraw(iri, code))
+        for other in self._nodes.values():
+            if node_iri(other.token) == iri:
+                self._settle(other, SETTLING)
+
+    def _withdraw(self, iri: IRI, code: NodeComponent | None) -> None:
+        """Advertise a node no more, unless another one of its name has come meanwhile."""
+        if iri in self._by_name:
+            self._bridge.end_life(iri, code)
+        else:
+            self._bridge.withdraw(iri)
+
+
+def _place(token: RosToken) -> str:
+    return f"{token.full_name} in the domain {token.node.domain} of ROS 2"

@@ -1,0 +1,185 @@
+"""Messages of ROS 2: their types by name and hash, CDR as the bytes that travel, and their fields as an object.
+
+A signal that is a message travels as CDR (XCDR1, as ROS 2 writes it) with the media type `application/cdr`, which says
+of which type it is, so that it goes from node to node as it is, and is read only where something else receives it.
+Which types there are is known by `rosbags`, the extra `ros2`, for the distributions jazzy, kilted and lyrical; a type
+is the one that is meant if its hash is (REP 2011).
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import struct
+from collections.abc import Iterator, Mapping
+from functools import cache, lru_cache
+from typing import Any, NamedTuple
+
+MEDIA = "application/cdr"
+HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
+NAME = re.compile(r"[a-z][a-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
+_MEDIA = re.compile(rf'{re.escape(MEDIA)}; type="(?P<name>[^"]*)"; hash=(?P<hash>\w+)(?:; topic="(?P<topic>[^"]*)")?')
+_STORES = ("ROS2_JAZZY", "ROS2_KILTED", "ROS2_LYRICAL")
+_DTYPES = {"octet": "uint8", "byte": "uint8", "char": "uint8"}
+"""The elements of arrays that NumPy calls otherwise."""
+
+
+class MessageError(ValueError):
+    """Bytes or an object that are no message of a type; the text is a sentence without its subject."""
+
+
+class MessageType(NamedTuple):
+    """A type of messages, as `sensor_msgs/msg/LaserScan`, and the hash of its definition."""
+
+    name: str
+    hash: str
+
+    def media(self, topic: str = "") -> str:
+        """The media type of its messages, which may say on which topic of which domain they were published."""
+        where = f'; topic="{topic}"' if topic else ""
+        return f'{MEDIA}; type="{self.name}"; hash={self.hash}{where}'
+
+
+class MessageMedia(NamedTuple):
+    """What the media type of a message says."""
+
+    type: MessageType
+    topic: str
+    """Where it was published: the domain, then the topic; empty if it was not said."""
+
+
+@lru_cache(maxsize=256)
+def read_media(media: str) -> MessageMedia | None:
+    """What a media type says; None if it is that of no message."""
+    found = _MEDIA.fullmatch(media)
+    return found and MessageMedia(MessageType(found["name"], found["hash"]), found["topic"] or "")
+
+
+def is_known(kind: MessageType) -> bool:
+    """Whether the fields of a type are known, so that it can be read and written here."""
+    return _store(kind) is not None
+
+
+def received(value: Any, media: str) -> Any:
+    """A signal as code likes it: a message of a known type as its fields, everything else as it is.
+
+    Raises MessageError.
+    """
+    said = read_media(media) if media.startswith(MEDIA) and isinstance(value, bytes) else None
+    return value if said is None or not is_known(said.type) else fields_of(value, said.type)
+
+
+def fields_of(payload: bytes, kind: MessageType) -> dict[str, Any]:
+    """The fields of a message of a known type, nested ones as objects, arrays of numbers as those of NumPy.
+
+    Raises MessageError.
+    """
+    found: dict[str, Any] = _plain(_read(payload, kind))
+    return found
+
+
+def check(payload: bytes, kind: MessageType) -> None:
+    """Raise MessageError if bytes are no message of a known type."""
+    _read(payload, kind)
+
+
+def message(fields: Mapping[str, Any], kind: MessageType) -> bytes:
+    """Write a message of a known type; a field that is not given is zero, empty or false. Raises MessageError."""
+    store = _store(kind)
+    try:
+        return bytes(store.serialize_cdr(_built(store, kind.name, fields), kind.name))
+    except MessageError:
+        raise
+    except (TypeError, ValueError, OverflowError, AttributeError, struct.error) as error:
+        raise MessageError(f"is no {kind.name}: {error}") from None
+
+
+def _read(payload: bytes, kind: MessageType) -> Any:
+    try:
+        return _store(kind).deserialize_cdr(payload, kind.name)
+    except (_serde_error(), ValueError, OverflowError, AssertionError, IndexError, MemoryError, struct.error) as error:
+        raise MessageError(f"is no {kind.name}: {error}") from None
+
+
+@cache
+def _serde_error() -> type[Exception]:
+    from rosbags.serde import SerdeError
+
+    return SerdeError
+
+
+@lru_cache(maxsize=1024)
+def _store(kind: MessageType) -> Any:
+    """The types of the distribution in which a type of this name has this hash; None if there is none."""
+    for store in _stores():
+        if kind.name in store.fielddefs and store.hash_rihs01(kind.name) == kind.hash:
+            return store
+    return None
+
+
+@cache
+def _stores() -> tuple[Any, ...]:
+    if importlib.util.find_spec("rosbags") is None:
+        return ()
+    from rosbags.typesys import Stores, get_typestore
+
+    return tuple(get_typestore(Stores[name]) for name in _STORES)
+
+
+def usual_type(name: str) -> MessageType | None:
+    """The type of a name in the oldest distribution that has it; None if none has."""
+    store = next((one for one in _stores() if name in one.fielddefs), None)
+    return None if store is None else MessageType(name, store.hash_rihs01(name))
+
+
+def _plain(value: Any) -> Any:
+    """A message as an object, with those that it holds."""
+    if hasattr(value, "__msgtype__"):
+        return {name: _plain(getattr(value, name)) for name in value.__dataclass_fields__ if name != "__msgtype__"}
+    return [_plain(each) for each in value] if isinstance(value, list) else value
+
+
+def _built(store: Any, name: str, fields: Any) -> Any:
+    """An object as a message of a type."""
+    if not isinstance(fields, Mapping):
+        raise MessageError(f"is no object, where {name} has fields")
+    definitions = dict(_definitions(store, name))
+    unknown = sorted(map(str, fields.keys() - definitions.keys()))
+    if unknown:
+        raise MessageError(f"has {', '.join(unknown[:5])}, which {name} has not")
+    return store.types[name](
+        **{field: _value(store, definition, fields.get(field)) for field, definition in definitions.items()}
+    )
+
+
+def _definitions(store: Any, name: str) -> Iterator[tuple[str, Any]]:
+    _, fields = store.fielddefs[name]
+    yield from fields
+
+
+def _value(store: Any, definition: Any, given: Any) -> Any:
+    """The value of a field; None stands for one that is not given."""
+    from rosbags.interfaces import Nodetype
+
+    kind, detail = definition
+    if kind == Nodetype.NAME:
+        return _built(store, detail, {} if given is None else given)
+    if kind == Nodetype.BASE:
+        return _base(detail[0], given)
+    element, count = detail
+    if given is None:
+        given = [None] * (count if kind == Nodetype.ARRAY else 0)
+    if element[0] == Nodetype.BASE and element[1][0] not in ("string", "wstring"):
+        import numpy
+
+        datatype = _DTYPES.get(element[1][0], element[1][0])
+        return numpy.asarray([0 if one is None else one for one in given], datatype)
+    return [_value(store, element, one) for one in given]
+
+
+def _base(datatype: str, given: Any) -> Any:
+    if given is not None:
+        return given
+    if datatype in ("string", "wstring"):
+        return ""
+    return False if datatype == "bool" else 0.0 if datatype.startswith("float") else 0
