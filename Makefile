@@ -72,7 +72,7 @@ $(VENV)/with-sim: $(VENV)/python pyproject.toml requirements.txt
 	@touch $@
 
 $(VENV)/with-dev: $(VENV)/python pyproject.toml requirements.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim,solvers,serve,wot,dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim,solvers,serve,wot,ros2,dev]'
 	@touch $@ $(VENV)/with-sim
 
 lint: $(VENV)/with-dev

@@ -55,6 +55,11 @@ def read_media(media: str) -> MessageMedia | None:
     return found and MessageMedia(MessageType(found["name"], found["hash"]), found["topic"] or "")
 
 
+def load() -> None:
+    """Load the types that are known, which takes some tenths of a second; else the first use of one does it."""
+    _stores()
+
+
 def is_known(kind: MessageType) -> bool:
     """Whether the fields of a type are known, so that it can be read and written here."""
     return _store(kind) is not None
@@ -66,10 +71,10 @@ def received(value: Any, media: str) -> Any:
     Raises MessageError.
     """
     said = read_media(media) if media.startswith(MEDIA) and isinstance(value, bytes) else None
-    return value if said is None or not is_known(said.type) else fields_of(value, said.type)
+    return value if said is None or not is_known(said.type) else message_fields(value, said.type)
 
 
-def fields_of(payload: bytes, kind: MessageType) -> dict[str, Any]:
+def message_fields(payload: bytes, kind: MessageType) -> dict[str, Any]:
     """The fields of a message of a known type, nested ones as objects, arrays of numbers as those of NumPy.
 
     Raises MessageError.
@@ -78,7 +83,7 @@ def fields_of(payload: bytes, kind: MessageType) -> dict[str, Any]:
     return found
 
 
-def check(payload: bytes, kind: MessageType) -> None:
+def check_message(payload: bytes, kind: MessageType) -> None:
     """Raise MessageError if bytes are no message of a known type."""
     _read(payload, kind)
 
@@ -105,7 +110,8 @@ def _read(payload: bytes, kind: MessageType) -> Any:
 def _serde_error() -> type[Exception]:
     from rosbags.serde import SerdeError
 
-    return SerdeError
+    found: type[Exception] = SerdeError
+    return found
 
 
 @lru_cache(maxsize=1024)

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parent.parent
 def test_the_scene_is_played_to_its_end(tmp_path: Path) -> None:
     environment = {**os.environ, "SELFCONF_RUNTIME_DIR": str(tmp_path), "PYTHONPATH": str(ROOT)}
     played = subprocess.run(
-        [sys.executable, "examples/wot/play.py"], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=240
+        [sys.executable, "-m", "examples.wot"], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=240
     )
     assert played.returncode == 0, played.stdout + played.stderr
     lines = played.stdout.splitlines()

@@ -75,3 +75,10 @@ def test_the_fields_of_a_signal_are_reached_by_their_names() -> None:
     assert signal["x"] == 1.5
     with pytest.raises(KeyError):
         signal["y"]
+
+
+def test_a_message_of_ros_is_received_as_its_fields_and_everything_else_as_it_is() -> None:
+    assert Component.signal_value({"on": True}, "") == {"on": True}
+    assert Component.signal_value(b"\x89PNG", "image/png") == b"\x89PNG"
+    unknown = f'application/cdr; type="lab_msgs/msg/Mood"; hash=RIHS01_{"0" * 64}'
+    assert Component.signal_value(b"\x00\x01\x00\x00", unknown) == b"\x00\x01\x00\x00"

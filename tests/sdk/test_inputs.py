@@ -332,3 +332,20 @@ def test_an_output_that_has_issued_nothing_is_asked_for_its_last_signal_again() 
     stage.let_pass(10.0)
     assert ("position", 7) in stage.recorder.said
     assert len(asked) == 2
+
+
+def test_a_component_may_read_values_in_a_way_of_its_own() -> None:
+    class Reader(Recorder):
+        @staticmethod
+        def signal_value(value: Any, media: str) -> Any:
+            if value == b"broken":
+                raise ValueError("broken")
+            return value, media
+
+    stage = Stage(Reader())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    for value in (b"broken", b"whole"):
+        tracker.component.emit("pose", value, media="text/plain")
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("position", (b"whole", "text/plain"))]

@@ -32,7 +32,7 @@ NODE_NAMESPACE = "urn:selfconf:ros2:"
 OF_EVERY_NODE = frozenset(("/rosout", "/parameter_events"))
 BRIDGE_NODE = "selfconf_bridge"
 """The name of the node as which a bridge is seen in ROS 2."""
-Ports = dict[str, RosEndpoint]
+TopicPorts = dict[str, RosEndpoint]
 
 
 def node_iri(token: RosToken) -> IRI:
@@ -46,17 +46,17 @@ def is_bridged(token: RosToken) -> bool:
     return not token.name.startswith("_") and not token.name.startswith(BRIDGE_NODE)
 
 
-def ports_of(endpoints: Iterable[RosEndpoint]) -> tuple[Ports, Ports]:
+def ports_of(endpoints: Iterable[RosEndpoint]) -> tuple[TopicPorts, TopicPorts]:
     """The outputs and inputs of a node, by name; of two endpoints of one topic and kind the first counts."""
-    outputs: Ports = {}
-    inputs: Ports = {}
+    outputs: TopicPorts = {}
+    inputs: TopicPorts = {}
     for each in sorted(endpoints, key=lambda one: one.entity):
         if each.topic not in OF_EVERY_NODE:
             (outputs if each.kind == PUBLISHER else inputs).setdefault(each.topic.strip("/"), each)
     return outputs, inputs
 
 
-def described_node(token: RosToken, outputs: Ports, inputs: Ports) -> ImportedComponent:
+def described_node(token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> ImportedComponent:
     """A node as the component that it is."""
     interfaces = [
         NodeInterface(kind, name, each.type.name, _qualities(each.quality))

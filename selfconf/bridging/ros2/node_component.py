@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from selfconf import ros_messages
 from selfconf.bridging.ros2.attachments import RosAttachment
-from selfconf.bridging.ros2.described_nodes import BRIDGE_NODE, Ports
+from selfconf.bridging.ros2.described_nodes import BRIDGE_NODE, TopicPorts
 from selfconf.bridging.ros2.tokens import PUBLISHER, RosEndpoint, RosNodeId, RosToken
 from selfconf.bridging.ros2.topic_sources import TopicSources
 from selfconf.bus.port import Bus, Publisher, Replies, Sample, Undo, Urgency
@@ -75,7 +75,7 @@ class RelayedTopic(NamedTuple):
 class NodeComponent(Component):
     """A node as a component."""
 
-    def __init__(self, domain: RosDomain, token: RosToken, outputs: Ports, inputs: Ports) -> None:
+    def __init__(self, domain: RosDomain, token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> None:
         self._domain, self._token, self._outputs, self._inputs = domain, token, outputs, inputs
         self._declared: list[Undo] = []
         self._relayed: dict[str, RelayedTopic] = {}
@@ -193,7 +193,7 @@ class RelayedOutput:
     def _issue(self, payload: bytes, attachment: RosAttachment) -> None:
         if self._checked:
             try:
-                ros_messages.check(payload, self._endpoint.type)
+                ros_messages.check_message(payload, self._endpoint.type)
             except ros_messages.MessageError as error:
                 self._component.fail(f"what {self._token.full_name} publishes on {self._endpoint.topic} {error}")
                 return

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 
+from selfconf import ros_messages
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
 from selfconf.bridging.ros2.node_component import NodeComponent, RosDomain, bridge_token
@@ -21,9 +22,9 @@ from selfconf.errors import PeerError
 from selfconf.importing import ImportedDocument
 from selfconf.model.term import IRI
 
-SETTLING = 0.3
+TOKENS_COMPLETE = 0.3
 """Seconds without a new token after which those of a node are complete."""
-PUTTING_OFF = 1.0
+LOOK_WHETHER_FREE = 1.0
 """Seconds after which it is looked again whether a node may be advertised anew."""
 RELEASING = 0.5
 """Seconds from the FAIL of a node that has gone to the end of its life, in which it can still be released."""
@@ -59,6 +60,7 @@ class RosWorld:
 
     def open(self, bridge: Bridge) -> None:
         """Begin to follow the tokens of the domain. Raises NetworkError."""
+        ros_messages.load()  # here it holds up nobody
         self._bridge, self._bus = bridge, self._connect()
         self._domain = RosDomain(self._bus, self._number, bridge.complain)
         begun = threading.Event()
@@ -99,7 +101,7 @@ class RosWorld:
             return
         node = self._nodes.setdefault(token.node, RosNode(token))
         node.tokens[key] = token
-        self._settle(node, SETTLING)
+        self._settle(node, TOKENS_COMPLETE)
 
     def _go(self, key: str, token: RosToken) -> None:
         node = self._nodes.get(token.node)
@@ -109,7 +111,7 @@ class RosWorld:
         if token.kind == NODE or not node.tokens:
             self._end(node, f"the node {token.full_name} has left the domain {self._number} of ROS 2")
         else:
-            self._settle(node, SETTLING)
+            self._settle(node, TOKENS_COMPLETE)
 
     def _settle(self, node: RosNode, seconds: float) -> None:
         node.settle()
@@ -126,7 +128,7 @@ class RosWorld:
             return
         if node.code is not None and node.code.active:
             if node.advertised is not None and endpoints >= node.advertised:
-                self._settle(node, PUTTING_OFF)
+                self._settle(node, LOOK_WHETHER_FREE)
                 return
             node.code.fail(f"the node {node.token.full_name} offers less than before")
         node.advertised = endpoints
@@ -158,7 +160,7 @@ class RosWorld:
         self._bus.later(RELEASING, lambda: self._withdraw(iri, code))
         for other in self._nodes.values():
             if node_iri(other.token) == iri:
-                self._settle(other, SETTLING)
+                self._settle(other, TOKENS_COMPLETE)
 
     def _withdraw(self, iri: IRI, code: NodeComponent | None) -> None:
         """Advertise a node no more, unless another one of its name has come meanwhile."""

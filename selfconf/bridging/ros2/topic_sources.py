@@ -11,7 +11,7 @@ import threading
 
 from selfconf.bridging.ros2.tokens import RosNodeId
 
-Publisher = tuple[RosNodeId, int]
+TopicPublisher = tuple[RosNodeId, int]
 """A publisher: the node, and the number of the endpoint."""
 
 
@@ -20,14 +20,14 @@ class TopicSources:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._identifiers: dict[Publisher, bytes | None] = {}
+        self._identifiers: dict[TopicPublisher, bytes | None] = {}
 
-    def add(self, publisher: Publisher) -> None:
+    def add(self, publisher: TopicPublisher) -> None:
         """A publisher has come."""
         with self._lock:
             self._identifiers.setdefault(publisher, None)
 
-    def remove(self, publisher: Publisher) -> None:
+    def remove(self, publisher: TopicPublisher) -> None:
         """A publisher has gone."""
         with self._lock:
             self._identifiers.pop(publisher, None)

@@ -1,24 +1,16 @@
-"""A switch and two lamps that never heard of each other: `python examples/wot/play.py`.
-
-It starts three Things, a bridge that lets them play in an ecology, and a task. Then it presses the switch, pulls the
-plug of the lamp that shines, and presses the switch again: the other lamp has taken its place.
-"""
+"""Processes that are shown while they play: what the examples of bridges have in common."""
 
 from __future__ import annotations
 
 import os
-import secrets
 import subprocess
 import sys
 import threading
 import time
-import urllib.request
-from collections.abc import Callable
-from contextlib import ExitStack
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from typing import IO
 
-HERE = Path(__file__).parent
 PATIENCE = 60.0
 """Seconds that anything may take, on a busy machine."""
 
@@ -68,15 +60,9 @@ def until(condition: Callable[[], bool], what: str) -> None:
         pause.wait(0.02)
 
 
-def press(switch: str) -> None:
-    """Press a switch, as a hand would."""
-    print("* the switch is pressed", flush=True)
-    urllib.request.urlopen(urllib.request.Request(f"{switch}press", method="POST"), timeout=PATIENCE).close()
-
-
-def main() -> None:
-    """Play the scene once."""
-    ecology = f"light-{secrets.token_hex(3)}"
+@contextmanager
+def stage() -> Iterator[Callable[..., Player]]:
+    """Start players inside the `with` block, by their commands; all of them end with it, the last one first."""
     with ExitStack() as stack:
 
         def play(*command: str) -> Player:
@@ -84,25 +70,4 @@ def main() -> None:
             stack.callback(player.end)
             return player
 
-        things = [
-            play(str(HERE / "thing.py"), *who) for who in (("switch", "hall"), ("lamp", "desk"), ("lamp", "shelf"))
-        ]
-        urls = [thing.says("http://") for thing in things]
-        bridge = play("-m", "selfconf", "bridge", "wot", *urls, "--rate", "5", "--ecology", ecology)
-        bridge.says("is here", times=len(things))
-        task = play("-m", "selfconf", "run", str(HERE / "light.ttl"), "--wait", "--ecology", ecology)
-        task.says("running")
-        lamps = things[1:]
-        press(urls[0])
-        until(lambda: any(lamp.shines() for lamp in lamps), "light")
-        one, other = sorted(lamps, key=Player.shines, reverse=True)
-        print("* the plug of the lamp that shines is pulled", flush=True)
-        one.process.kill()
-        other.says("is on")
-        press(urls[0])
-        other.says("is off")
-        print("* that was all", flush=True)
-
-
-if __name__ == "__main__":
-    main()
+        yield play

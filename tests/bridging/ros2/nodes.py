@@ -1,0 +1,133 @@
+"""Nodes of ROS 2 for tests: their tokens, keys and attachments are written out here, as rmw_zenoh writes them."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from selfconf.bridging.bridge import Bridge
+from selfconf.bridging.ros2.ros_world import RosWorld
+from selfconf.bus.port import Publisher, Sample, Urgency
+from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Apply, Reserve, Wire
+from tests.sdk.living import LivingStage, until
+from tests.test_ros_messages import STRING_HASH
+
+DOMAIN = 42
+STRING_KEY = f"std_msgs::msg::dds_::String_/{STRING_HASH}"
+USUAL = "::,10:,:,:,,"
+
+
+def text(words: str) -> bytes:
+    """A message of type std_msgs/msg/String."""
+    octets = words.encode() + b"\0"
+    return b"\x00\x01\x00\x00" + struct.pack("<I", len(octets)) + octets
+
+
+class StandIn:
+    """A node in a session of its own."""
+
+    def __init__(self, endpoint: str, name: str, session: str) -> None:
+        self.name, self._session, self._entity = name, session, 0
+        self.bus: ZenohBus = client([endpoint])
+        self.bus.run_aside()
+        self._numbers = 0
+        self.leave = self.bus.announce(f"@ros2_lv/{DOMAIN}/{session}/0/0/NN/%/%/{name}")
+
+    def token(self, kind: str, topic: str, quality: str = USUAL, key: str = STRING_KEY) -> Callable[[], None]:
+        """Say that the node has an endpoint; the result takes it back."""
+        self._entity += 1
+        where = f"@ros2_lv/{DOMAIN}/{self._session}/0/{self._entity}/{kind}/%/%/{self.name}"
+        return self.bus.announce(f"{where}/{topic.replace('/', '%')}/{key}/{quality}")
+
+    def publishes(self, topic: str, quality: str = USUAL, key: str = STRING_KEY) -> Callable[[bytes], None]:
+        """Have the node publish on a topic; the result publishes the octets of a message."""
+        self.token("MP", topic, quality, key)
+        declared: Publisher = self.bus.publisher(f"{DOMAIN}{topic}/{key}", Urgency.SIGNAL)
+        identifier = f"{self._session}{self._entity:08d}".encode()[-16:].rjust(16, b"-")
+
+        def publish(payload: bytes) -> None:
+            self._numbers += 1
+            declared.put(payload, struct.pack("<qqB16s", self._numbers, self._numbers * 10**9, 16, identifier))
+
+        return publish
+
+    def hears(self, topic: str, quality: str = USUAL, key: str = STRING_KEY) -> list[Sample]:
+        """Have the node subscribe to a topic; the result grows by what comes there."""
+        heard: list[Sample] = []
+        self.bus.subscribe(f"{DOMAIN}{topic}/{key}", heard.append)
+        self.token("MS", topic, quality, key)
+        return heard
+
+    def close(self) -> None:
+        """Be gone, as a process is that was killed."""
+        self.bus.close()
+
+
+class BridgedDomain:
+    """A bridge to a domain, and what it has complained of."""
+
+    def __init__(self, stage: LivingStage, folder: Path) -> None:
+        self.stage, self.folder = stage, folder
+        self.complaints: list[str] = []
+        self.bridge = Bridge(folder, self.complaints.append)
+        self._nodes: list[StandIn] = []
+
+    def node(self, name: str, session: str = "") -> StandIn:
+        """A node that joins the domain."""
+        found = StandIn(self.stage.endpoint, name, session or f"{len(self._nodes) + 1:032x}")
+        self._nodes.append(found)
+        return found
+
+    def lives(self, name: str) -> bool:
+        """Whether a node lives on this side."""
+        return self.bridge.lives(node(name))
+
+    def complained(self, words: str) -> bool:
+        """Whether some words stand in a complaint."""
+        return any(words in complaint for complaint in self.complaints)
+
+    def causes(self) -> list[str]:
+        """The reasons of the FAILs so far."""
+        return [fail.detail for _, fail in self.stage.fails]
+
+    def activate(self, name: str, **inputs: tuple[Wire, ...]) -> None:
+        """Activate a node, with its inputs fed."""
+        assert until(lambda: self.lives(name)), self.complaints
+        held = self.stage.call(node(name), "reserve", Reserve(1, self.stage.supervisor, "task~1"))
+        assert until(lambda: held)
+        apply = Apply(1, self.stage.supervisor, "task~1", inputs=inputs)
+        answers = self.stage.call(node(name), "apply", apply)
+        assert until(lambda: answers)
+        assert answers[0].active, answers
+
+    def advertised(self) -> str:
+        """All that is advertised."""
+        return "\n".join(path.read_text() for path in sorted(self.folder.glob("*.ttl")))
+
+    def close(self) -> None:
+        """Have every node leave."""
+        for one in self._nodes:
+            one.close()
+
+
+@contextmanager
+def bridging_domain(stage: LivingStage, folder: Path) -> Iterator[BridgedDomain]:
+    """Bridge a domain inside the `with` block; its router is that of the ecology, which has other keys."""
+    folder.mkdir(exist_ok=True)
+    found = BridgedDomain(stage, folder)
+    world = RosWorld(lambda: client([stage.endpoint]), DOMAIN)
+    with found.bridge.living(world, stage.ecology, [stage.endpoint]):
+        try:
+            yield found
+        finally:
+            found.close()
+    assert not stage.hangs
+
+
+def node(name: str) -> IRI:
+    """The component that a node of a name is."""
+    return IRI(f"urn:selfconf:ros2:{DOMAIN}/{name}")

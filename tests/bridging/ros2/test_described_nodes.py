@@ -1,0 +1,64 @@
+"""A node as a component: ports, promised rates, and which outputs its inputs accept."""
+
+from __future__ import annotations
+
+from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
+from selfconf.bridging.ros2.tokens import RosEndpoint, RosNodeId, RosQuality, RosToken
+from selfconf.importing import ImportedDocument, described_text
+from selfconf.rdf.advertisements import read_advertisements
+from selfconf.ros_messages import MessageType
+from tests.test_ros_messages import STRING_HASH
+
+LIDAR = RosToken(RosNodeId(7, "a1", 0), "/front", "lidar")
+USUAL = RosQuality()
+KIND = MessageType("std_msgs/msg/String", STRING_HASH)
+
+
+def endpoint(number: int, kind: str, topic: str, quality: RosQuality = USUAL) -> RosEndpoint:
+    return RosEndpoint(number, kind, topic, KIND, quality)
+
+
+def test_topics_are_ports_and_what_every_node_has_is_left_out() -> None:
+    outputs, inputs = ports_of(
+        [
+            endpoint(4, "MP", "/front/scan"),
+            endpoint(3, "MP", "/rosout"),
+            endpoint(2, "MS", "/parameter_events"),
+            endpoint(5, "MS", "/front/scan"),
+            endpoint(6, "MP", "/front/scan"),
+        ]
+    )
+    assert {name: each.entity for name, each in outputs.items()} == {"front/scan": 4}
+    assert {name: each.entity for name, each in inputs.items()} == {"front/scan": 5}
+
+
+def test_a_node_is_a_component_that_can_be_advertised() -> None:
+    best_effort = RosQuality(reliable=False, depth=5, period=0.1)
+    latched = RosQuality(transient_local=True)
+    outputs, inputs = ports_of(
+        [
+            endpoint(1, "MP", "/scan", best_effort),
+            endpoint(2, "MS", "/map", latched),
+            endpoint(3, "MS", "/raw", best_effort),
+        ]
+    )
+    component = described_node(LIDAR, outputs, inputs)
+    assert component.iri == node_iri(LIDAR) == "urn:selfconf:ros2:7/front/lidar"
+    text = described_text(ImportedDocument("", "", (component.described(),), {}))
+    ((advertisement,), bad) = read_advertisements(text.encode(), "lidar.ttl", "file:///lidar.ttl")
+    assert not bad
+    (scan,) = advertisement.profile.outputs
+    assert scan.rate == 10.0
+    assert [str(signal) for signal in scan.signals] == ["https://w3id.org/selfconf/ros2/std_msgs/msg/String"]
+    assert {port.name: port.depth for port in advertisement.profile.inputs} == {"map": 42, "raw": 5}
+    assert advertisement.profile.required == ()
+    assert 'ros2:reliability "best_effort"' in text
+    accepted = '[ sh:path ros2:durability ; sh:in ( "transient_local" ) ]'
+    assert text.count(accepted) == 1
+    assert text.count('[ sh:path ros2:reliability ; sh:in ( "reliable" ) ]') == 1
+
+
+def test_tools_and_bridges_are_no_components() -> None:
+    assert is_bridged(LIDAR)
+    for name in ("_ros2cli_daemon_0", "selfconf_bridge"):
+        assert not is_bridged(RosToken(LIDAR.node, "", name))

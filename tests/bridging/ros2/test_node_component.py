@@ -1,0 +1,239 @@
+"""A node as a component: messages are relayed as the bytes they are, read only where no node receives them."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from selfconf.bridging.ros2 import node_component
+from selfconf.bus.port import Request, Urgency
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Apply, Reserve, Wire
+from selfconf.sdk import Component, Signal
+from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node, text
+from tests.sdk.living import LivingStage, until
+from tests.test_ros_messages import STRING_HASH
+
+pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+STRING = "<https://w3id.org/selfconf/ros2/std_msgs/msg/String>"
+OTHER_HASH = "RIHS01_" + "0" * 64
+
+
+class Reader(Component):
+    """Receives messages, and issues objects, without knowing anything of ROS 2."""
+
+    def __init__(self) -> None:
+        self.heard: list[Any] = []
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.heard.append((signal.value, signal.time))
+
+
+def reader(stage: LivingStage, **inputs: tuple[Wire, ...]) -> Reader:
+    """A reader that is active."""
+    port = f'[ sc:name "text" ; sc:signalType {STRING} ]'
+    kind = stage.advertised(
+        Reader, f"<urn:c:reader> a sc:Component, :Reader ; sc:hasInput {port} ; sc:hasOutput {port} ."
+    )
+    component = stage.component(kind())
+    held = stage.call("urn:c:reader", "reserve", Reserve(1, stage.supervisor, "task~1"))
+    assert until(lambda: held)
+    answers = stage.call("urn:c:reader", "apply", Apply(1, stage.supervisor, "task~1", inputs=inputs))
+    assert until(lambda: answers and answers[0].active)
+    return component
+
+
+def test_what_a_node_publishes_goes_to_another_topic_byte_by_byte(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker, listener = found.node("talker"), found.node("listener")
+        publish, heard = talker.publishes("/one/chatter"), listener.hears("/chatter")
+        found.activate("talker")
+        found.activate("listener", chatter=(Wire(node("talker"), "one/chatter"),))
+
+        def arrives() -> bool:
+            publish(text("hello"))
+            return bool(heard)
+
+        assert until(arrives)
+        assert heard[0].payload == text("hello")
+        number, nanoseconds, size, identifier = struct.unpack("<qqB16s", heard[0].attachment)
+        assert (size, len(identifier)) == (16, 16)
+        assert number == 1
+        assert nanoseconds % 10**9 == 0  # the time of the message, not of the relay
+
+
+def test_a_component_reads_the_fields_of_a_message(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        publish = found.node("talker").publishes("/chatter")
+        found.activate("talker")
+        component = reader(living, text=(Wire(node("talker"), "chatter"),))
+
+        def arrives() -> bool:
+            publish(text("hello"))
+            return bool(component.heard)
+
+        assert until(arrives)
+        assert component.heard[0][0] == {"data": "hello"}
+
+
+def test_an_object_is_published_as_a_message_and_ros_sees_who_publishes(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        listener = found.node("listener")
+        heard, tokens = listener.hears("/chatter"), list[str]()
+        listener.bus.watch(f"@ros2_lv/{DOMAIN}/**", lambda key, alive: tokens.append(key) if alive else None)
+        component = reader(living)
+        found.activate("listener", chatter=(Wire(IRI("urn:c:reader"), "text"),))
+
+        def arrives() -> bool:
+            component.emit("text", {"data": "hello"})
+            return bool(heard)
+
+        assert until(arrives)
+        assert heard[0].payload == text("hello")
+        assert until(lambda: any(f"/MP/%/%/selfconf_bridge/%chatter/{STRING_KEY}/" in key for key in tokens))
+        assert any(key.endswith("/NN/%/%/selfconf_bridge") for key in tokens)
+
+
+def test_what_came_over_a_topic_is_not_brought_there_twice(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        publish, heard = found.node("talker").publishes("/chatter"), found.node("listener").hears("/chatter")
+        found.activate("talker")
+        found.activate("listener", chatter=(Wire(node("talker"), "chatter"),))
+        component = reader(living, text=(Wire(node("talker"), "chatter"),))
+
+        def arrives() -> bool:
+            publish(text(str(len(heard))))
+            return len(component.heard) > 5
+
+        assert until(arrives)
+        assert until(lambda: len(heard) >= len(component.heard))
+        assert len({sample.attachment[-16:] for sample in heard}) == 1  # all of them by the talker itself
+
+
+def test_a_type_of_another_hash_is_not_relayed(living: LivingStage, tmp_path: Path) -> None:
+    other = STRING_KEY.replace(STRING_HASH, OTHER_HASH)
+    with bridging_domain(living, tmp_path / "ads") as found:
+        publish, heard = found.node("talker").publishes("/one", key=other), found.node("listener").hears("/two")
+        found.activate("talker")
+        found.activate("listener", two=(Wire(node("talker"), "one"),))
+
+        def refused() -> bool:
+            publish(text("hello"))
+            return found.complained("/two: what talker issues is no std_msgs/msg/String by its hash")
+
+        assert until(refused)
+        assert heard == []
+        assert found.causes() == []
+
+
+def test_an_object_that_cannot_be_a_message_is_a_sentence(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        heard = found.node("listener").hears("/chatter")
+        strange = found.node("stranger").hears("/mood", key=f"lab_msgs::msg::dds_::Mood_/{OTHER_HASH}")
+        component = reader(living)
+        source = (Wire(IRI("urn:c:reader"), "text"),)
+        found.activate("listener", chatter=source)
+        found.activate("stranger", mood=source)
+
+        def refused() -> bool:
+            component.emit("text", {"words": "hello"})
+            return found.complained("has words, which std_msgs/msg/String has not") and found.complained(
+                "the fields of lab_msgs/msg/Mood are not known"
+            )
+
+        assert until(refused)
+        assert heard == strange == []
+        assert sum("has words" in one for one in found.complaints) == 1
+
+
+def test_broken_bytes_are_blamed_on_the_node_that_publishes_them(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        broken, fine = found.node("broken").publishes("/broken"), found.node("fine").publishes("/fine")
+        for name in ("broken", "fine"):
+            found.activate(name)
+        component = reader(living, text=(Wire(node("broken"), "broken"), Wire(node("fine"), "fine")))
+
+        def fails() -> bool:
+            broken(b"\x00\x01\x00\x00\xff\xff\xff\xff")
+            return bool(found.causes())
+
+        assert until(fails)
+        assert found.causes()[0].startswith("what /broken publishes on /broken is no std_msgs/msg/String")
+
+        def arrives() -> bool:
+            fine(text("hello"))
+            return bool(component.heard)
+
+        assert until(arrives)
+
+
+def test_what_is_published_without_an_attachment_is_passed_over(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker = found.node("talker")
+        talker.publishes("/chatter")
+        found.activate("talker")
+        stray = talker.bus.publisher(f"{DOMAIN}/chatter/{STRING_KEY}", Urgency.SIGNAL)
+
+        def complained() -> bool:
+            stray.put(text("hello"), b"short")
+            return found.complained("/chatter: passed over what was published there: an attachment of 5 octets")
+
+        assert until(complained)
+
+
+def test_of_two_publishers_of_a_topic_none_is_guessed(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talkers = [found.node("one"), found.node("two")]
+        publish, _ = [talker.publishes("/chatter") for talker in talkers]
+        found.activate("one")
+        component = reader(living, text=(Wire(node("one"), "chatter"),))
+
+        def complained() -> bool:
+            publish(text("hello"))
+            return found.complained("/chatter: 2 nodes publish there, and which message is whose cannot be said")
+
+        assert until(complained)
+        assert component.heard == []
+        talkers[1].close()
+
+        def arrives() -> bool:
+            publish(text("hello"))
+            return bool(component.heard)
+
+        assert until(arrives)
+
+
+def test_a_flood_is_cut_and_named(living: LivingStage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(node_component, "MOST_MESSAGES", 20)
+    with bridging_domain(living, tmp_path / "ads") as found:
+        publish = found.node("talker").publishes("/chatter")
+        found.activate("talker")
+
+        def flooded() -> bool:
+            for _ in range(200):
+                publish(text("hello"))
+            return found.complained("/chatter: more than 20 messages a second; the rest is dropped")
+
+        assert until(flooded)
+        assert found.causes() == []
+
+
+def test_what_a_publisher_keeps_is_asked_for(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker: StandIn = found.node("talker")
+        talker.publishes("/map", ":1:,1:,:,:,,")
+        key = f"{DOMAIN}/map/{STRING_KEY}"
+
+        def answer(request: Request) -> None:  # as the cache of an advanced publisher of Zenoh does
+            request.reply(key, text("the map"), struct.pack("<qqB16s", 1, 10**9, 16, b"-" * 16))
+            request.finish()
+
+        talker.bus.serve(f"{key}/@adv/pub/1/2/_", answer)
+        assert until(lambda: found.lives("talker"))
+        component = reader(living, text=(Wire(node("talker"), "map"),))
+        found.activate("talker")
+        assert until(lambda: component.heard)
+        assert component.heard[0] == ({"data": "the map"}, 1.0)

@@ -1,0 +1,101 @@
+"""The nodes of a domain: they come, change and go, and what is not understood of them is a sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.bridging.bridge import Bridge
+from selfconf.bridging.ros2.ros_world import RosWorld
+from selfconf.bus.zenoh_bus import client
+from selfconf.errors import NetworkError
+from selfconf.protocol.messages import Release
+from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, bridging_domain, node
+from tests.sdk.living import LivingStage, until
+
+pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+
+
+def test_nodes_come_and_go(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker = found.node("talker")
+        talker.publishes("/chatter")
+        assert until(lambda: found.lives("talker"))
+        assert f"<{node('talker')}> a sc:Component, ros2:Node" in found.advertised()
+        assert 'sc:name "chatter"' in found.advertised()
+        talker.close()
+        assert until(lambda: not found.lives("talker"))
+        assert until(lambda: found.advertised() == "")
+        assert found.complaints == [f"/talker is here, in the domain {DOMAIN} of ROS 2"]
+
+
+def test_a_node_that_goes_while_it_acts_fails_by_its_sentence(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker = found.node("talker")
+        talker.publishes("/chatter")
+        found.activate("talker")
+        talker.close()
+        assert until(lambda: found.causes() == [f"the node /talker has left the domain {DOMAIN} of ROS 2"])
+        assert until(lambda: not found.lives("talker"))
+        again = found.node("talker")
+        again.publishes("/chatter")
+        assert until(lambda: found.lives("talker") and "chatter" in found.advertised())
+        found.activate("talker")
+
+
+def test_a_node_that_offers_more_is_advertised_anew_once_it_is_free(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker = found.node("talker")
+        talker.publishes("/chatter")
+        found.activate("talker")
+        talker.publishes("/more")
+        answers = living.call(node("talker"), "release", Release(2, living.supervisor, "task~1"))
+        assert until(lambda: answers)
+        assert until(lambda: 'sc:name "more"' in found.advertised() and found.lives("talker"))
+        assert found.causes() == []
+
+
+def test_a_node_that_offers_less_fails(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker = found.node("talker")
+        talker.publishes("/chatter")
+        take_back = talker.token("MP", "/more")
+        assert until(lambda: 'sc:name "more"' in found.advertised())
+        found.activate("talker")
+        take_back()
+        assert until(lambda: found.causes() == ["the node /talker offers less than before"])
+        assert until(lambda: 'sc:name "more"' not in found.advertised())
+
+
+def test_of_two_nodes_of_one_name_the_first_counts(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        first = found.node("talker")
+        first.publishes("/one")
+        assert until(lambda: found.lives("talker"))
+        found.node("talker").publishes("/two")
+        assert until(lambda: found.complained("two nodes are called /talker"))
+        assert 'sc:name "two"' not in found.advertised()
+        first.close()
+        assert until(lambda: 'sc:name "two"' in found.advertised() and found.lives("talker"))
+
+
+def test_humble_and_what_is_no_token_are_named_and_hinder_nothing(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        old = found.node("old")
+        old.token("MP", "/chatter", key="std_msgs::msg::dds_::String_/TypeHashNotSupported")
+        old.bus.announce(f"@ros2_lv/{DOMAIN}/what")
+        found.node("_tool").publishes("/chatter")
+        found.node("talker").publishes("/chatter")
+        assert until(lambda: found.lives("talker"))
+        assert until(lambda: found.complained("the types of the node /old have no hash, as in humble"))
+        assert until(lambda: found.complained("is no token of rmw_zenoh"))
+        assert STRING_KEY not in found.advertised()
+        assert "_tool" not in found.advertised()
+
+
+def test_a_router_that_is_not_there_is_said_to_be_missing(living: LivingStage, tmp_path: Path) -> None:
+    world = RosWorld(lambda: client(["tcp/127.0.0.1:1"]), DOMAIN)
+    bridge = Bridge(tmp_path, lambda words: None)
+    with pytest.raises(NetworkError), bridge.living(world, living.ecology, [living.endpoint]):
+        pass

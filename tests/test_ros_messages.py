@@ -1,0 +1,107 @@
+"""Messages of ROS 2: types by name and hash, CDR read and written, and what is none refused in a sentence."""
+
+from __future__ import annotations
+
+import random
+import struct
+from typing import Any
+
+import pytest
+
+from selfconf import ros_messages
+from selfconf.ros_messages import MessageError, MessageMedia, MessageType, read_media
+
+pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+"""As rmw_zenoh of jazzy writes it."""
+STRING = MessageType("std_msgs/msg/String", STRING_HASH)
+HELLO = b"\x00\x01\x00\x00" + struct.pack("<I", 6) + b"hello\x00"
+
+
+def usual(name: str) -> MessageType:
+    found = ros_messages.usual_type(name)
+    assert found is not None
+    return found
+
+
+def test_a_message_is_read_and_written_as_ros_does() -> None:
+    ros_messages.load()
+    assert usual("std_msgs/msg/String") == STRING
+    assert ros_messages.message_fields(HELLO, STRING) == {"data": "hello"}
+    assert ros_messages.message({"data": "hello"}, STRING) == HELLO
+
+
+def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
+    scan = usual("sensor_msgs/msg/LaserScan")
+    fields = ros_messages.message_fields(
+        ros_messages.message({"ranges": [1, 2.5], "header": {"frame_id": "x"}}, scan), scan
+    )
+    assert fields["header"] == {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "x"}
+    assert fields["ranges"].tolist() == [1.0, 2.5]
+    assert fields["angle_min"] == 0.0
+    transforms = usual("tf2_msgs/msg/TFMessage")
+    payload = ros_messages.message({"transforms": [{"child_frame_id": "a"}, {}]}, transforms)
+    assert [one["child_frame_id"] for one in ros_messages.message_fields(payload, transforms)["transforms"]] == [
+        "a",
+        "",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("fields", "kind", "words"),
+    [
+        ({"data": 3}, "std_msgs/msg/String", "is no std_msgs/msg/String"),
+        ({"text": "x"}, "std_msgs/msg/String", "has text, which std_msgs/msg/String has not"),
+        ("x", "std_msgs/msg/String", "is no object"),
+        ({"header": 3}, "sensor_msgs/msg/LaserScan", "is no object, where std_msgs/msg/Header has fields"),
+        ({"ranges": ["far"]}, "sensor_msgs/msg/LaserScan", "is no sensor_msgs/msg/LaserScan"),
+        ({"sec": 1 << 40}, "builtin_interfaces/msg/Time", "is no builtin_interfaces/msg/Time"),
+    ],
+)
+def test_an_object_that_is_no_message_is_said_to_be_none(fields: Any, kind: str, words: str) -> None:
+    with pytest.raises(MessageError, match=words):
+        ros_messages.message(fields, usual(kind))
+
+
+def test_a_type_is_known_by_its_hash() -> None:
+    assert ros_messages.is_known(STRING)
+    assert not ros_messages.is_known(STRING._replace(hash="RIHS01_" + "0" * 64))
+    assert not ros_messages.is_known(MessageType("lab_msgs/msg/Mood", STRING_HASH))
+    assert ros_messages.usual_type("lab_msgs/msg/Mood") is None
+
+
+def test_a_media_type_says_the_type_and_where_it_was_published() -> None:
+    assert read_media(STRING.media()) == MessageMedia(STRING, "")
+    assert read_media(STRING.media("7/chatter")) == MessageMedia(STRING, "7/chatter")
+    assert read_media("application/cdr") is None
+    assert read_media("image/png") is None
+
+
+def test_a_signal_is_received_as_its_fields_if_its_type_is_known() -> None:
+    assert ros_messages.received(HELLO, STRING.media("7/chatter")) == {"data": "hello"}
+    unknown = STRING._replace(hash="RIHS01_" + "0" * 64)
+    assert ros_messages.received(HELLO, unknown.media()) == HELLO
+    assert ros_messages.received(HELLO, "image/png") == HELLO
+    assert ros_messages.received({"on": True}, "") == {"on": True}
+
+
+def test_broken_bytes_are_refused_and_nothing_else_happens() -> None:
+    chance = random.Random(20)
+    broken = 0
+    for name in (
+        "std_msgs/msg/String",
+        "sensor_msgs/msg/PointCloud2",
+        "tf2_msgs/msg/TFMessage",
+        "sensor_msgs/msg/Image",
+    ):
+        kind = usual(name)
+        whole = ros_messages.message({}, kind)
+        for _ in range(500):
+            octets = bytearray(whole + chance.randbytes(chance.randrange(40)))
+            for _ in range(chance.randrange(1, 4)):
+                octets[chance.randrange(len(octets))] = chance.randrange(256)
+            try:
+                ros_messages.check_message(bytes(octets[: chance.randrange(len(octets) + 1)]), kind)
+            except MessageError:
+                broken += 1
+    assert broken > 1000
