@@ -52,12 +52,18 @@ def serve_things(
     `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with what
     origins are told; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
     """
-    from selfconf.bridging.wot import Credentials, ThingSettings, ThingWorld, is_url, read_credentials  # loads aiohttp
+    from selfconf.bridging.wot import (
+        ThingCredentials,
+        ThingSettings,
+        ThingWorld,
+        is_url,
+        read_credentials,
+    )  # loads aiohttp
 
     for source in sources:
         if not is_url(source):
             existing(Path(source))
-    told = Credentials() if credentials is None else read_credentials(credentials)
+    told = ThingCredentials() if credentials is None else read_credentials(credentials)
     world = ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts)))
     serve_bridge(world, ecology, name, listen, connect, complain)
 

@@ -15,11 +15,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Protocol
 
-from selfconf.bus.zenoh_bus import client
 from selfconf.errors import NetworkError, SelfconfError
 from selfconf.importing import ImportedDocument, described_text, slug
 from selfconf.model.term import IRI
 from selfconf.sdk import Component, Host
+from selfconf.sdk.program import open_host
 
 
 class ForeignWorld(Protocol):
@@ -104,7 +104,7 @@ class Bridge:
     @contextmanager
     def living(self, world: ForeignWorld, ecology: str, endpoints: Sequence[str]) -> Iterator[None]:
         """Bridge a world to an ecology inside the `with` block. Raises NetworkError where one cannot be reached."""
-        self._host = Host(client(endpoints, shared_memory=True), ecology, self.complain)
+        self._host = open_host(ecology, endpoints)
         thread = threading.Thread(target=self._run, args=(self._host,), name="code of foreign components")
         thread.start()
         opened = False

@@ -16,6 +16,7 @@ from tests.cli.processes import Home
 pytestmark = pytest.mark.process
 THING = Path(__file__).parents[2] / "examples" / "wot" / "thing.py"
 wot = pytest.mark.skipif(importlib.util.find_spec("aiohttp") is None, reason="the extra `wot` is not installed")
+ros2 = pytest.mark.skipif(importlib.util.find_spec("rosbags") is None, reason="the extra `ros2` is not installed")
 LAMP = "https://example.org/my-home#desk-lamp"
 
 
@@ -51,10 +52,25 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
         (("wot", source, "--ecology", "a/b"), "cannot name an ecology"),
         (("wot", source, "--ecology", "e", "--credentials", str(secret)), "chmod 600"),
     ):
-        ended = run(capsys, "bridge", *arguments)
-        assert ended.code == 2
-        assert words in ended.err
-        assert ended.err.count("\n") == 1
+        run(capsys, "bridge", *arguments).is_one_sentence(words)
+
+
+@ros2
+def test_a_domain_without_a_router_is_one_sentence(capsys: pytest.CaptureFixture[str], home: Home) -> None:
+    bridge = home.selfconf("bridge", "ros2", "--connect", "tcp/127.0.0.1:1", "--ecology", home.ecology)
+    assert bridge.ended() == 2
+    site, trouble = bridge.complaints.splitlines()
+    assert f"ecology {home.ecology} serves" in site
+    assert "127.0.0.1:1" in trouble
+    assert list(home.runtime.iterdir()) == []
+
+
+@pytest.mark.parametrize("domain", ["-1", "233", "x", ""])
+def test_a_domain_is_a_number(domain: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        parser(["bridge"]).parse_args(["bridge", "ros2", f"--domain={domain}"])
+    assert ended.value.code == 2
+    assert "is no domain; it takes a number from 0 to 232" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("rate", ["0", "-1", "nan", "101", "often"])
@@ -67,6 +83,5 @@ def test_a_rate_is_a_number_of_hertz(rate: str, capsys: pytest.CaptureFixture[st
 
 def test_an_extra_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    ended = run(capsys, "bridge", "wot", "x", "--ecology", "e")
-    assert ended.code == 2
-    assert "install the extra `wot`" in ended.err
+    run(capsys, "bridge", "wot", "x", "--ecology", "e").is_one_sentence("install the extra `wot`")
+    run(capsys, "bridge", "ros2", "--ecology", "e").is_one_sentence("install the extra `ros2`")

@@ -109,7 +109,9 @@ class RosWorld:
             return
         node.tokens.pop(key, None)
         if token.kind == NODE or not node.tokens:
-            self._end(node, f"the node {token.full_name} has left the domain {self._number} of ROS 2")
+            name, domain = token.full_name, f"the domain {self._number} of ROS 2"
+            lost = "the router of ROS 2 cannot be reached any more, so nothing is known of the node"
+            self._end(node, f"the node {name} has left {domain}" if self._bus.link else f"{lost} {name}")
         else:
             self._settle(node, TOKENS_COMPLETE)
 

@@ -1,11 +1,11 @@
 """The side of the Things of the W3C's Web of Things: found by their descriptions, reached over HTTP.
 
 `ThingWorld` is the world of the things that some sources describe, and `ThingSettings` how it treats them;
-`read_credentials` reads the `Credentials` by which it is let in;
+`read_credentials` reads the `ThingCredentials` by which it is let in;
 `is_url` tells the sources that are fetched. It needs aiohttp, the extra `wot`.
 """
 
-from selfconf.bridging.wot.credentials import Credentials, read_credentials
+from selfconf.bridging.wot.credentials import ThingCredentials, read_credentials
 from selfconf.bridging.wot.thing_world import ThingSettings, ThingWorld, is_url
 
-__all__ = ["Credentials", "ThingSettings", "ThingWorld", "is_url", "read_credentials"]
+__all__ = ["ThingCredentials", "ThingSettings", "ThingWorld", "is_url", "read_credentials"]

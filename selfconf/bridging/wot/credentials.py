@@ -23,7 +23,7 @@ _USUAL_PORTS = {"http": 80, "https": 443}
 
 
 @dataclass(frozen=True, slots=True)
-class Credentials:
+class ThingCredentials:
     """What some origins are told, by its name; `repr` shows none of it."""
 
     by_origin: Mapping[str, Mapping[str, str]] = field(default_factory=dict, repr=False)
@@ -47,7 +47,7 @@ def origin(url: str) -> str:
     return f"{scheme}://{host}" if port in (None, _USUAL_PORTS[scheme]) else f"{scheme}://{host}:{port}"
 
 
-def read_credentials(path: Path) -> Credentials:
+def read_credentials(path: Path) -> ThingCredentials:
     """Read a file of credentials. Raises AuthorError if it is none, or if others than its owner can read it."""
     try:
         with path.open("rb") as file:
@@ -67,7 +67,7 @@ def read_credentials(path: Path) -> Credentials:
         raise AuthorError("this is not JSON in UTF-8", file=str(path)) from None
     if not isinstance(found, dict):
         raise AuthorError("credentials are a JSON object with a member for each origin", file=str(path))
-    return Credentials({_origin(name, path): _members(name, value, path) for name, value in found.items()})
+    return ThingCredentials({_origin(name, path): _members(name, value, path) for name, value in found.items()})
 
 
 def _origin(name: str, path: Path) -> str:

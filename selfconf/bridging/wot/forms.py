@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import urljoin, urlsplit, urlunsplit
 
-from selfconf.bridging.wot.credentials import Credentials, origin
+from selfconf.bridging.wot.credentials import ThingCredentials, origin
 from selfconf.bridging.wot.security_schemes import UnusableFormError, proof_of_identity
 
 USUAL_METHODS = {
@@ -51,7 +51,11 @@ class ThingForms:
     """The forms of one thing."""
 
     def __init__(
-        self, description: Mapping[str, Any], place: str, credentials: Credentials, reachable: Callable[[str], bool]
+        self,
+        description: Mapping[str, Any],
+        place: str,
+        credentials: ThingCredentials,
+        reachable: Callable[[str], bool],
     ) -> None:
         """`place` is where the description comes from, from which a form counts if there is no base.
 

@@ -18,7 +18,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from selfconf.bridging.bridge import Bridge
-from selfconf.bridging.wot.credentials import Credentials
+from selfconf.bridging.wot.credentials import ThingCredentials
 from selfconf.bridging.wot.forms import ThingForms
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
 from selfconf.bridging.wot.thing_client import ThingClient, ThingError, ThingLimits
@@ -45,7 +45,7 @@ class ThingSettings:
 
     rate: float = 1.0
     """How often a property is read that cannot be followed, in hertz."""
-    credentials: Credentials = field(default_factory=Credentials)
+    credentials: ThingCredentials = field(default_factory=ThingCredentials)
     hosts: frozenset[str] = frozenset()
     """The hosts to which descriptions may lead that were fetched from another one."""
     look: float = 2.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from selfconf.bridging.wot.credentials import Credentials
+from selfconf.bridging.wot.credentials import ThingCredentials
 from selfconf.bridging.wot.forms import ThingForms
 from selfconf.importing import DescribedThing, ImportLedger, SourceDocument, described_things
 
@@ -19,4 +19,4 @@ def described(description: dict[str, Any], shown: str = "lamp.td.json") -> Descr
 
 def forms_of(description: dict[str, Any], told: dict[str, dict[str, str]] | None = None, place: str = "") -> ThingForms:
     """The forms of a description, by some credentials; requests may go to every host but those of `elsewhere`."""
-    return ThingForms(description, place, Credentials(told or {}), lambda host: host != "elsewhere.example")
+    return ThingForms(description, place, ThingCredentials(told or {}), lambda host: host != "elsewhere.example")
