@@ -33,6 +33,13 @@ HISTORY = 1.0
 """Seconds that the publishers of a topic may take to say what they published before."""
 
 
+class OwnPublisher(NamedTuple):
+    """As whom the bridge publishes on a topic, and the numbers of its messages."""
+
+    identifier: bytes
+    numbers: itertools.count[int]
+
+
 class RosDomain:
     """What the components of one bridge share: the network of the domain, and what is known of its topics."""
 
@@ -40,9 +47,8 @@ class RosDomain:
         self.bus, self.number = bus, number
         self.session = secrets.token_hex(16)
         """The name of this bridge in the tokens that it declares."""
-        self.own: set[bytes] = set()
-        """The identifiers of the bridge's own publishers: what they publish is heard here as well."""
         self.entities = itertools.count(1)
+        self._own: dict[str, OwnPublisher] = {}
         self._complain = complain
         self._topics: dict[str, TopicSources] = {}
         self._told: set[str] = set()
@@ -52,6 +58,16 @@ class RosDomain:
         """Who publishes on the key of a topic."""
         with self._lock:
             return self._topics.setdefault(key, TopicSources())
+
+    def own(self, key: str) -> OwnPublisher:
+        """As whom the bridge publishes on the key of a topic, for as long as it is there."""
+        with self._lock:
+            return self._own.setdefault(key, OwnPublisher(secrets.token_bytes(16), itertools.count(1)))
+
+    def is_own(self, key: str, identifier: bytes) -> bool:
+        """Whether a message on the key of a topic is the bridge's own: what it publishes is heard here as well."""
+        own = self._own.get(key)
+        return own is not None and own.identifier == identifier
 
     def tell(self, sentence: str) -> None:
         """Complain of something once; a message that is wrong comes a hundred times a second."""
@@ -67,8 +83,7 @@ class RelayedTopic(NamedTuple):
     """A topic that the bridge publishes on, in place of what feeds an input."""
 
     publisher: Publisher
-    identifier: bytes
-    numbers: itertools.count[int]
+    own: OwnPublisher
     leave: Undo
 
 
@@ -110,7 +125,7 @@ class NodeComponent(Component):
         if payload is None:
             return
         topic = self._relayed.get(port) or self._begin(port, endpoint)
-        attachment = RosAttachment(next(topic.numbers), int(signal.time * 1e9), topic.identifier)
+        attachment = RosAttachment(next(topic.own.numbers), int(signal.time * 1e9), topic.own.identifier)
         topic.publisher.put(payload, attachment.pack())
 
     def _payload(self, endpoint: RosEndpoint, signal: Signal) -> bytes | None:
@@ -129,19 +144,18 @@ class NodeComponent(Component):
 
     def _begin(self, port: str, endpoint: RosEndpoint) -> RelayedTopic:
         """Declare in ROS 2 that the bridge publishes on the topic of an input, as whoever is subscribed asks for."""
-        bus, identifier = self._domain.bus, secrets.token_bytes(16)
-        self._domain.own.add(identifier)
+        bus, key = self._domain.bus, endpoint.key(self._domain.number)
         token = bridge_token(self._domain, endpoint)
         # Like rmw_zenoh: only where everything is kept does a publisher wait for a network that is short of room.
         waits = endpoint.quality.keep_all and endpoint.quality.reliable
-        publisher = bus.publisher(endpoint.key(self._domain.number), Urgency.EVENT if waits else Urgency.SIGNAL)
+        publisher = bus.publisher(key, Urgency.EVENT if waits else Urgency.SIGNAL)
         leave = bus.announce(token.key())
 
         def end() -> None:
             leave()
             publisher.undeclare()
 
-        topic = self._relayed[port] = RelayedTopic(publisher, identifier, itertools.count(1), end)
+        topic = self._relayed[port] = RelayedTopic(publisher, self._domain.own(key), end)
         return topic
 
 
@@ -179,7 +193,7 @@ class RelayedOutput:
         except PeerError as error:
             self._domain.tell(f"{self._endpoint.topic}: passed over what was published there: {error}")
             return
-        if attachment.publisher in self._domain.own or self._is_flood():
+        if self._domain.is_own(self.key, attachment.publisher) or self._is_flood():
             return
         node = self._sources.node(attachment.publisher)
         if node is None:

@@ -6,6 +6,7 @@ import struct
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.ros_world import RosWorld
@@ -13,12 +14,14 @@ from selfconf.bus.port import Publisher, Sample, Urgency
 from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Apply, Reserve, Wire
+from selfconf.sdk import Component, Signal
 from tests.sdk.living import LivingStage, until
 from tests.test_ros_messages import STRING_HASH
 
 DOMAIN = 42
 STRING_KEY = f"std_msgs::msg::dds_::String_/{STRING_HASH}"
 USUAL = "::,10:,:,:,,"
+STRING = "<https://w3id.org/selfconf/ros2/std_msgs/msg/String>"
 
 
 def text(words: str) -> bytes:
@@ -131,3 +134,27 @@ def bridging_domain(stage: LivingStage, folder: Path) -> Iterator[BridgedDomain]
 def node(name: str) -> IRI:
     """The component that a node of a name is."""
     return IRI(f"urn:selfconf:ros2:{DOMAIN}/{name}")
+
+
+class Reader(Component):
+    """Receives messages, and issues objects, without knowing anything of ROS 2."""
+
+    def __init__(self) -> None:
+        self.heard: list[Any] = []
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.heard.append((signal.value, signal.time))
+
+
+def reader(stage: LivingStage, **inputs: tuple[Wire, ...]) -> Reader:
+    """A reader that is active."""
+    port = f'[ sc:name "text" ; sc:signalType {STRING} ]'
+    kind = stage.advertised(
+        Reader, f"<urn:c:reader> a sc:Component, :Reader ; sc:hasInput {port} ; sc:hasOutput {port} ."
+    )
+    component = stage.component(kind())
+    held = stage.call("urn:c:reader", "reserve", Reserve(1, stage.supervisor, "task~1"))
+    assert until(lambda: held)
+    answers = stage.call("urn:c:reader", "apply", Apply(1, stage.supervisor, "task~1", inputs=inputs))
+    assert until(lambda: answers and answers[0].active)
+    return component

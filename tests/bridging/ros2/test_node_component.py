@@ -4,46 +4,19 @@ from __future__ import annotations
 
 import struct
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from selfconf.bridging.ros2 import node_component
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Apply, Reserve, Wire
-from selfconf.sdk import Component, Signal
-from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node, text
+from selfconf.protocol.messages import Wire
+from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node, reader, text
 from tests.sdk.living import LivingStage, until
 from tests.test_ros_messages import STRING_HASH
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
-STRING = "<https://w3id.org/selfconf/ros2/std_msgs/msg/String>"
 OTHER_HASH = "RIHS01_" + "0" * 64
-
-
-class Reader(Component):
-    """Receives messages, and issues objects, without knowing anything of ROS 2."""
-
-    def __init__(self) -> None:
-        self.heard: list[Any] = []
-
-    def received(self, port: str, signal: Signal) -> None:
-        self.heard.append((signal.value, signal.time))
-
-
-def reader(stage: LivingStage, **inputs: tuple[Wire, ...]) -> Reader:
-    """A reader that is active."""
-    port = f'[ sc:name "text" ; sc:signalType {STRING} ]'
-    kind = stage.advertised(
-        Reader, f"<urn:c:reader> a sc:Component, :Reader ; sc:hasInput {port} ; sc:hasOutput {port} ."
-    )
-    component = stage.component(kind())
-    held = stage.call("urn:c:reader", "reserve", Reserve(1, stage.supervisor, "task~1"))
-    assert until(lambda: held)
-    answers = stage.call("urn:c:reader", "apply", Apply(1, stage.supervisor, "task~1", inputs=inputs))
-    assert until(lambda: answers and answers[0].active)
-    return component
 
 
 def test_what_a_node_publishes_goes_to_another_topic_byte_by_byte(living: LivingStage, tmp_path: Path) -> None:

@@ -11,6 +11,9 @@ from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.wot.thing_client import ThingLimits
 from selfconf.bridging.wot.thing_world import ThingSettings, ThingWorld
 from selfconf.model.term import IRI
+from selfconf.protocol.messages import Reserve, Wire
+from selfconf.sdk import Component
+from tests.bridging.thing_server import ROB
 from tests.sdk.living import LivingStage, until
 
 HASTY = ThingSettings(rate=50.0, look=0.05, reread=0.05, longest_wait=0.2, limits=ThingLimits(answer=20.0))
@@ -60,3 +63,29 @@ def written(folder: Path, *descriptions: object) -> str:
     path = folder / "things.td.json"
     path.write_text(json.dumps(descriptions[0] if len(descriptions) == 1 else list(descriptions)))
     return str(path)
+
+
+class Button(Component):
+    """What commands a thing."""
+
+
+def active(found: Bridged, **inputs: tuple[Wire, ...]) -> None:
+    """Activate the lamp, with its inputs fed."""
+    assert until(lambda: found.lives("lamp")), found.complaints
+    held = found.stage.call("urn:thing:lamp", "reserve", Reserve(1, found.stage.supervisor, "task~1"))
+    assert until(lambda: held)
+    answers = found.stage.apply("urn:thing:lamp", inputs=inputs)
+    assert until(lambda: answers)
+    assert answers[0].active, answers
+
+
+def button(stage: LivingStage) -> Button:
+    """A button that is active."""
+    kind = stage.advertised(
+        Button,
+        f'<urn:c:button> a sc:Component, :Button ; sc:hasOutput [ sc:name "on" ; sc:signalType <{ROB}Switch> ] .',
+    )
+    component = stage.component(kind())
+    answers = stage.apply("urn:c:button")
+    assert until(lambda: answers)
+    return component

@@ -8,40 +8,13 @@ from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Reserve, Wire
-from selfconf.sdk import Component
-from tests.bridging.thing_server import ROB, ThingServer, reply
-from tests.bridging.wot.bridged import Bridged, bridging, written
+from selfconf.protocol.messages import Wire
+from tests.bridging.thing_server import ThingServer, reply
+from tests.bridging.wot.bridged import active, bridging, button, written
 from tests.sdk.living import LivingStage, until
 
 Start = Callable[[], ThingServer]
 SWITCH = {"@type": "rob:Switch", "type": "boolean"}
-
-
-class Button(Component):
-    """What commands a thing."""
-
-
-def active(found: Bridged, **inputs: tuple[Wire, ...]) -> None:
-    """Activate the lamp, with its inputs fed."""
-    assert until(lambda: found.lives("lamp")), found.complaints
-    held = found.stage.call("urn:thing:lamp", "reserve", Reserve(1, found.stage.supervisor, "task~1"))
-    assert until(lambda: held)
-    answers = found.stage.apply("urn:thing:lamp", inputs=inputs)
-    assert until(lambda: answers)
-    assert answers[0].active, answers
-
-
-def button(stage: LivingStage) -> Button:
-    """A button that is active."""
-    kind = stage.advertised(
-        Button,
-        f'<urn:c:button> a sc:Component, :Button ; sc:hasOutput [ sc:name "on" ; sc:signalType <{ROB}Switch> ] .',
-    )
-    component = stage.component(kind())
-    answers = stage.apply("urn:c:button")
-    assert until(lambda: answers)
-    return component
 
 
 WIRE = (Wire(IRI("urn:c:button"), "on"),)

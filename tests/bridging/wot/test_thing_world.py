@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -134,3 +135,27 @@ def test_a_component_that_lives_elsewhere_is_left_to_live(
 def test_a_url_is_told_from_a_path() -> None:
     assert is_url("HTTP://192.0.2.7/")
     assert not is_url("http/lamp.json")
+
+
+def test_a_thing_that_is_lost_again_and_again_waits_longer_each_time(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    server.answers["/bad"] = lambda handler: reply(handler, b"<html>", media="text/html")
+    properties = {name: {"forms": [{"href": name}], "readOnly": True} for name in ("on", "bad")}
+    settings = replace(HASTY, look=0.1, longest_wait=60.0)
+    source = written(tmp_path, server.describe(properties=properties))
+    waits = []
+    with bridging(living, tmp_path / "ads", source, settings=settings) as found:
+        for times in range(1, 5):
+            assert until(lambda: found.lives("lamp"))
+            answers = living.apply("urn:thing:lamp")
+            assert until(lambda: answers)  # noqa: B023 - it is waited for in this turn
+            assert until(lambda: len(found.causes()) == times)  # noqa: B023 - as above
+            began = time.monotonic()
+            assert until(lambda: not found.lives("lamp"))
+            assert until(lambda: found.lives("lamp"))
+            waits.append(time.monotonic() - began)
+    assert waits[-1] >= 0.8
+    assert waits[0] < waits[-1]
