@@ -4,11 +4,12 @@
 each file and its `FileState`, an `Omission` for what is not in them, and a `Renaming` where a name was taken.
 `IMPORT_FORMATS` are the formats by name.
 
-For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `described_things` reads each
-`DescribedThing` of them and notes in an `ImportLedger` what it leaves out. An `ImportedComponent` with its
-`ImportedPort`s is a component; as an `ImportedDocument`, `described_text` writes it as Turtle, in which a `NestedNode`
-has no name and a `TermList` is a list. `NodeReader` makes a component of a ROS 2 node's `NodeInterface`s, each of an
-`InterfaceKind`; `ROS2` are the terms for them. `slug` makes a name of a text.
+For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `document_at` makes one of what
+a URL has answered, asked for what is `ACCEPTED`, within `FETCH_SECONDS` and up to `LARGEST_SOURCE` bytes.
+`described_things` reads each `DescribedThing` of them and notes in an `ImportLedger` what it leaves out. An
+`ImportedComponent` with its `ImportedPort`s is a component; as an `ImportedDocument`, `described_text` writes it as
+Turtle, in which a `NestedNode` has no name and a `TermList` is a list. `NodeReader` makes a component of a ROS 2 node's
+`NodeInterface`s, each of an `InterfaceKind`; `ROS2` are the terms for them. `slug` makes a name of a text.
 """
 
 from selfconf.importing.conversion import IMPORT_FORMATS, ImportedFile, ImportReport, import_descriptions
@@ -25,11 +26,13 @@ from selfconf.importing.imported import (
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import slug
 from selfconf.importing.ros2 import ROS2, InterfaceKind, NodeInterface, NodeReader
-from selfconf.importing.sources import LARGEST_SOURCE, SourceDocument, gather
+from selfconf.importing.sources import ACCEPTED, FETCH_SECONDS, LARGEST_SOURCE, SourceDocument, document_at, gather
 from selfconf.importing.turtle_text import described_text
 from selfconf.importing.wot import DescribedThing, described_things
 
 __all__ = [
+    "ACCEPTED",
+    "FETCH_SECONDS",
     "IMPORT_FORMATS",
     "LARGEST_SOURCE",
     "ROS2",
@@ -51,6 +54,7 @@ __all__ = [
     "TermList",
     "described_text",
     "described_things",
+    "document_at",
     "gather",
     "import_descriptions",
     "slug",

@@ -32,7 +32,7 @@ LARGEST_SOURCE = 16 << 20
 """A document of more bytes is not read; the largest Thing Descriptions that are known have a few hundred kilobytes."""
 FETCH_SECONDS = 20.0
 """How long a URL may take to answer in full."""
-ACCEPT = "application/td+json, application/tm+json, application/ld+json, application/json, text/turtle, */*;q=0.1"
+ACCEPTED = "application/td+json, application/tm+json, application/ld+json, application/json, text/turtle, */*;q=0.1"
 _URL = re.compile(r"https?://", re.IGNORECASE)
 Unreadable = Callable[[AuthorError], None]
 """Receives what is wrong with a source that cannot be read; the others are imported all the same."""
@@ -100,7 +100,7 @@ def _fetched(url: str) -> SourceDocument:
         opener.add_handler(each())
     deadline = monotonic() + FETCH_SECONDS
     try:
-        with opener.open(Request(url, headers={"Accept": ACCEPT}), timeout=FETCH_SECONDS) as reply:
+        with opener.open(Request(url, headers={"Accept": ACCEPTED}), timeout=FETCH_SECONDS) as reply:
             octets = _body(url, reply, deadline)
     except HTTPError as error:
         error.close()
@@ -109,6 +109,11 @@ def _fetched(url: str) -> SourceDocument:
         raise AuthorError(f"{url} answers {error.code}{moved}") from None
     except (OSError, HTTPException, ValueError) as error:
         raise AuthorError(f"cannot fetch {url}: {getattr(error, 'reason', None) or error}") from None
+    return document_at(url, octets)
+
+
+def document_at(url: str, octets: bytes) -> SourceDocument:
+    """What a URL has answered, named after the end of its path."""
     parts = urlsplit(url)
     return SourceDocument(url, parts.path.rstrip("/").rpartition("/")[2] or parts.hostname or "thing", octets)
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 from selfconf import files, library
@@ -182,4 +183,10 @@ def _fields(component: ImportedComponent) -> Mapping[IRI, SignalFields]:
     """The fields of the signal types of a thing, as far as the ontologies of selfconf know them."""
     types = {kind for port in (*component.outputs, *component.inputs) for kind in port.types}
     types |= {operation.request for operation in component.operations if operation.request is not None}
-    return files.signal_fields(library.ontologies(), types) if types else {}
+    return _known_fields(frozenset(types)) if types else {}
+
+
+@lru_cache(maxsize=1024)
+def _known_fields(types: frozenset[IRI]) -> Mapping[IRI, SignalFields]:
+    """What the ontologies say of some types, kept: to read them takes some hundredths of a second."""
+    return files.signal_fields(library.ontologies(), types)

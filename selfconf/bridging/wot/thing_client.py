@@ -63,9 +63,14 @@ class ThingClient:
         """Close every connection."""
         await self._session.close()
 
-    async def read(self, form: ThingForm, patience: float | None = None) -> ThingAnswer:
-        """What a thing answers, within so many seconds; None: as long as it may take to answer. Raises ThingError."""
-        async with self._asked(form, patience or self._limits.answer) as answer:
+    async def fetch(self, form: ThingForm, seconds: float) -> bytes:
+        """The bytes of an answer, whatever they say, within so many seconds. Raises ThingError."""
+        async with self._asked(form, seconds) as answer:
+            return await self._body(form, answer)
+
+    async def read(self, form: ThingForm) -> ThingAnswer:
+        """What a thing answers. Raises ThingError."""
+        async with self._asked(form, self._limits.answer) as answer:
             return _value(form, answer, await self._body(form, answer))
 
     async def send(self, form: ThingForm, value: Any, media: str = "", action: bool = False) -> None:

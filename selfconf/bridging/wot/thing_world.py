@@ -19,12 +19,22 @@ from urllib.parse import urlsplit
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.wot.credentials import ThingCredentials
-from selfconf.bridging.wot.forms import ThingForms
+from selfconf.bridging.wot.forms import ThingForm, ThingForms
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
 from selfconf.bridging.wot.thing_client import ThingClient, ThingError, ThingLimits
 from selfconf.bridging.wot.thing_component import ThingComponent
 from selfconf.errors import AuthorError
-from selfconf.importing import DescribedThing, ImportedDocument, ImportLedger, described_things, gather
+from selfconf.importing import (
+    ACCEPTED,
+    FETCH_SECONDS,
+    DescribedThing,
+    ImportedDocument,
+    ImportLedger,
+    SourceDocument,
+    described_things,
+    document_at,
+    gather,
+)
 from selfconf.model.term import IRI
 
 DESCRIPTIONS = (".json", ".jsonld")
@@ -101,19 +111,25 @@ class ThingWorld:
     async def _follow(self, source: str) -> None:
         """Read a source again and again; what was in it stays where it cannot be read."""
         while True:
-            found = await asyncio.to_thread(self._read, source)
+            found = await self._read(source)
             if found is not None:
                 self._found[source] = found
                 self._compare()
             await asyncio.sleep(self._settings.reread)
 
-    def _read(self, source: str) -> list[DescribedThing] | None:
-        """The things of a source; None if it cannot be read. On a thread of its own."""
-        unreadable: list[AuthorError] = []
-        ledger = ImportLedger(NAMESPACE, unreadable.append)
-        found = list(described_things(gather([source], DESCRIPTIONS, unreadable.append), ledger))
-        for error in unreadable:
-            self._tell(str(error))
+    async def _read(self, source: str) -> list[DescribedThing] | None:
+        """The things of a source; None if it cannot be read."""
+        fetched: list[SourceDocument] = []
+        if is_url(source):
+            try:
+                octets = await self._client.fetch(ThingForm(source, "GET", ACCEPTED), FETCH_SECONDS)
+            except ThingError as error:
+                self._tell(f"cannot fetch a description: {error}")
+                return None
+            fetched.append(document_at(source, octets))
+        found, unreadable = await asyncio.to_thread(_things_in, source, fetched)  # it may take long, but never waits
+        for wrong in unreadable:
+            self._tell(str(wrong))
         return None if unreadable and not found else found
 
     def _compare(self) -> None:
@@ -212,10 +228,12 @@ class ThingWatch:
 
     async def _begin(self, loop: asyncio.AbstractEventLoop) -> None:
         code = ThingComponent(self._found, self._client, loop, self._settings.rate, self._lose)
+        self._code, self._since = code, loop.time()  # before it lives: it may be held, and lost, at once
         trouble = await asyncio.wrap_future(self._bridge.begin_life(self._iri, code))
         self._tell(trouble or "")
-        if trouble is None:
-            self._code, self._since = code, loop.time()
+        if trouble is not None:
+            self._code = None
+        else:
             self._bridge.complain(f"{self._iri.short} is here, as {self.thing.source.shown} describes it")
 
     def _lose(self, reason: str) -> None:
@@ -230,13 +248,22 @@ class ThingWatch:
             min(2 * self._waits, self._settings.longest_wait) if again and self._waits else self._settings.look
         )
         self._not_before = now + self._waits
-        code.fail(reason)
+        if code.active:
+            code.fail(reason)
         asyncio.get_running_loop().call_later(LETTING_GO, self._bridge.end_life, self._iri, code)
 
     def _tell(self, trouble: str) -> None:
         if trouble and trouble != self._trouble:
             self._bridge.complain(f"{self._iri.short}: {trouble}")
         self._trouble = trouble
+
+
+def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[DescribedThing], list[AuthorError]]:
+    """The things in what was fetched, else in a path, and what of it cannot be read."""
+    unreadable: list[AuthorError] = []
+    ledger = ImportLedger(NAMESPACE, unreadable.append)
+    documents = fetched or gather([source], DESCRIPTIONS, unreadable.append)
+    return list(described_things(documents, ledger)), unreadable
 
 
 def is_url(source: str) -> bool:
