@@ -16,6 +16,6 @@ def test_the_short_run_runs() -> None:
 
 
 def test_the_table_tells_the_ratio() -> None:
-    table = report([Relayed(LOADS[0], 1000, 40.0, 38.0, [0.001] * 99 + [0.1]), Relayed(LOADS[2], 10, 0.0, 0.0, [])])
+    table = report([Relayed(LOADS[0], 1000, 40.0, 38.0, [0.001] * 199 + [0.1]), Relayed(LOADS[2], 10, 0.0, 0.0, [])])
     assert "| 1,000 | 40 | 40.0 | 38.0 | 0.95 | 1.00 | 1.00 |" in table
     assert "| 10 | 1000 | 0.0 | 0.0 | - | - | - |" in table
