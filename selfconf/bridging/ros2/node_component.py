@@ -9,10 +9,10 @@ there already, and it is not brought twice.
 from __future__ import annotations
 
 import itertools
-import logging
 import secrets
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -25,10 +25,12 @@ from selfconf.bus.port import Bus, Publisher, Replies, Sample, Undo, Urgency
 from selfconf.errors import PeerError
 from selfconf.sdk import Component, Signal
 
-log = logging.getLogger(__name__)
-
 MOST_MESSAGES = 5000
 """How many messages a second of one topic are relayed; an inertial sensor publishes a thousand."""
+MOST_WAITING = 1000
+"""How many messages wait for the network to take them; beyond that the oldest are dropped."""
+LATEST_TIME = 9e9
+"""The latest time that an attachment can say, in seconds of the Unix epoch: that of the year 2255."""
 HISTORY = 1.0
 """Seconds that the publishers of a topic may take to say what they published before."""
 
@@ -92,6 +94,8 @@ class NodeComponent(Component):
 
     def __init__(self, domain: RosDomain, token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> None:
         self._domain, self._token, self._outputs, self._inputs = domain, token, outputs, inputs
+        self._outgoing: deque[tuple[RosEndpoint, bytes, float]] = deque(maxlen=MOST_WAITING)
+        """The messages that are to be published, with their times."""
         self._declared: list[Undo] = []
         self._relayed: dict[str, RelayedTopic] = {}
 
@@ -100,19 +104,15 @@ class NodeComponent(Component):
         """A message is relayed as it is, and so not read here."""
         return value
 
+    # On the thread of the component's code, which declares nothing: the bus of the domain has a thread of its own.
+
     def started(self) -> None:
         """Begin to relay what the node publishes."""
-        for name, endpoint in self._outputs.items():
-            output = RelayedOutput(self, name, endpoint, self._domain, self._token)
-            self._declared.append(self._domain.bus.subscribe(output.key, output.received, direct=True))
-            if endpoint.quality.transient_local:
-                output.ask_for_history()
+        self._domain.bus.wake_up(self._begin)
 
     def stopped(self) -> None:
         """Relay nothing any more, in either direction."""
-        for undo in (*self._declared, *(topic.leave for topic in self._relayed.values())):
-            undo()
-        self._declared, self._relayed = [], {}
+        self._domain.bus.wake_up(self._end)
 
     def received(self, port: str, signal: Signal) -> None:
         """Publish a signal on the topic of an input."""
@@ -122,10 +122,34 @@ class NodeComponent(Component):
         except ros_messages.MessageError as error:
             self._domain.tell(f"{endpoint.topic}: what {signal.source.short} issues {error}")
             return
-        if payload is None:
+        if payload is not None:
+            self._outgoing.append((endpoint, payload, signal.time))
+            self._domain.bus.wake_up(self._publish_next)
+
+    # On the thread of the bus of the domain.
+
+    def _begin(self) -> None:
+        for name, endpoint in self._outputs.items():
+            output = RelayedOutput(self, name, endpoint, self._domain, self._token)
+            self._declared.append(self._domain.bus.subscribe(output.key, output.received, direct=True))
+            if endpoint.quality.transient_local:
+                output.ask_for_history()
+
+    def _end(self) -> None:
+        for undo in (*self._declared, *(topic.leave for topic in self._relayed.values())):
+            undo()
+        self._declared, self._relayed = [], {}
+
+    def _publish_next(self) -> None:
+        """Publish the message that has waited longest; none is left where too many had to wait."""
+        if not self._outgoing:
             return
-        topic = self._relayed.get(port) or self._begin(port, endpoint)
-        attachment = RosAttachment(next(topic.own.numbers), int(signal.time * 1e9), topic.own.identifier)
+        endpoint, payload, moment = self._outgoing.popleft()
+        if not self.active:
+            return
+        topic = self._relayed.get(endpoint.topic) or self._relay_to(endpoint)
+        nanoseconds = int(moment * 1e9) if 0.0 <= moment < LATEST_TIME else 0  # the clock of a source may be any
+        attachment = RosAttachment(next(topic.own.numbers), nanoseconds, topic.own.identifier)
         topic.publisher.put(payload, attachment.pack())
 
     def _payload(self, endpoint: RosEndpoint, signal: Signal) -> bytes | None:
@@ -142,7 +166,7 @@ class NodeComponent(Component):
             raise ros_messages.MessageError(f"is no {endpoint.type.name} by its hash, but {other}; it is not relayed")
         return None if said.topic == place_of(self._domain.number, endpoint) else signal.value
 
-    def _begin(self, port: str, endpoint: RosEndpoint) -> RelayedTopic:
+    def _relay_to(self, endpoint: RosEndpoint) -> RelayedTopic:
         """Declare in ROS 2 that the bridge publishes on the topic of an input, as whoever is subscribed asks for."""
         bus, key = self._domain.bus, endpoint.key(self._domain.number)
         token = bridge_token(self._domain, endpoint)
@@ -155,7 +179,7 @@ class NodeComponent(Component):
             leave()
             publisher.undeclare()
 
-        topic = self._relayed[port] = RelayedTopic(publisher, self._domain.own(key), end)
+        topic = self._relayed[endpoint.topic] = RelayedTopic(publisher, self._domain.own(key), end)
         return topic
 
 
