@@ -48,7 +48,7 @@ class Bridge:
 
     def advertise(self, component: IRI, document: ImportedDocument) -> None:
         """Say what a component is, from now on; by what was said of it before it lives no more."""
-        self.end_life(component, self._living.get(component))
+        self._end(component, None)
         path = self._paths.get(component)
         if path is None:
             name = slug(component.rpartition("/")[2].rpartition("#")[2] or component)[:80]
@@ -59,7 +59,7 @@ class Bridge:
 
     def withdraw(self, component: IRI) -> None:
         """Advertise a component no more, and end its life."""
-        self.end_life(component, self._living.get(component))
+        self._end(component, None)
         path = self._paths.get(component)
         if path is not None:
             path.unlink(missing_ok=True)
@@ -67,12 +67,14 @@ class Bridge:
     def begin_life(self, component: IRI, code: Component) -> Future[str | None]:
         """Let a component that is advertised live, by its code; the result says what keeps it from that.
 
-        May be called from any thread, which may wait for the result.
+        May be called from any thread, which may wait for the result, or cancel it as long as it has not begun.
         """
         outcome: Future[str | None] = Future()
 
         def begin() -> None:
             host = self._running_host()
+            if not outcome.set_running_or_notify_cancel():
+                return
             try:
                 host.add(code, advertisement=self._paths[component])
             except SelfconfError as error:
@@ -84,16 +86,21 @@ class Bridge:
         self._running_host().code.call(begin)
         return outcome
 
-    def end_life(self, component: IRI, code: Component | None) -> None:
+    def end_life(self, component: IRI, code: Component) -> None:
         """Let a component live no more by this code; nothing happens if it does not, or lives by another one.
 
         May be called from any thread.
         """
+        self._end(component, code)
+
+    def _end(self, component: IRI, code: Component | None) -> None:
+        """End the life of a component by some code, or by whichever it has when its turn comes."""
 
         def end() -> None:
-            if code is not None and self._living.get(component) is code:
+            living = self._living.get(component)
+            if living is not None and code in (None, living):
                 del self._living[component]
-                self._running_host().remove(code)
+                self._running_host().remove(living)
 
         self._running_host().code.call(end)
 

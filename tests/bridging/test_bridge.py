@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import pytest
@@ -116,3 +117,41 @@ def test_a_network_that_is_not_there_is_said_to_be_missing(tmp_path: Path) -> No
     with pytest.raises(NetworkError), Bridge(tmp_path, print).living(world, "lab", ["tcp/127.0.0.1:1"]):
         pass
     assert world.steps == []
+
+
+class Occupied(Component):
+    """Code that keeps the thread of all components busy until the test lets it go on."""
+
+    def __init__(self) -> None:
+        self.busy, self.go_on = threading.Event(), threading.Event()
+
+    def started(self) -> None:
+        self.busy.set()
+        self.go_on.wait(5.0)
+
+
+def test_what_is_advertised_anew_before_it_lives_lives_by_the_new_code_alone(
+    living: LivingStage, tmp_path: Path
+) -> None:
+    other = IRI("urn:c:other")
+    bridge = Bridge(tmp_path, lambda words: None)
+    with bridge.living(World(), living.ecology, [living.endpoint]):
+        occupied = Occupied()
+        component = ImportedComponent(other, (IRI("urn:c:Other"),), outputs=(ImportedPort("light", (LIGHT,)),))
+        bridge.advertise(other, ImportedDocument("", "other", (component.described(),), {}))
+        assert bridge.begin_life(other, occupied).result() is None
+        answers = living.apply(other)
+        assert until(occupied.busy.is_set)
+        before, after, never = list[str](), list[str](), list[str]()
+        bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
+        begun = bridge.begin_life(LAMP, Lamp(before))
+        cancelled = bridge.begin_life(LAMP, Lamp(never))
+        assert cancelled.cancel()
+        bridge.advertise(LAMP, document(IRI("urn:c:Lantern")))
+        begun_anew = bridge.begin_life(LAMP, Lamp(after))
+        occupied.go_on.set()
+        assert (begun.result(), begun_anew.result()) == (None, None)
+        assert until(lambda: answers)
+        answers = living.apply(LAMP)
+        assert until(lambda: answers and after == ["on"])
+        assert (before, never) == ([], [])

@@ -27,7 +27,7 @@ from selfconf.sdk import Component, Signal
 
 MOST_MESSAGES = 5000
 """How many messages a second of one topic are relayed; an inertial sensor publishes a thousand."""
-MOST_WAITING = 1000
+MOST_OUTGOING = 1000
 """How many messages wait for the network to take them; beyond that the oldest are dropped."""
 LATEST_TIME = 9e9
 """The latest time that an attachment can say, in seconds of the Unix epoch: that of the year 2255."""
@@ -94,7 +94,7 @@ class NodeComponent(Component):
 
     def __init__(self, domain: RosDomain, token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> None:
         self._domain, self._token, self._outputs, self._inputs = domain, token, outputs, inputs
-        self._outgoing: deque[tuple[RosEndpoint, bytes, float]] = deque(maxlen=MOST_WAITING)
+        self._outgoing: deque[tuple[RosEndpoint, bytes, float]] = deque(maxlen=MOST_OUTGOING)
         """The messages that are to be published, with their times."""
         self._declared: list[Undo] = []
         self._relayed: dict[str, RelayedTopic] = {}

@@ -166,10 +166,10 @@ class RosWorld:
 
     def _withdraw(self, iri: IRI, code: NodeComponent | None) -> None:
         """Advertise a node no more, unless another one of its name has come meanwhile."""
-        if iri in self._by_name:
-            self._bridge.end_life(iri, code)
-        else:
+        if iri not in self._by_name:
             self._bridge.withdraw(iri)
+        elif code is not None:
+            self._bridge.end_life(iri, code)
 
 
 def _place(token: RosToken) -> str:
