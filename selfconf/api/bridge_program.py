@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from selfconf.api.reading import existing
@@ -11,28 +12,32 @@ from selfconf.api.site_program import serve
 from selfconf.bridging import Bridge, ForeignWorld
 
 
-def serve_bridge(
-    world: ForeignWorld,
-    ecology: str | None,
-    name: str | None,
-    listen: str | None,
-    connect: Sequence[str],
-    complain: Callable[[str], None],
-) -> None:
-    """Bridge a world to an ecology until SIGINT or SIGTERM, as a site that listens and connects as `serve` says.
+@dataclass(frozen=True, slots=True)
+class BridgeSite:
+    """The site of a bridge: its ecology and name, where it listens and connects, its keys, as `serve` takes them."""
 
-    Raises AuthorError and NetworkError.
-    """
+    ecology: str | None = None
+    name: str | None = None
+    listen: str | None = None
+    connect: Sequence[str] = ()
+    keys: Path | None = None
+    insecure: bool = False
+
+
+def serve_bridge(world: ForeignWorld, site: BridgeSite, complain: Callable[[str], None]) -> None:
+    """Bridge a world to an ecology until SIGINT or SIGTERM. Raises AuthorError and NetworkError."""
     with tempfile.TemporaryDirectory(prefix="selfconf-bridge-") as folder:
         bridge = Bridge(Path(folder), complain)
         serve(
             [Path(folder)],
-            ecology,
-            name,
-            listen,
-            connect,
+            site.ecology,
+            site.name,
+            site.listen,
+            site.connect,
             complain,
-            beside=lambda ecology, endpoints: bridge.living(world, ecology, endpoints),
+            keys=site.keys,
+            insecure=site.insecure,
+            beside=lambda ecology, session: bridge.living(world, ecology, session),
         )
 
 
@@ -41,10 +46,7 @@ def serve_things(
     rate: float,
     credentials: Path | None,
     hosts: Sequence[str],
-    ecology: str | None,
-    name: str | None,
-    listen: str | None,
-    connect: Sequence[str],
+    site: BridgeSite,
     complain: Callable[[str], None],
 ) -> None:
     """Bridge the things that some files, folders and URLs describe. Raises AuthorError and NetworkError.
@@ -52,33 +54,18 @@ def serve_things(
     `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with what
     origins are told; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
     """
-    from selfconf.bridging.wot import (
-        ThingCredentials,
-        ThingSettings,
-        ThingWorld,
-        is_url,
-        read_credentials,
-    )  # loads aiohttp
+    from selfconf.bridging.wot import ThingCredentials, ThingSettings, ThingWorld, is_url, read_credentials
 
     for source in sources:
         if not is_url(source):
             existing(Path(source))
     told = ThingCredentials() if credentials is None else read_credentials(credentials)
-    world = ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts)))
-    serve_bridge(world, ecology, name, listen, connect, complain)
+    serve_bridge(ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts))), site, complain)
 
 
-def serve_nodes(
-    endpoint: str,
-    domain: int,
-    ecology: str | None,
-    name: str | None,
-    listen: str | None,
-    connect: Sequence[str],
-    complain: Callable[[str], None],
-) -> None:
+def serve_nodes(endpoint: str, domain: int, site: BridgeSite, complain: Callable[[str], None]) -> None:
     """Bridge the nodes of a ROS 2 domain, whose router listens at an endpoint. Raises AuthorError and NetworkError."""
     from selfconf.bridging.ros2 import RosWorld
     from selfconf.bus.zenoh_bus import client
 
-    serve_bridge(RosWorld(lambda: client([endpoint]), domain), ecology, name, listen, connect, complain)
+    serve_bridge(RosWorld(lambda: client([endpoint]), domain), site, complain)

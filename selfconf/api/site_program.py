@@ -18,6 +18,8 @@ from selfconf import rendezvous
 from selfconf.api.joining import Joining
 from selfconf.api.reading import existing
 from selfconf.api.work_queue import WorkQueue
+from selfconf.bus.port import Bus
+from selfconf.bus.zenoh_bus import client
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.keys import checked_name, life_of
@@ -29,8 +31,8 @@ from selfconf.termination import Termination
 if TYPE_CHECKING:
     from selfconf.api.secured_site import SecuredSite
 
-Beside = Callable[[str, Sequence[str]], AbstractContextManager[None]]
-"""Something that lives with a site: it is entered with the ecology and the endpoints where that is reached."""
+Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
+"""Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
 WORK_CHECK = 0.2
 """How often, in seconds, a site looks whether it is to end."""
 
@@ -46,7 +48,7 @@ def serve(
     log: Path | None = None,
     keys: Path | None = None,
     insecure: bool = False,
-    beside: Beside = lambda ecology, endpoints: nullcontext(),
+    beside: Beside = lambda ecology, session: nullcontext(),
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
 
@@ -74,6 +76,7 @@ def serve(
     # One site at a time looks which others there are and announces itself, or two would miss each other.
     with rendezvous.turn():
         security = None if secured is None else secured.first(ecology, name, shelf)
+        shown = None if security is None else security.credentials
         joining = Joining(ecology, name, listen, connect, security)
         bus = joining.bus
         if secured is not None and not bus.endpoint:
@@ -96,7 +99,7 @@ def serve(
     complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}{how}")
     bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
     try:
-        with beside(ecology, joining.endpoints):
+        with beside(ecology, lambda: client(joining.endpoints, shared_memory=True, credentials=shown)):
             while not ended():
                 work.next(WORK_CHECK)
     finally:

@@ -9,17 +9,17 @@ waits for another.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Protocol
 
+from selfconf.bus.port import Bus
 from selfconf.errors import NetworkError, SelfconfError
 from selfconf.importing import ImportedDocument, described_text, slug
 from selfconf.model.term import IRI
 from selfconf.sdk import Component, Host
-from selfconf.sdk.program import open_host
 
 
 class ForeignWorld(Protocol):
@@ -109,9 +109,12 @@ class Bridge:
         return component in self._living
 
     @contextmanager
-    def living(self, world: ForeignWorld, ecology: str, endpoints: Sequence[str]) -> Iterator[None]:
-        """Bridge a world to an ecology inside the `with` block. Raises NetworkError where one cannot be reached."""
-        self._host = open_host(ecology, endpoints)
+    def living(self, world: ForeignWorld, ecology: str, session: Callable[[], Bus]) -> Iterator[None]:
+        """Bridge a world to an ecology inside the `with` block, by a session that is opened for it.
+
+        Raises NetworkError where the ecology or the world cannot be reached.
+        """
+        self._host = Host(session(), ecology, self.complain)
         thread = threading.Thread(target=self._run, args=(self._host,), name="code of foreign components")
         thread.start()
         opened = False

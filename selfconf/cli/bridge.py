@@ -6,6 +6,7 @@ import argparse
 import importlib.util
 from pathlib import Path
 
+from selfconf.cli.options import add_keys_argument
 from selfconf.cli.terminal import complain
 from selfconf.errors import InstallationError
 
@@ -91,28 +92,27 @@ def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
         help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
         " are found by themselves",
     )
+    add_keys_argument(parser)
+    parser.add_argument(
+        "--insecure",
+        action="store_true",
+        help="listen beyond this host without keys: whoever reaches it may do everything",
+    )
 
 
 def run(given: argparse.Namespace) -> int:
     """Bridge until SIGINT or SIGTERM; then 0."""
-    site = given.ecology, given.name, given.listen, given.sites
-    if given.world == "ros2":
-        _require("rosbags", "ros2")
-        from selfconf.api.bridge_program import serve_nodes
-
-        serve_nodes(given.connect, given.domain, *site, complain)
-        return 0
-    _require("aiohttp", "wot")
-    from selfconf.api.bridge_program import serve_things
-
-    serve_things(given.sources, given.rate, given.credentials, given.host, *site, complain)
-    return 0
-
-
-def _require(module: str, extra: str) -> None:
-    """Raise InstallationError where a module of an extra is not installed."""
+    module, extra = ("rosbags", "ros2") if given.world == "ros2" else ("aiohttp", "wot")
     if importlib.util.find_spec(module) is None:
         raise InstallationError(f"{module} is missing; install the extra `{extra}`")
+    from selfconf.api.bridge_program import BridgeSite, serve_nodes, serve_things
+
+    site = BridgeSite(given.ecology, given.name, given.listen, given.sites, given.keys, given.insecure)
+    if given.world == "ros2":
+        serve_nodes(given.connect, given.domain, site, complain)
+    else:
+        serve_things(given.sources, given.rate, given.credentials, given.host, site, complain)
+    return 0
 
 
 def _domain(text: str) -> int:

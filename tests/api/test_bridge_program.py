@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import selfconf as sc
-from selfconf.api.bridge_program import serve_bridge, serve_things
+from selfconf.api.bridge_program import BridgeSite, serve_bridge, serve_things
 
 
 class World:
@@ -28,7 +28,7 @@ def test_a_name_that_is_none_ends_it(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     said: list[str] = []
     with pytest.raises(sc.SelfconfError):
-        serve_bridge(World(), ecology, name, None, (), said.append)
+        serve_bridge(World(), BridgeSite(ecology, name), said.append)
     assert said == []
     assert list(tmp_path.iterdir()) == []
 
@@ -40,4 +40,4 @@ def test_sources_and_credentials_have_to_be_there(tmp_path: Path) -> None:
         ([str(tmp_path)], tmp_path / "none.json", "cannot read the credentials"),
     ):
         with pytest.raises(sc.SelfconfError, match=words):
-            serve_things(sources, 1.0, credentials, (), "home", None, None, (), print)
+            serve_things(sources, 1.0, credentials, (), BridgeSite("home"), print)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bridging import Bridge
+from selfconf.bus.zenoh_bus import client
 from selfconf.errors import NetworkError
 from selfconf.importing import ImportedComponent, ImportedDocument, ImportedPort
 from selfconf.model.term import IRI
@@ -51,7 +52,7 @@ def document(*kinds: IRI) -> ImportedDocument:
 def test_what_is_foreign_lives_while_it_is_there(living: LivingStage, tmp_path: Path) -> None:
     world, complaints = World(), list[str]()
     bridge = Bridge(tmp_path, complaints.append)
-    with bridge.living(world, living.ecology, [living.endpoint]):
+    with bridge.living(world, living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         (path,) = tmp_path.iterdir()
         assert path.read_text().startswith("# Bridged from 'a\\nb'.\n\n@prefix sc:")
@@ -70,7 +71,7 @@ def test_what_is_foreign_lives_while_it_is_there(living: LivingStage, tmp_path: 
 def test_components_come_to_rest_before_their_world_ends(living: LivingStage, tmp_path: Path) -> None:
     world = World()
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(world, living.ecology, [living.endpoint]):
+    with bridge.living(world, living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         assert bridge.begin_life(LAMP, Lamp(world.steps)).result() is None
         answers = living.apply(LAMP)
@@ -80,7 +81,7 @@ def test_components_come_to_rest_before_their_world_ends(living: LivingStage, tm
 
 def test_what_is_advertised_anew_lives_no_more_by_what_was_said_before(living: LivingStage, tmp_path: Path) -> None:
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(World(), living.ecology, [living.endpoint]):
+    with bridge.living(World(), living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         assert bridge.begin_life(LAMP, Lamp([])).result() is None
         bridge.advertise(LAMP, document(IRI("urn:c:Lantern")))
@@ -91,7 +92,7 @@ def test_what_is_advertised_anew_lives_no_more_by_what_was_said_before(living: L
 
 def test_what_cannot_live_says_why(living: LivingStage, tmp_path: Path) -> None:
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(World(), living.ecology, [living.endpoint]):
+    with bridge.living(World(), living.ecology, living.node):
         bridge.advertise(LAMP, document())
         reason = bridge.begin_life(LAMP, Lamp([])).result()
     assert reason is not None
@@ -101,7 +102,7 @@ def test_what_cannot_live_says_why(living: LivingStage, tmp_path: Path) -> None:
 def test_a_component_that_has_to_leave_leaves_alone(living: LivingStage, tmp_path: Path) -> None:
     complaints: list[str] = []
     bridge = Bridge(tmp_path, complaints.append)
-    with bridge.living(World(), living.ecology, [living.endpoint]):
+    with bridge.living(World(), living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         assert bridge.begin_life(LAMP, Lamp([])).result() is None
         other = living.node()
@@ -114,7 +115,7 @@ def test_a_component_that_has_to_leave_leaves_alone(living: LivingStage, tmp_pat
 
 def test_a_network_that_is_not_there_is_said_to_be_missing(tmp_path: Path) -> None:
     world = World()
-    with pytest.raises(NetworkError), Bridge(tmp_path, print).living(world, "lab", ["tcp/127.0.0.1:1"]):
+    with pytest.raises(NetworkError), Bridge(tmp_path, print).living(world, "lab", lambda: client(["tcp/127.0.0.1:1"])):
         pass
     assert world.steps == []
 
@@ -135,7 +136,7 @@ def test_what_is_advertised_anew_before_it_lives_lives_by_the_new_code_alone(
 ) -> None:
     other = IRI("urn:c:other")
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(World(), living.ecology, [living.endpoint]):
+    with bridge.living(World(), living.ecology, living.node):
         occupied = Occupied()
         component = ImportedComponent(other, (IRI("urn:c:Other"),), outputs=(ImportedPort("light", (LIGHT,)),))
         bridge.advertise(other, ImportedDocument("", "other", (component.described(),), {}))

@@ -123,7 +123,7 @@ def bridging_domain(stage: LivingStage, folder: Path) -> Iterator[BridgedDomain]
     folder.mkdir(exist_ok=True)
     found = BridgedDomain(stage, folder)
     world = RosWorld(lambda: client([stage.endpoint]), DOMAIN)
-    with found.bridge.living(world, stage.ecology, [stage.endpoint]):
+    with found.bridge.living(world, stage.ecology, stage.node):
         try:
             yield found
         finally:

@@ -97,5 +97,5 @@ def test_humble_and_what_is_no_token_are_named_and_hinder_nothing(living: Living
 def test_a_router_that_is_not_there_is_said_to_be_missing(living: LivingStage, tmp_path: Path) -> None:
     world = RosWorld(lambda: client(["tcp/127.0.0.1:1"]), DOMAIN)
     bridge = Bridge(tmp_path, lambda words: None)
-    with pytest.raises(NetworkError), bridge.living(world, living.ecology, [living.endpoint]):
+    with pytest.raises(NetworkError), bridge.living(world, living.ecology, living.node):
         pass

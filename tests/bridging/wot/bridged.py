@@ -53,7 +53,7 @@ def bridging(stage: LivingStage, folder: Path, *sources: str, settings: ThingSet
     """Bridge the things of some sources inside the `with` block."""
     folder.mkdir(exist_ok=True)
     found = Bridged(stage, folder)
-    with found.bridge.living(ThingWorld(sources, settings), stage.ecology, [stage.endpoint]):
+    with found.bridge.living(ThingWorld(sources, settings), stage.ecology, stage.node):
         yield found
     assert until(lambda: not stage.hangs)
 
