@@ -41,6 +41,26 @@ def test_a_thing_is_discovered_while_it_is_there(home: Home, capsys: pytest.Capt
 
 
 @wot
+def test_with_keys_it_speaks_by_the_certificate_of_its_site(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("cryptography", reason="the extra `keys` is not installed")
+    keys = str(home.folder / "keys")
+    assert home.selfconf("keys", "init", keys).ended() == 0
+    lamp = home.program(sys.executable, "-u", str(THING), "lamp", "desk")
+    site = ("--ecology", home.ecology, "--name", "things", "--keys", keys)
+    bridge = home.selfconf("bridge", "wot", lamp.line(), *site)
+
+    def state() -> str:
+        if not list(home.runtime.glob("*@things.json")):
+            return ""
+        rows = run(capsys, "discover", "--format", "json", *home.arguments(), "--keys", keys).body["components"]
+        return next((row["state"] for row in rows if row["component"] == LAMP), "")
+
+    assert home.until(lambda: state() == "alive"), bridge.complaints
+    assert " on tls/127.0.0.1:" in bridge.complaints
+    assert bridge.end(signal.SIGINT) == 0
+
+
+@wot
 def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     secret = tmp_path / "things.json"
     secret.write_text("{}")
