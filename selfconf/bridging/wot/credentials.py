@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 
 from selfconf.errors import AuthorError
 
-MEMBERS = frozenset(("username", "password", "token", "key"))
+TOLD_BY_NAME = frozenset(("username", "password", "token", "key"))
 _USUAL_PORTS = {"http": 80, "https": 443}
 
 
@@ -89,9 +89,9 @@ def _members(name: str, value: Any, path: Path) -> Mapping[str, str]:
         or not all(isinstance(each, str) and each and each.isprintable() for each in value.values())
     ):
         raise AuthorError(f"the credentials for {origin(name)} are an object with texts", file=str(path))
-    unknown = sorted(value.keys() - MEMBERS)
+    unknown = sorted(value.keys() - TOLD_BY_NAME)
     if unknown:
-        known = ", ".join(sorted(MEMBERS))
+        known = ", ".join(sorted(TOLD_BY_NAME))
         raise AuthorError(
             f"the credentials for {origin(name)} have members other than {known}: {', '.join(unknown)}", file=str(path)
         )
