@@ -39,7 +39,8 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     life = os.environ.pop(rendezvous.LIFE_VARIABLE, "")  # it is this process's own: what it starts shall not have it
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:
-        components = [profile_of(kind).component for kind in kinds]
+        with_keys = rendezvous.keys_folder(given.keys) is not None
+        components = [profile_of(kind).component for kind in kinds] if with_keys else []
         host = open_host(given.ecology, given.connect, given.keys, components)
         for kind in kinds:
             host.add(kind(), life)

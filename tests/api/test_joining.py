@@ -106,7 +106,7 @@ def test_a_site_that_is_told_where_to_listen_or_what_to_connect_to_relays_beside
 def test_where_every_usual_port_is_taken_any_other_will_do(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as stranger:
         taken = f"tcp/127.0.0.1:{stranger.getsockname()[1]}"
-        monkeypatch.setattr(rendezvous, "usual_endpoints", lambda ecology: [taken])
+        monkeypatch.setattr(rendezvous, "usual_endpoints", lambda ecology, secure: [taken])
         machine.join("a")
         assert machine.relaying() == ["a"]
         assert machine.sites["a"].endpoint != taken
