@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import Keys, component_chunk, life_of, owner_of, site_of
 from selfconf.protocol.messages import Known, Page
 from selfconf.rdf import advertisements
@@ -29,6 +29,14 @@ DISCOVERY_ATTEMPTS = 3
 """How often a site whose answer is incomplete is asked, all in all."""
 LARGEST_ADVERTISEMENT = 1 << 20
 """An advertisement of more bytes than this is left out."""
+LARGEST_SITE = 1 << 26
+"""How many bytes the advertisements of one site can have together; what comes after that is left out."""
+MOST_COMPLAINTS = 20
+"""How many things that are wrong with the answer of one site are told one by one; the rest is counted."""
+MOST_LIVES = 16
+"""How many lives of one component are followed: there should be one, and two where processes clash."""
+BETWEEN_DISCOVERIES = 0.2
+"""Seconds between the beginnings of two discoveries of one ecology, however often something is said to have changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +91,26 @@ class _SiteAnswer:
     pages: dict[int, tuple[Page, Sample]] = field(default_factory=dict)
     unchanged: bool = False
     """Whether the site has said that what is known of it still holds."""
+    size: int = 0
+    """How many bytes the pages have."""
+    excess: int = 0
+    """How many pages were left out, because the site advertises more than it may."""
 
     @property
     def complete(self) -> bool:
-        return self.unchanged or len(self.pages) == self.total
+        return self.unchanged or len(self.pages) == self.total or self.excess > 0
+
+    def take(self, page: Page, sample: Sample) -> IRI | None:
+        """Take a page, and return the component of that page, which differs where two pages have one number."""
+        before = self.pages.get(page.index)
+        if before is not None:
+            return before[0].component
+        self.size += len(sample.payload)
+        if self.size > LARGEST_SITE or len(self.pages) >= MOST_ADVERTISED:
+            self.excess += 1
+        else:
+            self.pages[page.index] = page, sample
+        return page.component
 
 
 class EcologyView:
@@ -103,6 +127,8 @@ class EcologyView:
         """What the sites that live have answered before."""
         self._followed = False
         self._undo: list[Undo] = []
+        self._next_discovery = 0.0
+        """When, on the bus's clock, the next discovery may begin."""
 
     def life(self, component: IRI) -> str | None:
         """The life of a component, or None if it does not live; of several the one that stays."""
@@ -114,8 +140,8 @@ class EcologyView:
         return life in self.lives.get(component_chunk(component), ())
 
     def began(self, chunk: str, life: str) -> None:
-        """Note that a life has begun."""
-        self.lives[chunk] = tuple(sorted({*self.lives.get(chunk, ()), life}))
+        """Note that a life has begun; of very many of one component the least, which stay, are noted."""
+        self.lives[chunk] = tuple(sorted({*self.lives.get(chunk, ()), life})[:MOST_LIVES])
 
     def ended(self, chunk: str, life: str) -> None:
         """Note that a life has ended."""
@@ -150,8 +176,18 @@ class EcologyView:
         self._undo.clear()
 
     def discover(self, done: Callable[[Discovery], None]) -> None:
-        """Ask all sites what they advertise; `done` is called once, when all have answered or time is up."""
-        _Inquiry(self, done).start()
+        """Ask all sites what they advertise; `done` is called once, when all have answered or time is up.
+
+        Discoveries begin `BETWEEN_DISCOVERIES` seconds apart, or strangers who put `changed` again and again could keep
+        everybody busy.
+        """
+        now, inquiry = self.bus.now(), _Inquiry(self, done)
+        begin = max(now, self._next_discovery)
+        self._next_discovery = begin + BETWEEN_DISCOVERIES
+        if begin > now:
+            self.bus.later(begin - now, inquiry.start)
+        else:
+            inquiry.start()
 
 
 class _Inquiry:
@@ -233,27 +269,28 @@ class _Inquiry:
         if page.component is None:
             answer.unchanged = known is not None and (known.revision, known.total) == (page.revision, page.total)
             return
-        before = answer.pages.setdefault(page.index, (page, sample))
-        if before[0].component != page.component:
-            self._complaints.append(
-                f"left out {page.component} of site {name}: its page {page.index} is that of {before[0].component}"
-            )
+        of = answer.take(page, sample)
+        if of != page.component:
+            self._complaints.append(f"left out {page.component} of site {name}: its page {page.index} is that of {of}")
 
     def _result(self, missing: list[SiteLife]) -> Discovery:
         found: dict[IRI, FoundAdvertisement] = {}
         read = {site: self._read(site, answer) for site, answer in sorted(self._answers.items())}
         self.ecology.known = {site: known for site, known in read.items() if site not in missing}
         names = _Names(self._sites())
+        self._complaints = _few(self._complaints, "of several sites")
         for site, known in read.items():
             self._complaints += known.complaints
+            twice: list[str] = []
             for one in known.found:
                 component = one.advertisement.component
                 if component in found:
                     other = names.of((found[component].site, found[component].site_life))
                     text = f"left out {component} of site {names.of(site)}: site {other} advertises it too"
-                    self._complaints.append(text)
+                    twice.append(text)
                 else:
                     found[component] = one
+            self._complaints += _few(twice, f"of site {names.of(site)}")
         self._complaints += names.complaints()
         self._complaints += [
             f"site {site} is insecure: it listens beyond its host without keys" for site in sorted(self._insecure)
@@ -279,7 +316,13 @@ class _Inquiry:
             if advertisement is not None:
                 found.append(FoundAdvertisement(advertisement, site[0], page.source, page.startable, site[1]))
         said, self._complaints = self._complaints, complaints
-        return KnownSite(answer.revision, answer.total, tuple(found), tuple(said))
+        few = _few(said, f"of site {site[0]}")
+        if answer.excess:
+            few.append(
+                f"left out {answer.excess} advertisements of site {site[0]}: it advertises more than"
+                f" {MOST_ADVERTISED} components or {LARGEST_SITE >> 20} MiB"
+            )
+        return KnownSite(answer.revision, answer.total, tuple(found), tuple(few))
 
     def _advertisement(self, site: str, page: Page, payload: bytes) -> Advertisement | None:
         """The advertisement in a reply, which is untrusted: there must be one, of the component that its page names."""
@@ -298,6 +341,12 @@ class _Inquiry:
         if len(mine) != 1 and not bad:
             self._complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
         return mine[0] if len(mine) == 1 else None
+
+
+def _few(complaints: list[str], whose: str) -> list[str]:
+    """The first of many complaints, and the number of the others."""
+    more = len(complaints) - MOST_COMPLAINTS
+    return complaints if more <= 0 else [*complaints[:MOST_COMPLAINTS], f"left out {more} further answers {whose}"]
 
 
 class _Names:

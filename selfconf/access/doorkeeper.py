@@ -20,11 +20,11 @@ from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.rules import AccessRules, rules_of
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.port import Bus, Replies, Request, Undo
+from selfconf.bus.port import Bus, Replies, Request
 from selfconf.bus.refusals import RefusalLog
 from selfconf.errors import NetworkError, PeerError, SelfconfError
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import Keys, site_of
 from selfconf.protocol.messages import Introduction, Known, Page
 
@@ -33,7 +33,8 @@ log = logging.getLogger(__name__)
 LOOK = 1.0
 """How often, in seconds, the folder of keys and what was refused are looked at."""
 SOON = 0.05
-"""Seconds after which others are asked what they advertise, when something has changed: mostly more does."""
+"""Seconds after which others are asked what they advertise, when something has changed: mostly more does. However many
+changes are told of, others are asked no oftener than that."""
 SITES_ANSWER = 3.0
 """Seconds that other sites may take to say what they advertise."""
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
@@ -43,8 +44,6 @@ LOOKS = 3
 """After how many looks a refused attempt is told of: what somebody has tried who is let in by then does not count."""
 MOST_TOLD = 20
 """How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
-MOST_ADVERTISED = 20_000
-"""For how many components another site can vouch."""
 
 
 def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, IRI]) -> AccessRules:
@@ -101,7 +100,8 @@ class Doorkeeper:
         self._seen: dict[tuple[str, str, str], int] = {}
         """How often each refused attempt was seen in the log."""
         self._tellings: list[float] = []
-        self._ask_soon: Undo = lambda: None
+        self._asks_soon = False
+        """Whether others are about to be asked what they advertise."""
         self._renewed_at = credentials.certificate.stat().st_mtime_ns
         self.rules = rules
         bus.serve(self._keys.introduce(site), self._introduced)
@@ -164,10 +164,12 @@ class Doorkeeper:
     # What others advertise.
 
     def _others_changed(self) -> None:
-        self._ask_soon()
-        self._ask_soon = self._bus.later(SOON, self._ask_others)
+        if not self._asks_soon:
+            self._asks_soon = True
+            self._bus.later(SOON, self._ask_others)
 
     def _ask_others(self) -> None:
+        self._asks_soon = False
         known = encode(Known(dict(self._revisions)))
         self._bus.ask(self._keys.advertisements(), known, SITES_ANSWER, self._others_answered)
 

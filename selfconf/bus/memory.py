@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeVar
 
-from selfconf.bus.port import Replies, Sample, Urgency
+from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
 
 _T = TypeVar("_T")
 
@@ -522,7 +522,7 @@ class _Question:
         self.bus, self._done = bus, done
         self._samples: list[Sample] = []
         self._errors: list[str] = []
-        self._open = 0
+        self._open = self._size = 0
         self._over = False
 
     def asked(self, node: MemoryBus, key: str, payload: bytes, answer: Callable[[_Request], None]) -> None:
@@ -536,6 +536,9 @@ class _Question:
         self.bus.later(seconds, lambda: self._end(False))
 
     def replied(self, sample: Sample | None, error: str | None) -> None:
+        self._size += len(error or "") if sample is None else len(sample.payload)
+        if self._size > LARGEST_REPLIES:
+            return
         if sample is not None:
             self._samples.append(sample)
         if error is not None:
@@ -549,7 +552,7 @@ class _Question:
     def _end(self, complete: bool) -> None:
         if not self._over:
             self._over = True
-            self._done(Replies(tuple(self._samples), tuple(self._errors), complete))
+            self._done(Replies(tuple(self._samples), tuple(self._errors), complete and self._size <= LARGEST_REPLIES))
 
 
 class _Request:

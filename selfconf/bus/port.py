@@ -49,9 +49,16 @@ class Sample(NamedTuple):
     attachment: bytes = b""
 
 
+LARGEST_REPLIES = 1 << 28
+"""How many bytes the replies to one question can have together; what comes after that is dropped."""
+
+
 @dataclass(frozen=True, slots=True)
 class Replies:
-    """All the replies to a question; not `complete` if a queryable that was asked did not finish in time."""
+    """All the replies to a question.
+
+    Not `complete` if a queryable that was asked did not finish in time, or if they were more than `LARGEST_REPLIES`.
+    """
 
     samples: tuple[Sample, ...] = ()
     errors: tuple[str, ...] = ()

@@ -30,7 +30,7 @@ from zenoh.handlers import Callback, FifoChannel
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.handshake import why_refused
 from selfconf.bus.loop import Loop
-from selfconf.bus.port import Replies, Sample, Urgency
+from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
 from selfconf.bus.zenoh_relay import Hub, Relay
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
 from selfconf.errors import NetworkError
@@ -326,16 +326,22 @@ class ZenohBus(Loop):
         """Ask all queryables of a key."""
         samples: list[Sample] = []
         errors: list[str] = []
+        size = 0
 
         def listen(replies: Sequence[zenoh.Reply]) -> None:
+            nonlocal size
             for reply in replies:
+                said = reply.ok or reply.err
+                size += 0 if said is None else len(said.payload)
+                if size > LARGEST_REPLIES:
+                    continue
                 if reply.ok is not None:
                     samples.append(_sample(reply.ok))
                 elif reply.err is not None:
                     errors.append(bytes(reply.err.payload).decode(errors="replace"))
 
         def end() -> None:
-            late = "Timeout" in errors
+            late = "Timeout" in errors or size > LARGEST_REPLIES
             replies = Replies(tuple(samples), tuple(e for e in errors if e != "Timeout"), not late)
             self.wake_up(lambda: done(replies))
 

@@ -11,6 +11,9 @@ from selfconf.protocol.messages import TaskRecord
 
 log = logging.getLogger(__name__)
 
+MOST_RECORDS = 1000
+"""How many tasks a site keeps, those that have ended included; one that comes later is refused."""
+
 
 class TaskFolder:
     """A folder of task records; without one they are kept in memory only."""
@@ -28,10 +31,17 @@ class TaskFolder:
             self.records[record.task] = record
 
     def learn(self, record: TaskRecord) -> bool:
-        """Keep a record, unless a newer one of the same task is kept; whether it was new. Raises OSError."""
+        """Keep a record, unless a newer one of the same task is kept; whether it was new.
+
+        Raises PeerError where too many tasks are kept already, and OSError.
+        """
         known = self.records.get(record.task)
         if known is not None and known.revision >= record.revision:
             return False
+        if known is None and len(self.records) >= MOST_RECORDS:
+            self._forget_ended()
+        if known is None and len(self.records) >= MOST_RECORDS:
+            raise PeerError(f"{MOST_RECORDS} tasks are kept already; end some with `selfconf stop TASK`")
         self.records[record.task] = record
         if self._folder is not None:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -40,3 +50,11 @@ class TaskFolder:
             temporary.write_bytes(encode(record))
             temporary.replace(path)
         return True
+
+    def _forget_ended(self) -> None:
+        """Forget the older half of the tasks that have ended: only a site that was away for long may not know it."""
+        ended = sorted((one for one in self.records.values() if one.ended), key=lambda one: one.beginning)
+        for record in ended[: (len(ended) + 1) // 2]:
+            del self.records[record.task]
+            if self._folder is not None:
+                (self._folder / f"{record.task}.json").unlink(missing_ok=True)

@@ -7,13 +7,32 @@ from collections.abc import Iterable
 
 MANY = 12
 """How many names are listed; the rest become a number."""
+LONGEST_REMARK = 4000
+"""How many characters of a remark of a stranger are shown."""
 # The controls of ASCII and Latin-1 but for tab and line feed, and those that change the direction of writing.
-_STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+_DIRECTION = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+_STEERING = re.compile(f"[\x00-\x08\x0b-\x1f\x7f-\x9f{_DIRECTION}]")
+_STEERING_OR_BREAKING = re.compile(f"[\x00-\x1f\x7f-\x9f\u2028\u2029{_DIRECTION}]")
 
 
 def plain(text: str) -> str:
     """The text with `\\x1b` and the like spelt out."""
-    return _STEERING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    return _STEERING.sub(_spelt_out, text)
+
+
+def one_line(text: str, most: int = LONGEST_REMARK) -> str:
+    """A remark of a stranger as a part of one line: also the ends of lines and tabs spelt out, and cut to a length."""
+    shown = text if len(text) <= most else f"{text[:most]}…"
+    return _STEERING_OR_BREAKING.sub(_spelt_out, shown)
+
+
+def is_one_line(text: str) -> bool:
+    """Whether a text can stand in a line as it is: it steers no terminal, and ends no line."""
+    return _STEERING_OR_BREAKING.search(text) is None
+
+
+def _spelt_out(found: re.Match[str]) -> str:
+    return found[0].encode("unicode_escape").decode()
 
 
 def listed(names: Iterable[str]) -> str:

@@ -37,6 +37,8 @@ from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict
 
 MOST_WAITING = 64
 """How many tasks a component remembers that wait for it; those that come last wait by asking again."""
+MOST_HOLDING = 64
+"""How many tasks share a component at most; others wait."""
 MOST_ENDED = 64
 """Of how many tasks that hold it no more a component remembers the newest epoch."""
 
@@ -181,8 +183,10 @@ def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gon
     """Whether another task stands in the way: one that holds the component, or one that it is kept for."""
     if any(one.task == activation.kept_for != call.task and _rank(one) < _rank(call) for one in activation.waiting):
         return True
-    others = (h for h in activation.holds if h.claim.task != call.task and h.claim.supervisor not in gone)
-    return any(not shareable or hold.wants != (call.inputs, call.values) for hold in others)
+    others = [h for h in activation.holds if h.claim.task != call.task and h.claim.supervisor not in gone]
+    return len(others) >= MOST_HOLDING or any(
+        not shareable or hold.wants != (call.inputs, call.values) for hold in others
+    )
 
 
 def _wait(activation: Activation, call: Reserve | Apply) -> Activation:

@@ -15,6 +15,8 @@ from typing import Any, TypeVar, get_args
 
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.model.wording import is_one_line, one_line
+from selfconf.protocol.keys import is_task_identity
 from selfconf.protocol.messages import (
     Access,
     Apply,
@@ -65,6 +67,12 @@ KINDS: dict[type, str] = {
 """What each message is called on the wire; programs in other languages rely on it, whatever a class is called here."""
 LARGEST = 1 << 20
 """A control message of more bytes than this is refused unread."""
+MOST_WIRES = 4096
+"""How many outputs the inputs of a component can be told to follow in one call."""
+MOST_ADVERTISED = 20_000
+"""For how many components one site can speak; what it says of more is left out."""
+_WHOLE = 1 << 63
+"""Whole numbers lie between this and its negative, so that other languages can hold them too."""
 
 
 def encode(message: Message) -> bytes:
@@ -133,6 +141,8 @@ def _plain(value: object) -> object:
 
 
 _JSON = json.JSONEncoder(separators=(",", ":"), default=_plain)
+_QUOTED = 80
+"""How many characters of what a stranger has said an error quotes."""
 
 
 def _text(value: object) -> str:
@@ -146,15 +156,36 @@ def _text(value: object) -> str:
     return value
 
 
+def _label(value: object) -> str:
+    """A text that names something: it stands in keys and in lines for people, so it steers nothing and ends no line."""
+    label = _text(value)
+    if not is_one_line(label):
+        raise PeerError(f"{one_line(label, _QUOTED)!r} holds control characters, and can name nothing")
+    return label
+
+
+def _remark(value: object) -> str:
+    """A text for people, of which nothing else depends: on one line, whatever was said."""
+    return one_line(_text(value))
+
+
 def _name(value: object) -> str:
-    name = _text(value)
+    name = _label(value)
     if not name:
         raise PeerError("a name that is not empty was expected")
     return name
 
 
+def _task_identity(value: object) -> str:
+    """The identity of a task that sites keep: it becomes the name of a file there, and a chunk of keys."""
+    identity = _label(value)
+    if not is_task_identity(identity):
+        raise PeerError(f"{identity[:_QUOTED]!r} is no identity of a task: NAME~TOKEN was expected")
+    return identity
+
+
 def _iri(value: object) -> IRI:
-    return IRI(_text(value))
+    return IRI(_label(value))
 
 
 def _maybe_iri(value: object) -> IRI | None:
@@ -164,6 +195,8 @@ def _maybe_iri(value: object) -> IRI | None:
 def _whole(value: object) -> int:
     if not isinstance(value, int) or isinstance(value, bool):
         raise PeerError("a whole number was expected")
+    if not -_WHOLE <= value < _WHOLE:
+        raise PeerError("a whole number of 64 bits was expected")
     return value
 
 
@@ -221,7 +254,10 @@ def _wire(value: object) -> Wire:
 
 
 def _inputs(value: object) -> dict[str, tuple[Wire, ...]]:
-    return {_name(port): tuple(map(_wire, _list(wires))) for port, wires in _object(value).items()}
+    inputs = {_name(port): _list(wires) for port, wires in _object(value).items()}
+    if sum(map(len, inputs.values())) > MOST_WIRES:
+        raise PeerError(f"the inputs of a component follow {MOST_WIRES} outputs at most")
+    return {port: tuple(map(_wire, wires)) for port, wires in inputs.items()}
 
 
 def _values(value: object) -> dict[str, Term]:
@@ -240,38 +276,40 @@ def _cause(value: object) -> Cause:
     try:
         return Cause(_text(value))
     except ValueError:
-        raise PeerError(f"{value!r} is no cause of a failure") from None
+        raise PeerError(f"{one_line(_text(value), _QUOTED)!r} is no cause of a failure") from None
 
 
 def _verdict(value: object) -> Verdict:
     try:
         return Verdict(_text(value))
     except ValueError:
-        raise PeerError(f"{value!r} is no verdict") from None
+        raise PeerError(f"{one_line(_text(value), _QUOTED)!r} is no verdict") from None
 
 
 def _texts(value: object) -> tuple[str, ...]:
     return tuple(_text(item) for item in _list(value))
 
 
+def _labels(value: object) -> tuple[str, ...]:
+    return tuple(_label(item) for item in _list(value))
+
+
 _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "epoch"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Fail, Status, TaskRecord)},
-    **{(kind, "supervisor"): _text for kind in (Reserve, Apply, Release, CallAnswer)},
-    **{
-        (kind, "task"): _text
-        for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Fail, Free, Notice, Status, TaskRecord)
-    },
+    **{(kind, "supervisor"): _label for kind in (Reserve, Apply, Release, CallAnswer)},
+    **{(kind, "task"): _label for kind in (Reserve, Apply, Release, StateOf, CallAnswer, Fail, Free, Notice, Status)},
+    (TaskRecord, "task"): _task_identity,
     **{(kind, "priority"): _whole for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "beginning"): _moment for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Free, Wake, End, Stamp)},
-    **{(kind, "life"): _text for kind in (Reserve, Apply, Release, CallAnswer, Fail, Free, End, Stamp)},
-    **{(kind, "detail"): _text for kind in (CallAnswer, Fail)},
+    **{(kind, "life"): _label for kind in (Reserve, Apply, Release, CallAnswer, Fail, Free, End, Stamp)},
+    **{(kind, "detail"): _remark for kind in (CallAnswer, Fail)},
     **{(kind, "inputs"): _inputs for kind in (Reserve, Apply)},
     **{(kind, "values"): _values for kind in (Reserve, Apply)},
     (Apply, "standby"): _inputs,
     (Reserve, "waits"): _truth,
     (Apply, "gently"): _truth,
-    (CallAnswer, "place"): _text,
+    (CallAnswer, "place"): _remark,
     (CallAnswer, "dropped"): _whole,
     (CallAnswer, "verdict"): _verdict,
     (CallAnswer, "active"): _truth,
@@ -280,34 +318,34 @@ _READERS: dict[tuple[type, str], Any] = {
     (Page, "total"): _whole,
     (Page, "revision"): _whole,
     (Page, "component"): _maybe_iri,
-    (Page, "source"): _text,
+    (Page, "source"): _remark,
     (Page, "startable"): _truth,
-    (Page, "life"): _text,
+    (Page, "life"): _label,
     (Page, "insecure"): _truth,
     (Introduction, "certificate"): _text,
     (Introduction, "known"): _truth,
-    **{(kind, "principal"): _text for kind in (Access, RefusedAttempt)},
-    (Access, "sentence"): _text,
-    (Access, "says"): _texts,
-    (Access, "asked"): _texts,
-    (Access, "hears"): _texts,
-    (Access, "about"): _texts,
-    (RefusedAttempt, "attempt"): _text,
-    (RefusedAttempt, "key"): _text,
+    **{(kind, "principal"): _remark for kind in (Access, RefusedAttempt)},
+    (Access, "sentence"): _remark,
+    (Access, "says"): _labels,
+    (Access, "asked"): _labels,
+    (Access, "hears"): _labels,
+    (Access, "about"): _labels,
+    (RefusedAttempt, "attempt"): _remark,
+    (RefusedAttempt, "key"): _remark,
     (RefusedAttempt, "number"): _whole,
     (RefusedAttempt, "latest"): _number,
     (Known, "revisions"): _revisions,
-    (Notice, "configurator"): _text,
+    (Notice, "configurator"): _label,
     (Notice, "sequence"): _whole,
     (Notice, "event"): _object,
     (Stamp, "sequence"): _whole,
     (Stamp, "time"): _number,
     (Stamp, "encoding"): _encoding,
-    (Status, "configurator"): _text,
-    (Status, "phase"): _text,
+    (Status, "configurator"): _label,
+    (Status, "phase"): _remark,
     (Status, "template"): _iri,
     (Status, "since"): _number,
-    (Status, "host"): _text,
+    (Status, "host"): _remark,
     (Status, "process"): _whole,
     (Status, "components"): _iris,
     (Status, "lost"): _object,
@@ -316,8 +354,8 @@ _READERS: dict[tuple[type, str], Any] = {
     (TaskRecord, "revision"): _whole,
     (TaskRecord, "ended"): _truth,
     (TaskRecord, "document"): _text,
-    (TaskRecord, "source"): _text,
-    (TaskRecord, "wanted"): _text,
+    (TaskRecord, "source"): _remark,
+    (TaskRecord, "wanted"): _label,
     (TaskRecord, "bindings"): _values,
     (TaskRecord, "ontologies"): _texts,
     (TaskRecord, "options"): _object,

@@ -231,6 +231,12 @@ def task_identity(name: str, token: str) -> str:
     return f"{checked_name(name, 'a task')}~{token}"
 
 
+def is_task_identity(text: str) -> bool:
+    """Whether a text can be the identity of a task: two names with a tilde between."""
+    name, _, token = text.partition("~")
+    return _NAME.fullmatch(name) is not None and _NAME.fullmatch(token) is not None
+
+
 def safe_name(text: str) -> str:
     """A text as a name that a key can hold: what cannot stand in one becomes a hyphen."""
     name = re.sub(r"[^A-Za-z0-9._-]+", "-", text).lstrip("._-")[:64]

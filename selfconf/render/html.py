@@ -5,11 +5,12 @@ What is shown may come from the network, so every text is escaped.
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping, Sequence
-from html import escape
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
+from selfconf.model.wording import plain
 from selfconf.render.text import Name
 
 COLUMN, ROW, WIDTH, HEIGHT = 260, 64, 190, 44
@@ -20,16 +21,16 @@ CHARACTERS = 26
 
 def html_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table."""
-    cells = "".join(f"<th style='text-align:left'>{escape(cell)}</th>" for cell in head)
+    cells = "".join(f"<th style='text-align:left'>{_shown(cell)}</th>" for cell in head)
     body = "".join(
-        "<tr>" + "".join(f"<td style='text-align:left'>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+        "<tr>" + "".join(f"<td style='text-align:left'>{_shown(cell)}</td>" for cell in row) + "</tr>" for row in rows
     )
     return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def html_text(text: str) -> str:
     """Plain text as it is, in a fixed-width font."""
-    return f"<pre>{escape(text)}</pre>"
+    return f"<pre>{_shown(text)}</pre>"
 
 
 def diagram(configuration: Configuration, name: Name) -> str:
@@ -72,7 +73,7 @@ def _pairs(configuration: Configuration) -> list[tuple[tuple[IRI, IRI], list[str
 
 def _arrow(source: tuple[int, int], sink: tuple[int, int], labels: Sequence[str]) -> str:
     x1, y1, x2, y2 = source[0] + WIDTH, source[1] + HEIGHT // 2, sink[0], sink[1] + HEIGHT // 2
-    title = escape("\n".join(labels))
+    title = _shown("\n".join(labels))
     path = f"M{x1} {y1}C{x1 + 40} {y1} {x2 - 40} {y2} {x2} {y2}"
     return (
         f"<path d='{path}' fill='none' stroke='#64748b' marker-end='url(#selfconf-arrow)'><title>{title}</title></path>"
@@ -84,14 +85,19 @@ def _node(configuration: Configuration, component: IRI, x: int, y: int, name: Na
     shown = name(component)
     shown = shown if len(shown) <= CHARACTERS else f"{shown[: CHARACTERS - 1]}…"
     part = "recruit" if role is None else role.short
-    below = f"<tspan x='{x + 10}' dy='15' fill='#64748b'>{escape(part)}</tspan>"
+    below = f"<tspan x='{x + 10}' dy='15' fill='#64748b'>{_shown(part)}</tspan>"
     return (
-        f"<g><title>{escape(component)}</title><rect x='{x}' y='{y}' width='{WIDTH}' height='{HEIGHT}' rx='8' "
-        f"fill='#eff6ff' stroke='#3b82f6'/><text x='{x + 10}' y='{y + 19}' fill='#0f172a'>{escape(shown)}{below}</text>"
+        f"<g><title>{_shown(component)}</title><rect x='{x}' y='{y}' width='{WIDTH}' height='{HEIGHT}' rx='8' "
+        f"fill='#eff6ff' stroke='#3b82f6'/><text x='{x + 10}' y='{y + 19}' fill='#0f172a'>{_shown(shown)}{below}</text>"
         "</g>"
     )
 
 
 def html_sections(sections: Mapping[str, str]) -> str:
     """Parts of a page, each under its heading; the parts are HTML already."""
-    return "".join(f"<h4>{escape(heading)}</h4>{part}" for heading, part in sections.items())
+    return "".join(f"<h4>{_shown(heading)}</h4>{part}" for heading, part in sections.items())
+
+
+def _shown(text: str) -> str:
+    """A text as HTML that shows it, and in which nothing turns the direction of writing around."""
+    return html.escape(plain(text))

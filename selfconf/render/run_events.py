@@ -11,6 +11,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import EcologyDiscovered, RunEvent, SearchEnded, TaskRefused, TaskStopped, TaskWaiting
 from selfconf.model.term import IRI
+from selfconf.model.wording import MANY
 from selfconf.render.bodies import configuration_body, refusal_body, undecided_body
 from selfconf.render.names import short
 from selfconf.render.tables import count
@@ -50,7 +51,9 @@ def sentence(event: RunEvent, name: Name) -> str:
     if isinstance(event, SearchEnded):
         facts |= {"found": _outcome(event), "milliseconds": event.seconds * 1000}
     if isinstance(event, EcologyDiscovered):
-        facts["missing"] = "".join(f"; site {site} did not answer in full" for site in event.missing)
+        facts["missing"] = "".join(f"; site {site} did not answer in full" for site in event.missing[:MANY])
+        if len(event.missing) > MANY:
+            facts["missing"] += f"; nor did {len(event.missing) - MANY} others"
     return SENTENCES[event.act].format(**facts)
 
 
@@ -81,7 +84,8 @@ def _word(value: object, name: Name) -> object:
     if isinstance(value, IRI):
         return name(value)
     if isinstance(value, tuple):
-        return ", ".join(map(str, value)) or "no site"
+        more = f" and {len(value) - MANY} others" if len(value) > MANY else ""
+        return ", ".join(map(str, value[:MANY])) + more or "no site"
     return value
 
 

@@ -106,8 +106,13 @@ def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
         lines += [_placed(f"  {repair}", repair) for repair in refusal.repairs]
     if refusal.hint:
         lines.append(f"  {refusal.hint}")
-    lines += [f"the site {site} lives and did not answer in full" for site in refusal.missing_sites]
-    return "\n".join(lines)
+    return "\n".join((*lines, *_missing(refusal.missing_sites, most)))
+
+
+def _missing(sites: Sequence[str], most: int) -> list[str]:
+    """The sites that may have what is lacking."""
+    more = [f"and {len(sites) - most} other sites did not either"] if len(sites) > most else []
+    return [*(f"the site {site} lives and did not answer in full" for site in sites[:most]), *more]
 
 
 def holder_text(holder: Holder) -> str:

@@ -50,6 +50,9 @@ HANDOVER = 2.0
 """Seconds for which an input follows an output that is to be let go of, while the new one issues nothing."""
 HANDOVER_CHECK = 0.01
 """How often, in seconds, it is looked whether the new one has."""
+LATE = 10_000
+"""By how many signals one that is late can be behind the newest. One that is further behind is not late: the number of
+the newest was none of its source's, and may not mute it."""
 LAST_SIGNAL = 1.0
 """Seconds that an output may take to say its last signal; a later one comes by itself."""
 ASK_FOR_LAST = (0.3, 1.0, 3.0)
@@ -287,7 +290,7 @@ class InputSubscription:
             return
         if stamp.component != self._wire.component:
             return
-        if stamp.life == self._life and stamp.sequence <= self._sequence:
+        if stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE:
             return  # late, doubled, or a latched signal that was issued again for another input
         self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
         self._events.deliver(

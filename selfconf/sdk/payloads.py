@@ -37,6 +37,8 @@ ELEMENT_FORMATS = {
 """The datatypes of elements, with their formats in the buffer protocol."""
 _SAME = {"l": "q", "n": "q", "L": "Q", "N": "Q"}
 """Formats that are others by another name, where their elements have eight bytes."""
+LARGEST_JSON = 1 << 22
+"""Bytes of a signal of JSON at most: read, it takes up to fifty times that memory. Arrays and bytes may be larger."""
 _OF_JSON = (dict, list, str, int, float)
 
 
@@ -67,14 +69,19 @@ def as_json(value: Any) -> bytes:
     Raises UnsayableError.
     """
     try:
-        return json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
+        said = json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
     except (TypeError, ValueError, RecursionError) as error:
         raise UnsayableError(f"JSON cannot say it: {error}") from None
+    if len(said) > LARGEST_JSON:
+        raise UnsayableError(f"{len(said)} bytes of JSON are too many; an array or bytes can be that large")
+    return said
 
 
 def read_payload(payload: bytes, raw: bool, encoding: SignalEncoding) -> Any:
     """The value of a signal. Raises ValueError for a payload that is not what its encoding says."""
     if not raw:
+        if len(payload) > LARGEST_JSON:
+            raise ValueError(f"{len(payload)} bytes of JSON are too many")
         return json.loads(payload)
     if not encoding.datatype:
         return payload

@@ -14,6 +14,7 @@ from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import SelfconfError
 from selfconf.model.term import IRI
+from selfconf.model.wording import plain
 from selfconf.sdk.component import Component
 from selfconf.sdk.host import Host, profile_of
 from selfconf.termination import Termination, started_by_another
@@ -37,7 +38,9 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     add_connection_arguments(parser)
     given, _ = parser.parse_known_args(arguments)
     life = os.environ.pop(rendezvous.LIFE_VARIABLE, "")  # it is this process's own: what it starts shall not have it
-    logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
+    handler = logging.StreamHandler()
+    handler.setFormatter(_PlainFormatter("%(name)s: %(message)s"))
+    logging.basicConfig(level=logging.WARNING, handlers=[handler])
     try:
         with_keys = rendezvous.keys_folder(given.keys) is not None
         components = [profile_of(kind).component for kind in kinds] if with_keys else []
@@ -46,9 +49,17 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
             host.add(kind(), life)
         run_until_ended(host)
     except SelfconfError as error:
-        print(error, file=sys.stderr)
+        print(plain(str(error)), file=sys.stderr)
         raise SystemExit(2) from None
     raise SystemExit(0)
+
+
+class _PlainFormatter(logging.Formatter):
+    """Words what is logged so that nothing in it steers a terminal: it quotes strangers."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """A record in words."""
+        return plain(super().format(record))
 
 
 def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
@@ -84,7 +95,7 @@ def open_host(
         introduce(bus, name, shown)
 
     def hung(what: str) -> None:
-        print(what, file=sys.stderr, flush=True)
+        print(plain(what), file=sys.stderr, flush=True)
         if started_by_another():
             bus.later(HUNG_ENDS, lambda: os._exit(HUNG_EXIT_CODE))
 

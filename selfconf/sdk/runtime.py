@@ -61,6 +61,8 @@ LOOKS_FOR_OTHERS = (0.0, 1.0)
 """Seconds after the beginning of a life at which it is looked whether another process is the same component."""
 LIVES_CALL = 3.0
 """Seconds that this may take."""
+MOST_PENDING = 256
+"""How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
 Reply = Callable[[CallAnswer], None]
 
 
@@ -231,6 +233,10 @@ class ComponentRuntime:
                 return
             if not self.keys.is_configurator_life(message.supervisor):
                 raise PeerError(f"{message.supervisor!r} is no life of a configurator")
+        if len(self._after_start) + len(self._after_stop) >= MOST_PENDING:
+            raise PeerError(
+                f"{MOST_PENDING} calls wait for the code of {self.profile.component.short}; try again later"
+            )
         if message.life not in ("", self.life):
             reply(self._verdict(Verdict.OTHER_LIFE, message.task))
         else:

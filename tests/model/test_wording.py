@@ -1,11 +1,29 @@
-"""Lists in sentences."""
+"""Lists in sentences, and what strangers say in one line."""
 
 from __future__ import annotations
 
-from selfconf.model.wording import MANY, listed
+import pytest
+
+from selfconf.model.wording import LONGEST_REMARK, MANY, is_one_line, listed, one_line, plain
 
 
 def test_names_are_listed_as_people_do_and_very_many_are_counted() -> None:
     assert [listed(names) for names in ("", "a", "ab", "abc")] == ["", "a", "a and b", "a, b and c"]
     assert listed(f"r{i}" for i in range(1000)).endswith("r7, r8 and 991 others")
     assert "others" not in listed("a" * MANY)
+
+
+@pytest.mark.parametrize("steers", ["\x00", "\x1b[2J", "\x9b1m", "\x7f", "\u061c", "\u200f", "\u202e", "\u2066"])
+def test_what_steers_a_terminal_is_spelt_out(steers: str) -> None:
+    for shown in (plain(f"a{steers}b"), one_line(f"a{steers}b")):
+        assert steers[0] not in shown
+        assert shown.startswith("a\\")
+        assert is_one_line(shown)
+    assert not is_one_line(steers)
+
+
+def test_a_remark_is_a_part_of_one_line_and_not_longer_than_a_screen() -> None:
+    assert one_line("a\tb\nLOST c\r\u2028") == r"a\tb\nLOST c\r\u2028"
+    assert plain("a\tb\n") == "a\tb\n"
+    assert is_one_line("ä 日本 ✓")
+    assert one_line("x" * 10_000) == "x" * LONGEST_REMARK + "…"

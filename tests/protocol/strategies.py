@@ -32,8 +32,10 @@ from selfconf.protocol.messages import (
     Wire,
 )
 
-texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
-names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20)
+characters = st.characters(exclude_categories=["Cs", "Cc", "Cf", "Zl", "Zp"])
+texts = st.text(characters, max_size=20)
+names = st.text(characters, min_size=1, max_size=20)
+identities = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9._-]{0,20}~[A-Za-z0-9][A-Za-z0-9._-]{0,20}", fullmatch=True)
 iris = st.builds(lambda tail: IRI(f"https://example.org/{tail}"), texts)
 numbers = st.integers(min_value=0, max_value=1 << 62)
 seconds = st.floats(allow_nan=False, allow_infinity=False)
@@ -127,7 +129,7 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
     ),
     TaskRecord: st.builds(
         TaskRecord,
-        texts,
+        identities,
         numbers,
         st.booleans(),
         claim["priority"],

@@ -11,9 +11,11 @@ from hypothesis import strategies as st
 
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI, Term
+from selfconf.model.wording import one_line
+from selfconf.protocol.codec import KINDS as NAMES
 from selfconf.protocol.codec import LARGEST, decode, decode_term, encode, encode_term
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Message, Release, Reserve, Stamp, StateOf, Wire
+from selfconf.protocol.messages import Apply, Fail, Message, Release, Reserve, Stamp, StateOf, TaskRecord, Wire
 from tests.protocol import strategies
 
 KINDS: tuple[type[Any], ...] = get_args(Message)
@@ -166,3 +168,37 @@ def test_a_question_for_the_state_says_of_which_task_it_is() -> None:
     assert decode(b'{"kind": "state", "task": "tidy~1"}', StateOf) == StateOf("tidy~1")
     with pytest.raises(PeerError, match="task"):
         decode(b'{"kind": "state"}', StateOf)
+
+
+@pytest.mark.parametrize("text", ["a\nLOST b", "\x1b[2J", "\u202egnp.exe"])
+def test_what_people_read_stands_on_one_line_and_what_names_something_has_no_controls(text: str) -> None:
+    fail = {"kind": "fail", "component": "urn:a", "life": "1", "epoch": 1}
+    said = decode(json.dumps({**fail, "detail": text}).encode(), Fail).detail
+    assert said == one_line(text)
+    for name in ("component", "life", "task"):
+        with pytest.raises(PeerError, match="holds control characters"):
+            decode(json.dumps({**fail, name: text}).encode(), Fail)
+
+
+def test_what_is_no_cause_is_quoted_in_part() -> None:
+    fail = {"kind": "fail", "component": "urn:a", "life": "1", "epoch": 1, "cause": "x" * 100_000}
+    with pytest.raises(PeerError) as raised:
+        decode(json.dumps(fail).encode(), Fail)
+    assert len(str(raised.value)) < 200
+
+
+@pytest.mark.parametrize(
+    "task", ["", "a", "../../a~1", "a/b~1", "a~", "~1", "a~../1", ".a~1", f"{'a' * 65}~1", "a~1\n"]
+)
+def test_a_task_that_sites_keep_is_named_like_a_file(task: str) -> None:
+    with pytest.raises(PeerError):
+        decode(json.dumps({"kind": "task", "task": task, "revision": 1}).encode(), TaskRecord)
+
+
+@pytest.mark.parametrize("number", [1 << 63, -(1 << 63) - 1, 10**4000])
+def test_whole_numbers_have_64_bits(number: int) -> None:
+    for kind, name in ((TaskRecord, "revision"), (Fail, "epoch")):
+        body = {"kind": NAMES[kind], "task": "a~1", "revision": 1, "component": "urn:a", "life": "", "epoch": 1}
+        assert decode(json.dumps(body).encode(), kind)
+        with pytest.raises(PeerError, match="64 bits"):
+            decode(json.dumps({**body, name: number}).encode(), kind)

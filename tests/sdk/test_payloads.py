@@ -9,7 +9,7 @@ import pytest
 
 from selfconf.protocol.messages import SignalEncoding
 from selfconf.sdk import payloads
-from selfconf.sdk.payloads import ELEMENT_FORMATS, UnsayableError, as_bytes, as_json, read_payload
+from selfconf.sdk.payloads import ELEMENT_FORMATS, LARGEST_JSON, UnsayableError, as_bytes, as_json, read_payload
 
 numpy = pytest.importorskip("numpy")
 
@@ -95,3 +95,12 @@ def test_a_payload_that_is_not_what_its_encoding_says_is_refused(encoding: Signa
 def test_a_shape_that_no_array_has_is_refused(shape: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r"dimension|too big"):
         read_payload(b"", True, SignalEncoding("", "uint8", shape))
+
+
+def test_json_is_small_on_both_ways() -> None:
+    text = "x" * LARGEST_JSON
+    with pytest.raises(UnsayableError, match="an array or bytes can be that large"):
+        as_json(text)
+    with pytest.raises(ValueError, match="too many"):
+        read_payload(b"[" * (LARGEST_JSON + 1), False, SignalEncoding())
+    assert read_payload(as_json(text[2:]), False, SignalEncoding()) == text[2:]

@@ -1,6 +1,6 @@
 // The page: it hears of each change of the ecology, and shows it.
 
-import { by, say } from "/page/dom.js";
+import { by, plain, say } from "/page/dom.js";
 import { Diagram } from "/page/diagram.js";
 import { Model, worded } from "/page/model.js";
 import { below, forget, showComponents, showDetail, showTasks, taskHead } from "/page/panels.js";
@@ -97,7 +97,7 @@ function linked(yes) {
 
 function announce(events) {
   const said = events.map((event) => worded(event, null)).filter((one) => one && one.kind !== "plain").at(-1);
-  if (said) by("said").textContent = said.text;
+  if (said) by("said").textContent = plain(said.text);  // also what was said before is said anew
 }
 
 // Views and themes.

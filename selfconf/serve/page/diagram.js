@@ -1,6 +1,6 @@
 // The configuration of a task as a diagram that changes before one's eyes.
 
-import { s, short } from "/page/dom.js";
+import { s, say, short } from "/page/dom.js";
 import { layout } from "/page/layout.js";
 import { why } from "/page/model.js";
 
@@ -114,10 +114,10 @@ export class Diagram {
       const note = lost ? why(lost) : instead ? because(instead, task) : "";
       const state = lost ? "lost" : states.get(node.component) ?? "";
       known.face.setAttribute("class", `face ${state}${selected === node.component ? " selected" : ""}${note && !lost ? " new" : ""}`);
-      known.caption.textContent = cut(note ?? "", this.#box.caption);
-      known.role.textContent = cut(node.roles.map(short).join(", "), 28);
-      known.title.textContent = [node.component, `plays ${node.roles.map(short).join(", ")}`, note,
-        node.passed.length ? `passed over: ${node.passed.map(short).join(", ")}` : ""].filter(Boolean).join("\n");
+      say(known.caption, cut(note ?? "", this.#box.caption));
+      say(known.role, cut(node.roles.map(short).join(", "), 28));
+      say(known.title, [node.component, `plays ${node.roles.map(short).join(", ")}`, note,
+        node.passed.length ? `passed over: ${node.passed.map(short).join(", ")}` : ""].filter(Boolean).join("\n"));
       known.group.setAttribute("aria-label", known.title.textContent);
     }
   }
@@ -145,7 +145,7 @@ export class Diagram {
       s("text", { class: "name", x: 16, y: 47 + (known.height - this.#box.height) / 2, text: cut(short(known.component), this.#box.name) }));
     known.old.replaceChildren(leaving);
     leaving.addEventListener("animationend", () => leaving.remove());
-    known.name.textContent = cut(short(node.component), this.#box.name);
+    say(known.name, cut(short(node.component), this.#box.name));
     known.name.classList.remove("arriving");
     known.group.getBoundingClientRect();  // so that the movement begins anew
     known.name.classList.add("arriving");
@@ -193,7 +193,7 @@ export class Diagram {
         this.#lines.append(line.group);
       }
       line.path.setAttribute("d", path);
-      line.label.textContent = cut(edge.input, 14);
+      say(line.label, cut(edge.input, 14));
       line.label.setAttribute("x", down ? to.x + 6 : to.x - 11);
       line.label.setAttribute("y", down ? to.y - 9 : to.y - 5);
       line.label.setAttribute("text-anchor", down ? "start" : "end");

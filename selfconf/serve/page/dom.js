@@ -1,15 +1,23 @@
-// Elements, made of text and never of markup: whatever a stranger wrote stays text.
+// Elements, made of text and never of markup: whatever a stranger wrote stays text, and turns no line around.
 
 const SVG = "http://www.w3.org/2000/svg";
+
+/** A text with control characters, and those that change the direction of writing, spelt out as the terminal has them. */
+export const plain = (text) =>
+  String(text).replace(/[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, (found) => {
+    const code = found.charCodeAt(0).toString(16);
+    return code.length < 3 ? `\\x${code.padStart(2, "0")}` : `\\u${code.padStart(4, "0")}`;
+  });
 
 function filled(element, facts, children) {
   for (const [name, value] of Object.entries(facts ?? {})) {
     if (value === null || value === undefined || value === false) continue;
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else if (name === "text") element.textContent = value;
-    else element.setAttribute(name, value === true ? "" : value);
+    else if (name === "text") element.textContent = plain(value);
+    else element.setAttribute(name, value === true ? "" : name === "title" || name.startsWith("aria-") ? plain(value) : value);
   }
-  element.append(...children.flat().filter((child) => child !== null && child !== undefined && child !== false));
+  const shown = children.flat().filter((child) => child !== null && child !== undefined && child !== false);
+  element.append(...shown.map((child) => (child instanceof Node ? child : plain(child))));
   return element;
 }
 
@@ -38,7 +46,7 @@ export function keyed(parent, items, key, make, update) {
 
 /** Change a text only if it is another, so that nothing is selected or read anew in vain. */
 export function say(element, text) {
-  if (element.textContent !== text) element.textContent = text;
+  if (element.textContent !== plain(text)) element.textContent = plain(text);
 }
 
 export const short = (iri) => String(iri ?? "").replace(/[#/]+$/, "").split(/[#/]/).pop();

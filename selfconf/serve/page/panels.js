@@ -1,6 +1,6 @@
 // What stands around the diagram: tasks, components by site and place, one component in detail, a refusal.
 
-import { ago, by, h, keyed, say, short } from "/page/dom.js";
+import { ago, by, h, keyed, plain, say, short } from "/page/dom.js";
 import { why } from "/page/model.js";
 import { coloured } from "/page/turtle.js";
 
@@ -143,7 +143,7 @@ const row = (one, select) => h("button", { type: "button", class: "component", o
 function fill(button, one, selected, held, lost, then) {
   const [state, name, holder] = button.children, now = lost.has(one.iri) ? "lost" : then.get(one.iri) ?? one.state;
   state.className = `state ${now.replaceAll(" ", "-")}`;
-  button.title = `${one.iri}\n${one.types.join(", ")}\n${now}`;
+  button.title = plain(`${one.iri}\n${one.types.join(", ")}\n${now}`);
   button.setAttribute("aria-current", String(one.iri === selected));
   say(name, one.name);
   say(holder, (held.get(one.iri) ?? []).map((task) => task.name).join(", "));

@@ -1,6 +1,6 @@
 // Questions in SPARQL, and answers as a table, a truth value, or Turtle.
 
-import { by, h, short } from "/page/dom.js";
+import { by, h, say, short } from "/page/dom.js";
 import { coloured } from "/page/turtle.js";
 
 const EXAMPLES = {
@@ -61,7 +61,7 @@ async function ask() {
 }
 
 function show(said, ...content) {
-  by("asked").textContent = said;
+  say(by("asked"), said);
   by("answer").replaceChildren(...content);
 }
 
