@@ -18,7 +18,7 @@ from selfconf.errors import AuthorError, InstallationError, PeerError
 
 try:
     from cryptography import x509
-    from cryptography.exceptions import InvalidSignature
+    from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
     from cryptography.hazmat.primitives import hashes, serialization
     from cryptography.hazmat.primitives.asymmetric import ec
     from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
@@ -37,6 +37,15 @@ EVERY_HOST = ("localhost", "127.0.0.1", "::1")
 """The addresses that every certificate is good for."""
 _ALSO = "urn:selfconf:"
 Key = ec.EllipticCurvePrivateKey
+_MALFORMED = (
+    ValueError,
+    TypeError,
+    UnsupportedAlgorithm,
+    x509.InvalidVersion,
+    x509.DuplicateExtension,
+    x509.UnsupportedGeneralNameType,
+)
+"""What `cryptography` raises for what is no certificate, key or list, or is one that it does not know."""
 
 
 def new_key() -> Key:
@@ -55,7 +64,7 @@ def read_key(pem: bytes) -> Key:
     """A private key from PEM. Raises AuthorError."""
     try:
         key = serialization.load_pem_private_key(pem, None)
-    except (ValueError, TypeError):
+    except _MALFORMED:
         raise AuthorError("holds no private key in PEM") from None
     if not isinstance(key, ec.EllipticCurvePrivateKey):
         raise AuthorError("holds a private key that is none on an elliptic curve")
@@ -74,9 +83,17 @@ class Certificate:
         if len(pem) > LARGEST_PEM:
             raise PeerError(f"{len(pem)} bytes are too many for a certificate")
         try:
-            return cls(x509.load_pem_x509_certificate(pem))
-        except ValueError:
+            certificate = cls(x509.load_pem_x509_certificate(pem))
+            certificate._parse()
+        except _MALFORMED:
             raise PeerError("that is no certificate in PEM") from None
+        return certificate
+
+    def _parse(self) -> None:
+        """Look at every part once: each is parsed only as it is looked at, and what is wrong with it raised then."""
+        one = self.x509
+        _ = one.subject, one.issuer, one.public_key(), one.extensions, one.signature_hash_algorithm
+        _ = one.not_valid_before_utc, one.not_valid_after_utc
 
     @property
     def pem(self) -> bytes:
@@ -154,7 +171,7 @@ class Certificate:
     def _signed_by(self, authority: Certificate) -> bool:
         try:
             self.x509.verify_directly_issued_by(authority.x509)
-        except (ValueError, TypeError, InvalidSignature):
+        except (*_MALFORMED, InvalidSignature):
             return False
         return True
 
@@ -222,7 +239,7 @@ def read_revocations(pem: bytes, authority: Certificate) -> frozenset[int]:
     try:
         revoked = x509.load_pem_x509_crl(pem)
         genuine = revoked.is_signature_valid(authority.x509.public_key())  # type: ignore[arg-type]  # an EC key, as made here
-    except (ValueError, TypeError):
+    except _MALFORMED:
         raise AuthorError("holds no list of revoked certificates in PEM") from None
     if not genuine:
         raise AuthorError("holds a list of revoked certificates that this authority has not signed")

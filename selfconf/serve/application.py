@@ -10,7 +10,7 @@ from importlib.resources import files
 
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -87,7 +87,8 @@ def application(
         Route("/metrics", counted),
         Route("/healthz", health),
     ]
-    return Guard(Starlette(routes=routes, exception_handlers={HTTPException: _refused}), hosts)
+    refusals = {HTTPException: _refused, ClientDisconnect: _nobody_left}
+    return Guard(Starlette(routes=routes, exception_handlers=refusals), hosts)
 
 
 class Guard:
@@ -118,6 +119,11 @@ class Guard:
 def _without_port(host: str) -> str:
     head, _, port = host.rpartition(":")
     return (head if head and port.isdecimal() else host).lower()
+
+
+async def _nobody_left(_: Request, error: Exception) -> Response:
+    """The client has gone in the middle of its request, which is no fault of this server: nobody reads the answer."""
+    return problem(400, "the request was not sent in full")
 
 
 async def _refused(_: Request, error: Exception) -> Response:

@@ -83,12 +83,23 @@ class SparqlEndpoint:
 
     async def _received(self, question: StandingQuestion) -> bytes:
         """All that comes on the socket of a question; a client that hangs up ends the query."""
-        line = await asyncio.to_thread(self._dataset.begin, question)
+        begun = asyncio.ensure_future(asyncio.to_thread(self._dataset.begin, question))
+        try:
+            line = await asyncio.shield(begun)
+        except asyncio.CancelledError:
+            begun.add_done_callback(_close_line)  # a thread cannot be cancelled: its socket is nobody's
+            raise
         try:
             line.setblocking(False)
             return await _read(line)
         finally:
             line.close()
+
+
+def _close_line(begun: asyncio.Future[socket.socket]) -> None:
+    """Close the socket of a question that was begun in vain, which ends the query."""
+    if begun.exception() is None:
+        begun.result().close()
 
 
 def _endpoint(request: Request) -> str:
