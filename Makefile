@@ -12,7 +12,7 @@ SEEDS  ?= 20
 # as containers with this variable have it, costs a minute and more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-keys quick nightly faults fuzz check package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test test-keys quick nightly mangled faults fuzz check audit package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -38,8 +38,16 @@ quick: $(VENV)/with-dev
 # thousand histories with faults, all that is recorded, and drives of ten seeds; about half an hour.
 nightly: $(VENV)/with-dev fuzz
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults \
-		tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
+		tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
 		tests/test_compare_benchmark.py tests/test_ci_for_users.py
+
+# Ten thousand mangled messages, payloads, advertisements, certificates and HTTP requests each; some minutes.
+mangled: $(VENV)/with-dev
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/hostile
+
+# Whether a vulnerability of a pinned version is known. Where nobody can be asked, it says so and is no failure.
+audit: $(VENV)/with-dev
+	$(BIN)/python -m supply.audit
 
 # Five hundred real faults: processes that are killed, stopped and ended at random moments; about an hour.
 faults: $(VENV)/with-dev
@@ -51,7 +59,7 @@ fuzz: $(VENV)/with-dev
 
 # What looks at the files and what builds the package wait for each other in no way; the tests use all processors.
 check: $(VENV)/with-dev
-	@$(MAKE) --jobs=2 --output-sync=target lint types floors shapes docs-check package
+	@$(MAKE) --jobs=2 --output-sync=target lint types floors shapes docs-check package audit
 	@$(MAKE) test
 
 package: $(VENV)/with-dev
@@ -62,17 +70,26 @@ $(VENV)/python:
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
+# Every file that is installed has a hash in requirements.txt, and nothing else is looked for: not even what builds the
+# package, which is installed beforehand.
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+SELECT  := $(BIN)/python -m supply.pins select
+
 # The extras by the Python there is: PyBullet has wheels for 3.10 and 3.11 on Linux x86_64 only.
 $(VENV)/with-sim: $(VENV)/python pyproject.toml requirements.txt
 	@$(BIN)/python -c 'import platform, sys; sys.exit(not ((3, 10) <= sys.version_info < (3, 12) \
 		and sys.platform == "linux" and platform.machine() == "x86_64"))' \
 	|| { echo "the demo needs PyBullet, which has wheels for Python 3.10 and 3.11 on Linux x86_64 only:" \
 		"install python3.11, or type 'make demo PYTHON=/path/to/python3.11'" >&2; exit 2; }
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim,serve]'
+	$(SELECT) sim serve keys >$(VENV)/demo.txt
+	$(INSTALL) --require-hashes --no-deps -r $(VENV)/demo.txt
+	$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@
 
 $(VENV)/with-dev: $(VENV)/python pyproject.toml requirements.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.txt -e '.[sim,solvers,serve,wot,ros2,dev]'
+	$(SELECT) sim solvers serve keys wot ros2 dev >$(VENV)/dev.txt
+	$(INSTALL) --require-hashes --no-deps -r $(VENV)/dev.txt
+	$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@ $(VENV)/with-sim
 
 lint: $(VENV)/with-dev

@@ -1,0 +1,85 @@
+"""requirements.txt: a hash for each file, no registry, and a part for each extra that is closed in itself."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, requires
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from supply.pins import FILE, ROOT, requirements, selected
+
+TEXT = FILE.read_text("utf-8")
+EXTRAS = ("sim", "solvers", "serve", "keys", "dev", "fast-owl", "bench")
+
+
+def pinned(text: str) -> dict[str, list[Requirement]]:
+    """The requirements of a text by the names of their distributions."""
+    found: dict[str, list[Requirement]] = {}
+    for line in text.splitlines():
+        if not line.startswith(("#", " ")):
+            one = Requirement(line.removesuffix("\\"))
+            found.setdefault(canonicalize_name(one.name), []).append(one)
+    return found
+
+
+def test_every_version_is_pinned_with_hashes_and_no_registry_is_named() -> None:
+    assert "://" not in TEXT
+    found = list(requirements(TEXT))
+    assert sum(map(len, pinned(TEXT).values())) == len(found) > 100
+    for who, requirement in found:
+        assert who
+        first, *hashes = requirement.splitlines()
+        assert re.fullmatch(r"[A-Za-z0-9._-]+==\S+( ; .+)? \\", first), first
+        assert hashes
+        assert all(re.fullmatch(r"    --hash=sha256:[0-9a-f]{64}( \\)?", line) for line in hashes), first
+
+
+def installed_needs(name: str) -> list[Requirement]:
+    """What an installed distribution needs here; nothing of one that is not installed."""
+    try:
+        said = list(map(Requirement, requires(name) or ()))
+    except PackageNotFoundError:
+        return []
+    return [one for one in said if not one.marker or one.marker.evaluate({"extra": ""})]
+
+
+@pytest.mark.parametrize("extras", [(), ("sim", "serve", "keys"), ("sim", "solvers", "serve", "keys", "dev")], ids=str)
+def test_what_is_selected_needs_nothing_else(extras: tuple[str, ...]) -> None:
+    chosen = pinned(selected(TEXT, extras))
+    here = {name for name, pins in chosen.items() if any(not one.marker or one.marker.evaluate() for one in pins)}
+    for name in sorted(here):
+        lacking = [one for one in installed_needs(name) if canonicalize_name(one.name) not in here]
+        assert not lacking, (name, lacking)
+
+
+@pytest.mark.parametrize("extra", [None, *EXTRAS])
+def test_what_the_project_file_asks_for_is_pinned_in_a_version_that_fits(extra: str | None) -> None:
+    project = (ROOT / "pyproject.toml").read_text("utf-8")
+    start = "dependencies" if extra is None else extra
+    section = re.search(rf"^{start} = \[(.*?)\]$", project, re.MULTILINE | re.DOTALL)
+    assert section is not None
+    chosen = pinned(selected(TEXT, () if extra is None else (extra,)))
+    wanted = list(map(Requirement, re.findall(r'"([^"]+)"', section[1])))
+    assert wanted
+    for one in wanted:
+        versions = [next(iter(pin.specifier)).version for pin in chosen[canonicalize_name(one.name)]]
+        assert all(one.specifier.contains(version, prereleases=True) for version in versions), one
+
+
+def test_the_core_is_selected_without_what_it_does_not_need_and_in_a_bare_python() -> None:
+    command = [sys.executable, "-I", "-S", str(ROOT / "supply" / "pins.py"), "select"]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path("/")).stdout
+    assert printed == selected(TEXT, ())
+    assert {"rdflib", "eclipse-zenoh", "hatchling"} <= pinned(printed).keys()
+    assert not {"pytest", "mitsuba", "cryptography", "uvicorn"} & pinned(printed).keys()
+
+
+def test_an_extra_that_is_not_pinned_is_a_sentence() -> None:
+    with pytest.raises(SystemExit, match="nothing is pinned for nonsense"):
+        selected(TEXT, ["nonsense"])
