@@ -75,7 +75,7 @@ def _written(document: dict[str, Any]) -> str:
     return json.dumps(document, indent=1, sort_keys=True) + "\n"
 
 
-class BillOfMaterials(BuildHookInterface):
+class BillOfMaterials(BuildHookInterface[Any]):
     """Has hatchling put the document into the wheel."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:

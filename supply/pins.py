@@ -103,7 +103,8 @@ def _extras() -> list[str]:
 
 
 def _build_requirements() -> list[str]:
-    return re.findall(r'"([^"]+)"', re.search(r"^requires = \[(.*?)\]", _pyproject(), re.MULTILINE | re.DOTALL)[1])
+    (section,) = re.findall(r"^requires = \[(.*?)\]", _pyproject(), re.MULTILINE | re.DOTALL)
+    return re.findall(r'"([^"]+)"', section)
 
 
 def _pyproject() -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ipaddress
 import secrets
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
@@ -83,8 +84,10 @@ class Certificate:
         if len(pem) > LARGEST_PEM:
             raise PeerError(f"{len(pem)} bytes are too many for a certificate")
         try:
-            certificate = cls(x509.load_pem_x509_certificate(pem))
-            certificate._parse()
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of a serial that is not positive, which is refused here
+                certificate = cls(x509.load_pem_x509_certificate(pem))
+                certificate._parse()
         except _MALFORMED:
             raise PeerError("that is no certificate in PEM") from None
         return certificate
@@ -94,6 +97,8 @@ class Certificate:
         one = self.x509
         _ = one.subject, one.issuer, one.public_key(), one.extensions, one.signature_hash_algorithm
         _ = one.not_valid_before_utc, one.not_valid_after_utc
+        if one.serial_number <= 0:
+            raise ValueError("a serial is above zero")
 
     @property
     def pem(self) -> bytes:

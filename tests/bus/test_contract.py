@@ -7,6 +7,7 @@ from functools import partial
 
 import pytest
 
+from selfconf.bus import memory, zenoh_bus
 from selfconf.bus.port import Replies, Request, Sample, Urgency
 from tests.bus.nets import Net
 
@@ -252,6 +253,27 @@ def test_several_replies_on_one_key_all_arrive(net: Net, top: str) -> None:
     asking.ask(f"{top}/cfg", b"", 5.0, replies.append)
     assert net.until(lambda: bool(replies))
     assert sorted(payloads(list(replies[0].samples))) == [b"a", b"b"]
+
+
+def test_of_an_answer_that_is_too_large_the_rest_is_dropped(
+    net: Net, top: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in (memory, zenoh_bus):
+        monkeypatch.setattr(module, "LARGEST_REPLIES", 1000)
+    asking, answering = net.node(), net.node()
+
+    def answer(request: Request) -> None:
+        for _ in range(15):
+            request.reply(f"{top}/cfg", b"x" * 100)
+        request.finish()
+
+    answering.serve(f"{top}/cfg", answer)
+    net.settle()
+    replies: list[Replies] = []
+    asking.ask(f"{top}/cfg", b"", 5.0, replies.append)
+    assert net.until(lambda: bool(replies))
+    assert len(replies[0].samples) == 10
+    assert not replies[0].complete
 
 
 def test_a_refusal_is_heard_with_its_reason(net: Net, top: str) -> None:

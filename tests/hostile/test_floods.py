@@ -125,10 +125,11 @@ def test_five_hundred_changes_a_second_ask_nobody_oftener(tmp_path: Path, refuse
     assert refused or agent.state.phase is Phase.RUNNING
 
 
+@pytest.mark.slow
 def test_lives_by_the_thousand_are_followed_and_forgotten(lab: Lab) -> None:
     agent, stranger, keys = running(lab), lab.network.node(), lab.keys
     with bounded(30.0, peak=60.0):
-        for number in range(2000):
+        for number in range(1000):
             stranger.announce(keys.life(iri(f"nobody{number}"), "1"))
             stranger.announce(keys.life(iri("nobody"), f"x{number}"))
         for number in range(200):
@@ -150,6 +151,7 @@ def test_ten_thousand_advertisements_of_one_site_are_read(lab: Lab) -> None:
     crowd.leave()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "size"), [(MOST_ADVERTISED + 5000, 1), (2000, 100_000)], ids=["many", "large"])
 def test_of_more_than_a_site_may_advertise_the_rest_is_left_out(lab: Lab, number: int, size: int) -> None:
     crowd = Crowd(lab, number, size)

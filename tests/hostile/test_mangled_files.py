@@ -72,7 +72,7 @@ def _removed() -> object:
 
 def mangled_pem(pem: bytes, random: Random) -> bytes:
     """PEM that is mangled as text or, mostly, in the DER that it holds."""
-    if random.random() < 0.3:
+    if random.random() < 0.3 or pem.count(b"BEGIN") != 1:
         return mangled(pem, random)
     first, *lines, last = pem.splitlines()
     der = bytearray(base64.b64decode(b"".join(lines)))

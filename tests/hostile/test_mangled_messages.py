@@ -32,7 +32,7 @@ from selfconf.protocol.messages import (
     Message,
     Notice,
     Page,
-    Refused,
+    RefusedAttempt,
     Release,
     Reserve,
     SignalEncoding,
@@ -69,7 +69,7 @@ WELL_FORMED: tuple[Message, ...] = (
     End(WHEELS, "1"),
     Introduction("-----BEGIN CERTIFICATE-----"),
     Access("conf.a", "may do", ("a",), ("b",), ("c",), ("d",)),
-    Refused("conf.a", "Query", "a/b", 3, 1.0),
+    RefusedAttempt("conf.a", "Query", "a/b", 3, 1.0),
     Known({"site/1": 1}),
     Notice("stranger", 1, "t~1", {"act": "running", "time": 1.0, "message": "m", "configuration": CONFIGURATION}),
     Notice("stranger", 2, "t~1", {"act": "lost", "time": 2.0, "component": WHEELS, "cause": "fail", "detail": "d"}),
@@ -223,6 +223,7 @@ def history(folder: Path, random: Random, each: int) -> None:
     assert not [path for path in folder.rglob("*~*") if path.parent != folder / "tasks"]
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(25))
 @given(st.randoms(use_true_random=False))
 def test_whoever_hears_mangled_messages_goes_on(random: Random) -> None:
@@ -230,6 +231,7 @@ def test_whoever_hears_mangled_messages_goes_on(random: Random) -> None:
         history(Path(folder), random, EACH)
 
 
+@pytest.mark.slow
 def test_nothing_stays_of_an_ecology_that_has_heard_mangled_messages(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
