@@ -81,13 +81,13 @@ $(VENV)/with-sim: $(VENV)/python pyproject.toml requirements.txt
 		and sys.platform == "linux" and platform.machine() == "x86_64"))' \
 	|| { echo "the demo needs PyBullet, which has wheels for Python 3.10 and 3.11 on Linux x86_64 only:" \
 		"install python3.11, or type 'make demo PYTHON=/path/to/python3.11'" >&2; exit 2; }
-	$(SELECT) sim serve keys >$(VENV)/demo.txt
+	$(SELECT) build sim serve keys >$(VENV)/demo.txt
 	$(INSTALL) --require-hashes --no-deps -r $(VENV)/demo.txt
 	$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@
 
 $(VENV)/with-dev: $(VENV)/python pyproject.toml requirements.txt
-	$(SELECT) sim solvers serve keys wot ros2 dev >$(VENV)/dev.txt
+	$(SELECT) build sim solvers serve keys wot ros2 dev >$(VENV)/dev.txt
 	$(INSTALL) --require-hashes --no-deps -r $(VENV)/dev.txt
 	$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@ $(VENV)/with-sim

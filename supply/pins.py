@@ -1,6 +1,6 @@
 """The pinned versions in requirements.txt: writes them anew, and selects those that some extras need.
 
-    python -m supply.pins select sim serve     prints the part for these extras, for `pip install --require-hashes`
+    python -m supply.pins select build sim     prints the part for these extras, for `pip install --require-hashes`
     python -m supply.pins renew [--upgrade]    writes the file; needs uv (`pip install uv`), and the registry of pip
 
 The file has the SHA-256 of every file of every version, for all platforms, and names no registry. pip takes hashes from
@@ -37,14 +37,14 @@ def requirements(text: str) -> Iterator[tuple[frozenset[str], str]]:
 
 
 def selected(text: str, extras: Collection[str]) -> str:
-    """The requirements of the core, of building and of some extras. Raises SystemExit for an extra without any."""
+    """The requirements of the core and of some extras, or of `build`. Raises SystemExit for an extra without any."""
     found = list(requirements(text))
     unknown = set(extras).difference(*(who for who, _ in found))
     if unknown:
         raise SystemExit(
             f"{FILE}: nothing is pinned for {', '.join(sorted(unknown))}; type: python -m supply.pins renew"
         )
-    wanted = {CORE, BUILD, *extras}
+    wanted = {CORE, *extras}
     return "".join(f"{requirement}\n" for who, requirement in found if who & wanted)
 
 

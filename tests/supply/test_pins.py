@@ -49,7 +49,7 @@ def installed_needs(name: str) -> list[Requirement]:
     return [one for one in said if not one.marker or one.marker.evaluate({"extra": ""})]
 
 
-@pytest.mark.parametrize("extras", [(), ("sim", "serve", "keys"), ("sim", "solvers", "serve", "keys", "dev")], ids=str)
+@pytest.mark.parametrize("extras", [(), ("build", "sim", "serve", "keys"), ("build", "sim", "solvers", "serve", "keys", "dev")], ids=str)
 def test_what_is_selected_needs_nothing_else(extras: tuple[str, ...]) -> None:
     chosen = pinned(selected(TEXT, extras))
     here = {name for name, pins in chosen.items() if any(not one.marker or one.marker.evaluate() for one in pins)}
@@ -76,8 +76,9 @@ def test_the_core_is_selected_without_what_it_does_not_need_and_in_a_bare_python
     command = [sys.executable, "-I", "-S", str(ROOT / "supply" / "pins.py"), "select"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path("/")).stdout
     assert printed == selected(TEXT, ())
-    assert {"rdflib", "eclipse-zenoh", "hatchling"} <= pinned(printed).keys()
-    assert not {"pytest", "mitsuba", "cryptography", "uvicorn"} & pinned(printed).keys()
+    assert {"rdflib", "eclipse-zenoh"} <= pinned(printed).keys()
+    assert not {"pytest", "mitsuba", "cryptography", "uvicorn", "hatchling"} & pinned(printed).keys()
+    assert "hatchling" in pinned(selected(TEXT, ["build"]))
 
 
 def test_an_extra_that_is_not_pinned_is_a_sentence() -> None:
