@@ -102,7 +102,7 @@ def test_a_mangled_certificate_is_none_or_says_what_is_wrong_with_it(random: Ran
         assert all(isinstance(one, str | int | tuple) for one in said)
         if fault:
             with pytest.raises(PeerError):
-                authority.admit(pem)
+                authority.admit("lab", pem)
 
 
 @settings(max_examples=examples(200))
@@ -123,7 +123,7 @@ def test_a_folder_of_keys_with_a_mangled_file_is_refused_with_a_sentence(random:
         for use in (
             lambda: KeysFolder(folder).credentials((PrincipalKind.SITE,), "home"),
             lambda: KeysFolder(folder).hub_authorities(),
-            lambda: KeysFolder(folder).admitted(),
+            lambda: KeysFolder(folder).admitted("lab"),
             lambda: KeysFolder(folder).revoked(),
             lambda: KeysFolder(folder).issued(),
             lambda: KeysFolder(keys() / "authority").authority.fault(KeysFolder(folder).believed_authorities()),

@@ -49,7 +49,9 @@ def installed_needs(name: str) -> list[Requirement]:
     return [one for one in said if not one.marker or one.marker.evaluate({"extra": ""})]
 
 
-@pytest.mark.parametrize("extras", [(), ("build", "sim", "serve", "keys"), ("build", "sim", "solvers", "serve", "keys", "dev")], ids=str)
+@pytest.mark.parametrize(
+    "extras", [(), ("build", "sim", "serve", "keys"), ("build", "sim", "solvers", "serve", "keys", "dev")], ids=str
+)
 def test_what_is_selected_needs_nothing_else(extras: tuple[str, ...]) -> None:
     chosen = pinned(selected(TEXT, extras))
     here = {name for name, pins in chosen.items() if any(not one.marker or one.marker.evaluate() for one in pins)}
