@@ -5,6 +5,7 @@ const SVG = "http://www.w3.org/2000/svg";
 /** A text with control characters, and those that change the direction of writing, spelt out as the terminal has them. */
 export const plain = (text) =>
   String(text).replace(/[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, (found) => {
+    if (found === "\r") return "\\r";
     const code = found.charCodeAt(0).toString(16);
     return code.length < 3 ? `\\x${code.padStart(2, "0")}` : `\\u${code.padStart(4, "0")}`;
   });
