@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.access import AccessRules, Doorkeeper, KeysFolder, Principal, PrincipalKind, believe, first_rules
 from selfconf.bus.memory import MemoryBus, Network
-from selfconf.bus.port import Replies, Request
+from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.refusals import RefusalLog
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
@@ -176,3 +176,19 @@ def test_who_is_revoked_is_out(door: Door, tmp_path: Path) -> None:
     door.folder.revoke(Principal(PrincipalKind.CONFIGURATOR, "eve"))
     door.pass_time(1.5)
     assert "conf.eve" not in door.principals
+
+
+def test_changes_without_end_keep_nobody_from_being_asked(door: Door) -> None:
+    asked: list[Request] = []
+    stranger = door.network.node()
+
+    def answer(request: Request) -> None:
+        asked.append(request)
+        request.finish()
+
+    stranger.serve(KEYS.advertisements("strange"), answer)
+    changed = stranger.publisher(KEYS.changed("strange"), Urgency.EVENT)
+    for _ in range(500):
+        changed.put(b"")
+        door.network.run(lambda: False, 0.002)
+    assert 2 <= len(asked) <= 25
