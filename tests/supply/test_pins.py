@@ -15,7 +15,7 @@ from packaging.utils import canonicalize_name
 from supply.pins import FILE, ROOT, requirements, selected
 
 TEXT = FILE.read_text("utf-8")
-EXTRAS = ("sim", "solvers", "serve", "keys", "dev", "fast-owl", "bench")
+EXTRAS = ("sim", "solvers", "serve", "keys", "wot", "ros2", "dev", "fast-owl", "bench")
 
 
 def pinned(text: str) -> dict[str, list[Requirement]]:
@@ -50,7 +50,9 @@ def installed_needs(name: str) -> list[Requirement]:
 
 
 @pytest.mark.parametrize(
-    "extras", [(), ("build", "sim", "serve", "keys"), ("build", "sim", "solvers", "serve", "keys", "dev")], ids=str
+    "extras",
+    [(), ("build", "sim", "serve", "keys"), ("build", "sim", "solvers", "serve", "keys", "wot", "ros2", "dev")],
+    ids=str,
 )
 def test_what_is_selected_needs_nothing_else(extras: tuple[str, ...]) -> None:
     chosen = pinned(selected(TEXT, extras))
