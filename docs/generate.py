@@ -12,6 +12,7 @@ from docs import json_schemas, ontology
 from selfconf.cli import validate
 from selfconf.cli.main import COMMANDS, parser
 from selfconf.model.codes import CODES
+from selfconf.project import PROJECT_FILE, PROJECT_KEYS
 
 HERE = Path(__file__).parent
 NOTE = "<!-- Made by `python -m docs.generate`; edit the code instead. -->"
@@ -21,7 +22,7 @@ def commands() -> str:
     """The reference of the command line, from the commands' own help."""
     os.environ["COLUMNS"] = "100"
     top = parser()
-    pages = [f"# The command line\n\n{NOTE}\n"]
+    pages = [f"# The command line\n\n{NOTE}\n", project_file()]
     subparsers = next(action for action in top._actions if isinstance(action, argparse._SubParsersAction))
     for name in COMMANDS:
         help_ = subparsers.choices[name].format_help().rstrip()
@@ -35,6 +36,39 @@ def _subcommands(command: argparse.ArgumentParser) -> list[argparse.ArgumentPars
     """The parsers of the commands below a command, in their order."""
     nested = (action for action in command._actions if isinstance(action, argparse._SubParsersAction))
     return [parser for action in nested for parser in action.choices.values()]
+
+
+def project_file() -> str:
+    """What a project file may say, from the table by which it is read."""
+    rows = "\n".join(f"| `{key}` | {setting.means} |" for key, setting in PROJECT_KEYS.items())
+    return f"""## selfconf.toml
+
+A project says once, in a file `{PROJECT_FILE}`, what its commands would have to be told each time. It is looked for in
+the current folder and upward from it. Each key is the option of that name; what is typed goes before what the
+environment says (`$SELFCONF_ECOLOGY`, `$SELFCONF_CONNECT`), and that before the file. `--help` shows where each value
+comes from now, and `selfconf validate` checks the file.
+
+```toml
+ecology = "home"
+ads = ["ads"]                # relative to this file, as all paths are
+ontology = "ontology"
+reasoning = "subclass"
+seconds = 5
+
+[bind.navigate]              # for the template or task of this name
+robot = ":Astrid"
+```
+
+| key | says |
+|---|---|
+{rows}
+| `bind.TEMPLATE.PARAMETER` | a value for a parameter, as `--bind PARAMETER=` takes it; numbers may go without quotes |
+
+With `ads` or `endpoint` in the file, `configure`, `partition` and `query` look there, and ask the living ecology where
+`--ecology` or `--connect` is typed or set in the environment. `run` joins the ecology if sites of it are known, and
+else starts one for the `ads`; `site` serves the `ads`, and `validate` checks them, when no path is given. A file that
+belongs to neither you nor the owner of its folder is passed over.
+"""
 
 
 def codes() -> str:

@@ -62,7 +62,7 @@ def stamps(
                 for entry in entries:
                     if entry.is_dir(follow_symlinks=False):
                         waiting.append(entry.path)
-                    elif entry.name.endswith(endings) and entry.name not in endings:
+                    elif entry.name.endswith(endings) and (entry.name not in endings or entry.name[0] != "."):
                         status = _status(entry)
                         if status is not None and stat.S_ISREG(status.st_mode):
                             found[entry.path] = status.st_mtime_ns, status.st_size

@@ -13,9 +13,12 @@ from selfconf.api.file_checks import Remembered, shared
 from selfconf.api.tables import Tabular
 from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
+from selfconf.project import PROJECT_FILE, project_problems
 from selfconf.rdf import validation
 from selfconf.rdf.validation import CheckEach, SourceText
 
+CHECKED = (*files.TURTLE, PROJECT_FILE)
+"""The endings of the files that stand for a folder."""
 LARGEST_FILE = 64 << 20
 """A file of more bytes is not read."""
 
@@ -63,6 +66,7 @@ def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach 
     """The problems of files and folders by the shapes that ship with selfconf; `each` spreads or remembers the work."""
     sources: dict[Path, SourceText] = {}
     found: list[Diagnostic] = []
+    projects: set[str] = set()
     for path in paths:
         names = list(_files(path))
         if not names:
@@ -73,13 +77,16 @@ def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach 
                 if name != "-" and Path(name).stat().st_size > LARGEST_FILE:
                     message = f"This file is larger than {LARGEST_FILE >> 20} MiB: that cannot be meant."
                     found.append(Diagnostic(name, 1, 1, "SC-S05", message))
+                elif Path(name).name == PROJECT_FILE:
+                    found += project_problems(name, Path(name).read_bytes(), Path(name).parent)
+                    projects.add(name)
                 else:
                     sources.setdefault(Path(name).resolve(), _read(name))
             except OSError as error:
                 message = f"This file cannot be read: {error.strerror or error}."
                 found.append(Diagnostic(name, 1, 1, "SC-S03", message))
     result = _validated(sources.values(), ontologies, each)
-    concerned = {*result.files, *(problem.file for problem in found if problem.code in UNREADABLE)}
+    concerned = {*result.files, *projects, *(problem.file for problem in found if problem.code in UNREADABLE)}
     return report(sorted(concerned), (*result.diagnostics, *found))
 
 
@@ -109,13 +116,14 @@ def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
             raise AuthorError(f"the ontology cannot be read: {error.strerror or error}", file=name) from None
 
 
-def _files(given: str, endings: tuple[str, ...] = files.TURTLE) -> Iterator[str]:
+def _files(given: str, endings: tuple[str, ...] = CHECKED) -> Iterator[str]:
     """The files that a path stands for: those of a folder that end so, by name, or itself."""
     path = Path(given)
     if given == "-" or not path.is_dir():
         yield given
     else:
-        yield from map(str, files.within(path, endings=endings))
+        found = files.within(path, endings=endings)
+        yield from (str(file) for file in found if file.suffix != ".toml" or file.name == PROJECT_FILE)
 
 
 def _read(name: str) -> SourceText:

@@ -15,6 +15,7 @@ from keyword import iskeyword
 from types import ModuleType
 from typing import NoReturn
 
+from selfconf.cli.settings import Settings, found_settings
 from selfconf.cli.terminal import complain, for_programs, guard, silence
 from selfconf.errors import SelfconfError, SiteMisusedError, reason
 
@@ -66,8 +67,8 @@ def command(name: str) -> ModuleType:
     return importlib.import_module(f"selfconf.cli.{name}{'_' if iskeyword(name) else ''}")
 
 
-def command_parser(name: str, subparsers: argparse._SubParsersAction[Parser]) -> None:
-    """Add the parser of one command with its options."""
+def command_parser(name: str, subparsers: argparse._SubParsersAction[Parser], settings: Settings) -> None:
+    """Add the parser of one command with its options, which have their values from the settings where not typed."""
     module, does = command(name), COMMANDS[name]
     parser = subparsers.add_parser(
         name,
@@ -78,12 +79,14 @@ def command_parser(name: str, subparsers: argparse._SubParsersAction[Parser]) ->
         allow_abbrev=False,
     )
     module.add_arguments(parser)
+    settings.declare(parser)
     parser.add_argument("--debug", action="store_true", help="show tracebacks and what happens inside")
     parser.set_defaults(run=module.run, misused=parser.error)
 
 
-def parser(names: Collection[str] = tuple(COMMANDS)) -> Parser:
+def parser(names: Collection[str] = tuple(COMMANDS), settings: Settings | None = None) -> Parser:
     """The parser of the command line; commands that are not among the names are listed, but not loaded."""
+    settings = settings or Settings()
     top = Parser(
         prog="selfconf",
         description="Robots, sensors and home devices that wire themselves.",
@@ -96,7 +99,7 @@ def parser(names: Collection[str] = tuple(COMMANDS)) -> Parser:
     subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name, does in COMMANDS.items():
         if name in names:
-            command_parser(name, subparsers)
+            command_parser(name, subparsers, settings)
         else:
             subparsers.add_parser(name, help=does)
     return top
@@ -106,7 +109,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
     guard()
     typed = sys.argv[1:] if arguments is None else arguments
-    given, unknown = parser(typed[:1]).parse_known_args(typed)
+    settings, broken = found_settings(complain)
+    given, unknown = parser(typed[:1], settings).parse_known_args(typed)
     if unknown:
         given.misused(f"unrecognized arguments: {' '.join(unknown)}{_advice(unknown)}")
     if getattr(given, "format", "text") not in FOR_PEOPLE:
@@ -114,6 +118,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)
     code: int = 0
     try:
+        if broken is not None and settings.concerned and given.command != "validate":  # which reports it
+            raise broken
+        settings.fill(given)
         code = given.run(given)
         sys.stdout.flush()
         return code

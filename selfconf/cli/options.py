@@ -5,23 +5,22 @@ from __future__ import annotations
 import argparse
 import gc
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf.cli.terminal import complain
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, BindingError
 from selfconf.files import STDIN
+from selfconf.project import REASONING, STRATEGIES
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Method
     from selfconf.api.ecology import Ecology
     from selfconf.api.living import LivingEcology
-    from selfconf.api.task import TaskSpecification
+    from selfconf.api.task import TaskSpecification, Value
+    from selfconf.project import Project
 
-STRATEGIES = ("first", "paper", "best")
-REASONING = ("syntactic", "subclass", "owl-rl")
-# Both are enumerations of the library, which is not loaded to parse arguments; a test compares them.
 LONGEST_SECONDS = 1e6
 """Seconds that an alarm can be set to everywhere."""
 
@@ -148,7 +147,19 @@ def task_of(given: argparse.Namespace) -> TaskSpecification:
     from selfconf.api.task import pairs, template
 
     one_stdin(given.template, *(given.ads or ()), *given.ontology)
-    return template(given.template, given.wanted).bind(**pairs(given.bind)).complete()
+    task, typed = template(given.template, given.wanted), pairs(given.bind)
+    try:
+        task = task.bind(**_project_bindings(given.project, task, typed))
+    except BindingError as error:
+        raise AuthorError(f"{error} (bound in {given.project.path})") from None
+    return task.bind(**typed).complete()
+
+
+def _project_bindings(project: Project, task: TaskSpecification, typed: Mapping[str, str]) -> dict[str, Value]:
+    """What the project file binds of a task that neither its document nor the command line does."""
+    names = [name for one in (task.document.task.iri, task.iri) if one for name in (one, task.names(one), one.short)]
+    known = {*typed, *task.bindings}
+    return {name: value for name, value in project.bindings(*names).items() if name not in known}
 
 
 def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:

@@ -39,6 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=ANSWER_FORMATS, default=ANSWER_FORMATS[0], help="default: %(default)s")
     parser.add_argument(
         "--seconds",
+        dest="answer_seconds",  # the key `seconds` of a project file limits searches
         metavar="S",
         type=float,
         default=SECONDS,
@@ -57,11 +58,11 @@ def run(given: argparse.Namespace) -> int:
 
     one_stdin(Path(given.sparql), *(given.ads or ()), *given.ontology)
     text = _text(given.sparql)
-    if given.rows < 1 or given.seconds <= 0:
+    if given.rows < 1 or given.answer_seconds <= 0:
         raise AuthorError("--rows and --seconds take numbers greater than 0")
     if given.endpoint is not None and given.ontology:
         raise AuthorError("an endpoint holds what it holds; --ontology is for files and the living ecology")
-    question = Question(text, given.format, given.rows, seconds=given.seconds)
+    question = Question(text, given.format, given.rows, seconds=given.answer_seconds)
     with closing(given_ecology(given)) as ecology:
         if ecology.remote:
             return _told(ecology.asked(question), given.rows)

@@ -93,6 +93,8 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.termination import end_as_by_ctrl_c, ignore_from_now_on
 
     end_as_by_ctrl_c()
+    if "ads" in given.from_project and _lives(given):
+        given.ads = None  # what is missing is started, and this is there
     task = task_of(given)
     if given.detach:
         return _detach(given, task)
@@ -113,6 +115,14 @@ def run(given: argparse.Namespace) -> int:
     if running.refusal is not None and given.format == "text":
         _explain(running, task)
     return 1 if running.refusal is not None else 0
+
+
+def _lives(given: argparse.Namespace) -> bool:
+    """Whether there are sites to run in, so that none has to be started for the advertisements of the project file."""
+    from selfconf import rendezvous
+
+    ecology, endpoints = rendezvous.asked_for(given.ecology, given.connect)
+    return bool(given.detach or endpoints or (ecology is not None and rendezvous.local_sites(ecology)))
 
 
 @contextmanager

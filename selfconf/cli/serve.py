@@ -23,6 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--seconds",
+        dest="answer_seconds",  # the key `seconds` of a project file limits searches
         metavar="S",
         type=seconds_option,
         default=QUERY_SECONDS,
@@ -48,7 +49,7 @@ def run(given: argparse.Namespace) -> int:
     shown = rendezvous.credentials(given.keys, "read", "conf", "site")
     with joined(given) as ecology:
         name, endpoints = ecology.name, ecology.endpoints
-    place, seconds, folder = (given.host, given.port), given.seconds, given.history
+    place, seconds, folder = (given.host, given.port), given.answer_seconds, given.history
     serve_ecology(name, endpoints, shown, *place, seconds, folder, lambda url: _tell(name, url))
     return 0
 

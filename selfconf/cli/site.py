@@ -17,8 +17,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "paths",
         metavar="PATH",
         type=Path,
-        nargs="+",
-        help="advertisements: files, or folders with *.ttl below them",
+        nargs="*",
+        help="advertisements: files, or folders with *.ttl below them (default: the `ads` of selfconf.toml)",
     )
     parser.add_argument(
         "--ecology", metavar="NAME", help="the ecology that this site is part of (default: $SELFCONF_ECOLOGY)"
@@ -63,8 +63,11 @@ def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT or SIGTERM; then 0."""
     from selfconf.api.site_program import serve
 
+    paths = given.paths or given.project.values.get("ads")
+    if not paths:
+        given.misused("there is nothing to serve; name files or folders, or give `ads` in selfconf.toml")
     serve(
-        given.paths,
+        paths,
         given.ecology,
         given.name,
         given.listen,

@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf.cli.terminal import complain, display
@@ -14,6 +15,7 @@ from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
     from selfconf.model.codes import Code
+    from selfconf.project import Project
 
 REPORT_FORMATS = ("text", "json", "github", "sarif", "junit")
 # Those of `selfconf.cli.reports`, which is not loaded to parse arguments; a test compares them.
@@ -26,7 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "paths",
         nargs="*",
         metavar="PATH",
-        help="a Turtle file, a folder (all *.ttl below it), or - for standard input",
+        help="a Turtle file, a project file selfconf.toml, a folder (all of them below it), or - for standard input"
+        " (default: the project file and its `ads`)",
     )
     parser.add_argument(
         "--format",
@@ -58,12 +61,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.explain is not None:
         sys.stdout.write(explanation(arguments.explain))
         return 0
-    if not arguments.paths:
-        raise AuthorError("there is nothing to validate; name a Turtle file or a folder")
+    paths = arguments.paths or _project_paths(arguments.project)
+    if not paths:
+        raise AuthorError("there is nothing to validate; name a Turtle file or a folder, or write a selfconf.toml")
     from selfconf.api.validation import validate
     from selfconf.cli.reports import RENDERERS, text
 
-    result = validate(arguments.paths, ontologies=arguments.ontology, cache=arguments.cache)
+    result = validate(paths, ontologies=arguments.ontology, cache=arguments.cache)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
     display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
     complain(text.summary(result))
@@ -72,6 +76,11 @@ def run(arguments: argparse.Namespace) -> int:
         complain(f"selfconf validate: cannot read {names}; correct the path or the syntax.")
         return 2
     return 0 if result.conforms else 1
+
+
+def _project_paths(project: Project) -> list[Path]:
+    """What there is to validate in a project: its file, and its advertisements; nothing where there is no project."""
+    return [project.path, *project.values.get("ads", ())] if project.path.is_file() else []
 
 
 def explanation(code: str) -> str:
@@ -95,9 +104,9 @@ def reference(codes: Iterable[Code]) -> str:
         if entry.bad:
             lines += [
                 "Not so:\n",
-                f"```turtle\n{entry.bad}\n```\n",
+                f"```{entry.language}\n{entry.bad}\n```\n",
                 "But so:\n",
-                f"```turtle\n{entry.good}\n```\n",
+                f"```{entry.language}\n{entry.good}\n```\n",
             ]
         sections.append("\n".join(lines))
     return "\n".join(sections)

@@ -3,9 +3,9 @@ each.
 
 A code never changes its meaning and is never given away again. The letter tells what the problem is
 about: S the file itself, A advertisements, T templates, K tasks, C configurations, O ontologies, L what
-reads well but is probably not what was meant. The shapes that earn a code are named here; a test holds
-this table and `shapes/` together, and checks every example: the bad one earns its code, the good one
-earns nothing.
+reads well but is probably not what was meant, P the project file `selfconf.toml`. The shapes that earn a
+code are named here; a test holds this table and `shapes/` together, and checks every example: the bad one
+earns its code, the good one earns nothing.
 """
 
 from __future__ import annotations
@@ -42,6 +42,8 @@ class Code:
     shapes: tuple[str, ...] = ()
     """The local names of the shapes that earn this code."""
     severity: Severity = Severity.ERROR
+    language: str = "turtle"
+    """What the examples are written in: `turtle` or `toml`."""
 
 
 _TUNER = ":tuner a sc:Component, rob:Tuner"
@@ -652,6 +654,36 @@ CODES: tuple[Code, ...] = (
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ] .',
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-P01", "A project file is TOML.",
+        "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
+        'ecology = home', 'ecology = "home"',
+        language="toml",
+    ),
+    Code(
+        "SC-P02", "A project file has keys that selfconf knows.",
+        "A key with a typing error would be overlooked in silence.",
+        'ecologie = "home"', 'ecology = "home"',
+        language="toml",
+    ),
+    Code(
+        "SC-P03", "A key of a project file has a value of its kind.",
+        "Each key is the option of that name and takes what the option takes; numbers go without quotes.",
+        'steps = "many"', "steps = 100000",
+        language="toml",
+    ),
+    Code(
+        "SC-P04", "A project file names one ecology.",
+        "Advertisements are in files (`ads`) or at a SPARQL endpoint (`endpoint`); a command asks one of them.",
+        'ads = "."\nendpoint = "https://example.org/sparql"', 'ads = "."',
+        language="toml",
+    ),
+    Code(
+        "SC-P05", "What a project file names is there.",
+        "Paths are relative to the folder of the project file.",
+        'ads = "advertisments"', 'ads = "."',
+        language="toml",
     ),
 )  # fmt: skip
 

@@ -14,8 +14,8 @@ BEFORE = 80
 """How many of them stand before the place."""
 LONGEST_SAID = 1_000
 """Characters of a message or hint, which may quote what an author wrote."""
-UNREADABLE = frozenset(("SC-S01", "SC-S02", "SC-S03", "SC-S05"))
-"""The codes of files that cannot be read: no Turtle, not UTF-8, not there, too deep."""
+UNREADABLE = frozenset(("SC-S01", "SC-S02", "SC-S03", "SC-S05", "SC-P01"))
+"""The codes of files that cannot be read: no Turtle, not UTF-8, not there, too deep; no TOML."""
 
 
 class Severity(str, Enum):

@@ -29,7 +29,7 @@ def test_every_shape_that_is_named_ships() -> None:
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.code)
 def test_a_code_has_a_letter_and_a_number_and_says_what_has_to_hold_in_a_sentence(code: Code) -> None:
-    assert re.fullmatch(r"SC-[SATKCOL]\d\d", code.code)
+    assert re.fullmatch(r"SC-[SATKCOLP]\d\d", code.code)
     assert re.fullmatch(r"[A-Z].*\.", code.title)
     assert re.fullmatch(r"[A-Z].*\.", code.why, re.DOTALL)
     assert bool(code.bad) == bool(code.good) or code.code in UNREADABLE

@@ -1,0 +1,276 @@
+"""The project file `selfconf.toml`: what the commands need not be told each time that they are typed in a project.
+
+It is looked for upward from the current folder, as other tools look for theirs. Each key is the option of that name
+(`--ecology`, `--ads` and so on); what is typed goes before what the environment says, and that before the file.
+
+A file may name advertisements, and so commands that `selfconf run` starts. In a folder that all may write to, such as
+/tmp, it might be a stranger's: one that belongs to neither the user nor the owner of its folder is passed over.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from selfconf.errors import AuthorError
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.protocol.keys import checked_name
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+PROJECT_FILE = "selfconf.toml"
+"""The name of the file."""
+LARGEST_PROJECT = 1 << 18
+"""A file of more bytes is not read."""
+STRATEGIES = ("first", "paper", "best")
+REASONING = ("syntactic", "subclass", "owl-rl")
+# Both are enumerations of the library, which is not loaded to parse arguments; a test compares them.
+BIND = "bind"
+"""The key of the table that holds a table of bindings for each template."""
+
+
+class ProjectKey(NamedTuple):
+    """One key of a project file."""
+
+    means: str
+    """What it says, for people."""
+    wrong: Callable[[Any], str]
+    """What is wrong with a value, in words; empty if nothing is."""
+    paths: bool = False
+    """Whether it names files and folders, relative to the project file."""
+
+
+def _is_text(value: object) -> str:
+    return "" if isinstance(value, str) and value else "takes a text in quotes"
+
+
+def _is_texts(value: object) -> str:
+    several = value if isinstance(value, list) else [value]
+    right = bool(several) and not any(map(_is_text, several))
+    return "" if right else "takes a text in quotes, or a list of them"
+
+
+def _is_name(value: object) -> str:
+    try:
+        return _is_text(value) or checked_name(str(value), "an ecology")[:0]
+    except AuthorError as error:
+        return f"takes a name: {error}"
+
+
+def _is_whole(value: object) -> str:
+    right = isinstance(value, int) and not isinstance(value, bool) and value > 0
+    return "" if right else "takes a whole number above zero"
+
+
+def _is_seconds(value: object) -> str:
+    number = value if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
+    return "" if 0 < number <= 1e6 else "takes a number of seconds above zero"
+
+
+def _is_one_of(choices: tuple[str, ...]) -> Callable[[object], str]:
+    return lambda value: "" if value in choices else f"takes one of {', '.join(map(repr, choices))}"
+
+
+def _is_value(value: object) -> str:
+    right = isinstance(value, str | int | float)
+    return "" if right else "takes a text such as on a command line, a number, or true or false"
+
+
+PROJECT_KEYS: Mapping[str, ProjectKey] = {
+    "ecology": ProjectKey("the name of the living ecology", _is_name),
+    "connect": ProjectKey("where its sites listen, such as tcp/10.0.0.2:7447; one or a list", _is_texts),
+    "ads": ProjectKey("advertisements in files and folders; one or a list", _is_texts, paths=True),
+    "endpoint": ProjectKey("a SPARQL endpoint that holds the advertisements, in place of ads", _is_text),
+    "ontology": ProjectKey(
+        "ontologies besides those of selfconf, files and folders; one or a list", _is_texts, paths=True
+    ),
+    "reasoning": ProjectKey(f"what the roles see: {', '.join(REASONING)}", _is_one_of(REASONING)),
+    "strategy": ProjectKey(f"how to search: {', '.join(STRATEGIES)}", _is_one_of(STRATEGIES)),
+    "steps": ProjectKey("give up a search after so many steps", _is_whole),
+    "seconds": ProjectKey("give up a search after so many seconds", _is_seconds),
+}
+"""The keys, in the order in which they are explained; besides them there is the table `bind`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """What a project file says; without a file, nothing."""
+
+    path: Path = Path(PROJECT_FILE)
+    """The file, as seen from the current folder."""
+    values: Mapping[str, Any] = field(default_factory=dict)
+    """By key: texts, numbers, and for `ads`, `ontology` and `connect` lists, the paths as seen from the folder."""
+    bound: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """The bindings by template and parameter."""
+    lines: Mapping[tuple[str, ...], int] = field(default_factory=dict)
+    """The line of each key, counted from one."""
+
+    def place(self, *keys: str) -> str:
+        """The file and line of a key, for people."""
+        return f"{self.path}:{self.lines.get(keys, 1)}"
+
+    def bindings(self, *names: str) -> Mapping[str, Any]:
+        """The values for the parameters of the template or task that has these names, the first of which counts."""
+        return next((self.bound[name] for name in names if name in self.bound), {})
+
+
+def project_path(folder: Path, complain: Callable[[str], None] = lambda _: None) -> Path | None:
+    """The project file of a folder: its own, or that of the nearest folder above it; None if there is none.
+
+    `complain` receives a sentence about each one that is passed over, because it belongs to a stranger.
+    """
+    for above in (folder, *folder.parents):
+        path = above / PROJECT_FILE
+        try:
+            if not path.is_file():
+                continue
+            owner = path.stat().st_uid
+            if owner in (os.getuid(), above.stat().st_uid):
+                return path
+        except OSError:  # it went while it was looked at, or may not be looked at
+            continue
+        complain(f"{path} is passed over: it belongs to neither you nor the owner of its folder")
+    return None
+
+
+def read_project(path: Path) -> Project:
+    """What a project file says. Raises AuthorError, with line and column, for the first thing that is wrong in it."""
+    shown = Path(os.path.relpath(path))
+    try:
+        octets = path.read_bytes()
+    except OSError as error:
+        raise AuthorError(f"cannot read {shown}: {error.strerror}") from None
+    body, lines, problems = _examined(str(shown), octets)
+    for problem in problems:
+        raise AuthorError(problem.message, file=problem.file, line=problem.line, column=problem.column)
+    return Project(shown, dict(_settled(body, path.parent)), body.get(BIND, {}), lines)
+
+
+def project_problems(name: str, octets: bytes, folder: Path) -> list[Diagnostic]:
+    """Everything that is wrong with the text of a project file, also paths in it that lead nowhere from its folder."""
+    body, lines, problems = _examined(name, octets)
+    for key, setting in PROJECT_KEYS.items():
+        if setting.paths and key in body and not setting.wrong(body[key]):
+            problems += (
+                _problem(name, octets, lines, (key,), "SC-P05", f"There is no file or folder {text}.")
+                for text in _listed(body[key])
+                if not (folder / text).exists()
+            )
+    return problems
+
+
+def _examined(name: str, octets: bytes) -> tuple[dict[str, Any], dict[tuple[str, ...], int], list[Diagnostic]]:
+    """The tables of a file, the line of each key, and what is wrong."""
+    try:
+        if len(octets) > LARGEST_PROJECT:
+            raise ValueError(f"{len(octets)} bytes are too many")
+        text = octets.decode().removeprefix("\ufeff")
+        body = tomllib.loads(text)
+    except RecursionError:
+        return {}, {}, [Diagnostic(name, 1, 1, "SC-P01", "Not TOML that can be read: brackets in brackets.")]
+    except ValueError as error:  # of TOML, or of UTF-8
+        return {}, {}, [_not_toml(name, octets, str(error))]
+    lines = dict(_lines(text))
+    problems = [_problem(name, octets, lines, *one) for one in _wrong(body)]
+    return body, lines, sorted(problems, key=lambda one: one.order)
+
+
+def _not_toml(name: str, octets: bytes, said: str) -> Diagnostic:
+    """Why a file is no TOML; the parser says where in words alone (before Python 3.14)."""
+    place = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", said)
+    line, column = 1, 1
+    if place is not None and place[1]:
+        line, column = int(place[1]), int(place[2])
+    elif place is not None:
+        last = octets.decode().removeprefix("\ufeff").split("\n")
+        line, column = len(last), len(last[-1]) + 1
+    return Diagnostic(name, line, column, "SC-P01", f"Not TOML: {said[: place.start()] if place else said}.")
+
+
+def _wrong(body: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    """What is wrong with the tables of a file: the key, the code and a sentence for each problem."""
+    for key, value in body.items():
+        if key == BIND:
+            yield from _wrong_bindings(value)
+        elif key not in PROJECT_KEYS:
+            yield (key,), "SC-P02", f"There is no key {key!r}; the keys are {', '.join([*PROJECT_KEYS, BIND])}."
+        elif wrong := PROJECT_KEYS[key].wrong(value):
+            yield (key,), "SC-P03", f"The key {key!r} {wrong}."
+    if "ads" in body and "endpoint" in body:
+        yield ("endpoint",), "SC-P04", "The keys 'ads' and 'endpoint' name two ecologies; give one of them."
+
+
+def _wrong_bindings(value: object) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    if not isinstance(value, dict):
+        yield (BIND,), "SC-P03", f"The key {BIND!r} takes a table for each template, such as [bind.navigate]."
+        return
+    for template, bound in value.items():
+        if not isinstance(bound, dict):
+            yield (BIND, template), "SC-P03", f"The key {template!r} of {BIND} takes a table of parameters and values."
+            continue
+        for name, given in bound.items():
+            if wrong := _is_value(given):
+                yield (BIND, template, name), "SC-P03", f"The parameter {name!r} {wrong}."
+
+
+def _problem(
+    name: str, octets: bytes, lines: Mapping[tuple[str, ...], int], keys: tuple[str, ...], code: str, message: str
+) -> Diagnostic:
+    # A key whose table has no line of its own, as in `bind.navigate = 3`, is where the longest key begins that has it.
+    line = lines.get(keys) or min((at for key, at in lines.items() if key[: len(keys)] == keys), default=1)
+    source = octets.decode().splitlines()[line - 1]
+    column = len(source) - len(source.lstrip()) + 1
+    return Diagnostic(name, line, column, code, message, width=len(source.strip()), source=source)
+
+
+def _lines(text: str) -> Iterator[tuple[tuple[str, ...], int]]:
+    """The keys of a TOML document, each with the line on which it begins.
+
+    No part of a value that goes over several lines is TOML by itself, so the lines up to the first at which there is
+    some hold one key, or the head of one table.
+    """
+    table: tuple[str, ...] = ()
+    waiting: list[str] = []
+    for number, line in enumerate(text.split("\n"), 1):
+        if not waiting and not line.split("#")[0].strip():
+            continue
+        waiting.append(line)
+        try:
+            said = tomllib.loads("\n".join(waiting))
+        except tomllib.TOMLDecodeError:
+            continue
+        keys = tuple(_path(said))
+        if waiting[0].lstrip().startswith("["):
+            table = keys
+        yield (keys if waiting[0].lstrip().startswith("[") else table + keys), number - len(waiting) + 1
+        waiting.clear()
+
+
+def _path(said: object) -> Iterator[str]:
+    """The path to the one value of a document with one key; an inline table is taken for a path as well."""
+    while isinstance(said, dict) and len(said) == 1:
+        ((key, said),) = said.items()
+        yield key
+
+
+def _settled(body: Mapping[str, Any], folder: Path) -> Iterator[tuple[str, Any]]:
+    for key, value in body.items():
+        if key in PROJECT_KEYS:
+            setting = PROJECT_KEYS[key]
+            if setting.paths:
+                yield key, [Path(os.path.relpath(folder / text)) for text in _listed(value)]
+            else:
+                yield key, _listed(value) if setting.wrong is _is_texts else value
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
