@@ -22,6 +22,9 @@ COMMANDS = (
     "stop",
     "access",
     "keys",
+    "echo",
+    "log",
+    "top",
 )
 """The commands with a schema, in the order of the page; each schema is named after its command."""
 INTRODUCTION = """\

@@ -61,6 +61,8 @@ class LocalSite:
     """When the process began: after a restart of the machine another one may have its number. Empty if not known."""
     relays: bool = True
     """Whether a relay of its own listens at the endpoint."""
+    log: str = field(default="", compare=False)
+    """The file in which it keeps what its components print; empty from a site of before that does not say it."""
 
 
 def runtime_folder() -> Path:
@@ -72,6 +74,11 @@ def runtime_folder() -> Path:
     if runtime and Path(runtime).is_dir():
         return Path(runtime) / "selfconf"
     return Path(tempfile.gettempdir()) / f"selfconf-{os.getuid()}"
+
+
+def log_folder() -> Path:
+    """Where the sites of this user keep what their components print, unless they are told otherwise."""
+    return runtime_folder() / "log"
 
 
 def usual_endpoints(ecology: str, secure: bool = False) -> list[str]:

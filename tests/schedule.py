@@ -10,11 +10,14 @@ from typing import Any
 
 INHABITED = {
     "tests/cli/test_discover.py",
+    "tests/cli/test_echo.py",
     "tests/cli/test_query.py",
     "tests/cli/test_run.py",
     "tests/cli/test_run_trouble.py",
+    "tests/cli/test_site.py",
     "tests/cli/test_status.py",
     "tests/cli/test_stop.py",
+    "tests/cli/test_top.py",
 }
 """Modules with tests that use the fixture `inhabited`, which starts a site and seven components: once is enough."""
 WHOLE = {

@@ -190,7 +190,14 @@ def test_a_folder_of_another_user_is_neither_written_nor_read(
 def test_the_file_is_plain_json(runtime_folder: Path) -> None:
     body = json.loads(rendezvous.announce(meeting()).read_text())
     process = {"process": os.getpid(), "started": start_time(os.getpid())}
-    assert body == {"ecology": "home", "site": "a", "endpoint": "tcp/127.0.0.1:7001", "relays": True, **process}
+    assert body == {
+        "ecology": "home",
+        "site": "a",
+        "endpoint": "tcp/127.0.0.1:7001",
+        "relays": True,
+        "log": "",
+        **process,
+    }
 
 
 def test_the_name_of_a_living_site_is_taken() -> None:

@@ -18,6 +18,7 @@ from selfconf.termination import (
     end_as_by_ctrl_c,
     orphaned,
     parent_environment,
+    resident_memory,
     start_time,
 )
 
@@ -104,3 +105,7 @@ def test_a_process_began_at_one_time_and_a_dead_one_at_none() -> None:
     process = subprocess.Popen([sys.executable, "-c", ""])
     process.wait()
     assert start_time(process.pid) == ""
+
+
+def test_this_program_takes_memory() -> None:
+    assert 1 << 20 < resident_memory() < 1 << 40

@@ -60,6 +60,8 @@ class Joining:
         self.bus = self._opened(listen, relays)
         self._reached_at = relays[0] if relays else ""
         self._file: Path | None = None
+        self.log = ""
+        """The log of the site, for others on this machine."""
         self._lost_at: float | None = None
         self._look_again: Undo = lambda: None
         self.bus.watch_link(self._link_changed)
@@ -92,7 +94,7 @@ class Joining:
     def announce(self) -> None:
         """Write down for others on this machine where this site is reached. Raises NetworkError."""
         relays = bool(self.bus.endpoint)
-        mine = LocalSite(self._ecology, self._name, self.endpoint, os.getpid(), relays=relays)
+        mine = LocalSite(self._ecology, self._name, self.endpoint, os.getpid(), relays=relays, log=self.log)
         self._file = rendezvous.announce(mine)
 
     def secure(self, security: Security) -> None:

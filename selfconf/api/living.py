@@ -12,7 +12,10 @@ from typing import Any, TypeVar
 from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, configure
 from selfconf.api.arguments import Paths, option
+from selfconf.api.component_states import ComponentState, component_states
+from selfconf.api.deployed import deployed_body
 from selfconf.api.detached import task_record
+from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
 from selfconf.api.membership import MEMBERS, check_may_run, member
 from selfconf.api.run import TAKING_DOWN, Run
@@ -21,22 +24,28 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies, Sample
 from selfconf.configurator.state import Policy
 from selfconf.deployment import holders_in
-from selfconf.discovery import Discovery, EcologyView
-from selfconf.errors import NetworkError, PeerError, TurtleError
+from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
+from selfconf.errors import AuthorError, NetworkError, PeerError, TurtleError
 from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
+from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk, owner_of, site_of, task_name
-from selfconf.protocol.messages import Access, Notice, RefusedAttempt, Status, TaskRecord
+from selfconf.protocol.messages import Access, End, Notice, RefusedAttempt, Status, TaskRecord, Wake
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
-from selfconf.rdf.vocabulary import SC
 from selfconf.render.why import told_why
 
 ROLL_CALL = 3.0
 """How long, in seconds, a roll-call may take."""
+STATES = 1.0
+"""How long, in seconds, the components may take to say how they are."""
+ENDING_PROCESS = 10.0
+"""How long, in seconds, a site may take to end a process."""
+LIVES_AGAIN = 20.0
+"""How long, in seconds, a component that is started again may take until it lives."""
 PAUSES = (0.0, 0.1, 0.4)
 """Seconds before each call of the sites, until one answers: one that has just begun may not be known to its hub."""
 ANSWER_PATIENCE = 20.0
@@ -186,6 +195,92 @@ class LivingEcology(Ecology):
         found = self.discovery.found.get(component)
         return "dormant" if found is not None and found.startable else "absent"
 
+    def component_states(self) -> tuple[ComponentState, ...]:
+        """How each advertised component is: whether it lives, who holds it, where, since when; sorted by IRI.
+
+        A component that lives and does not answer is named among the `complaints`.
+        """
+        discovery = self.discover()
+        replies = self._ask(self._view.keys.any_call("state"), seconds=STATES)
+        found = []
+        for one in component_states(discovery, self._view.keys, replies):
+            if one.state != "alive" and self._view.life(one.component) is not None:
+                one = one._replace(state="alive")
+                self.complaints = (*self.complaints, f"{one.component} lives, but does not say how it is")
+            found.append(one)
+        return tuple(found)
+
+    def component(self, term: str) -> FoundAdvertisement:
+        """The advertised component that a term means: an IRI, with or without brackets, or its local name.
+
+        Raises AuthorError where there is none, or where several have that name.
+        """
+        wanted = term.removeprefix("<").removesuffix(">").removeprefix(":")
+        known = self.discover().found
+        found = [one for component, one in known.items() if wanted in (component, component.short)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            names = ", ".join(str(one.advertisement.component) for one in found)
+            raise AuthorError(f"several components are called {term}: {names}")
+        raise AuthorError(f"no component {term} is advertised; `selfconf discover` shows those that are")
+
+    def signals(self, component: str, output: str, complain: Callable[[str], None]) -> Iterator[HeardSignal]:
+        """What an output of a component issues, as it comes, without an end. Raises AuthorError for what is not there.
+
+        `complain` hears of what is no signal, and of what is to be known before the first one.
+        """
+        found = self.component(component)
+        profile = found.advertisement.profile
+        if output not in (port.name for port in profile.outputs):
+            names = listed(repr(port.name) for port in profile.outputs) or "none"
+            raise AuthorError(f"{profile.component.short} has no output {output!r}; its outputs: {names}")
+        state = self.state(profile.component)
+        if state != "alive":
+            complain(f"{profile.component.short} is {state}: it says nothing before a task has it started")
+        return echo(self._bus, self._view.keys.output(profile.component, output), complain)
+
+    def restart(self, component: str) -> ComponentState:
+        """Have its site end the process of a component, and start it again; returns how it is once it lives again.
+
+        The other components of the process end with it, and the tasks that hold one of them repair. Raises AuthorError
+        for a component that is not there, and NetworkError for what its site cannot or does not do.
+        """
+        found = self.component(component)
+        one, site, keys = found.advertisement.component, found.site, self._view.keys
+        life = self._view.life(one)
+        if not found.startable:
+            raise NetworkError(
+                f"the site {site} cannot start {one.short}: its advertisement has no sc:command; restart its program"
+                " by what has started it"
+            )
+        if life is not None:
+            trouble = f"the site {site} did not end {one.short}"
+            self._told(self._ask(keys.end(site), encode(End(one)), ENDING_PROCESS), trouble)
+        self._told(self._ask(keys.wake(site), encode(Wake(one))), f"the site {site} did not start {one.short}")
+        deadline = self._bus.now() + LIVES_AGAIN
+        while self._bus.now() < deadline:
+            now = next(state for state in self.component_states() if state.component == one)
+            if now.life and now.life != life:
+                return now
+            self._bus.poll(0.1)
+        raise NetworkError(
+            f"the site {site} has started {one.short}, which does not live after {LIVES_AGAIN:.0f} s;"
+            f" `selfconf log {one.short}` shows what it has said"
+        )
+
+    def deployed(self) -> dict[str, dict[str, Any]]:
+        """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
+        found = {}
+        for sample in self._ask(self._view.keys.configuration()).samples:
+            try:
+                body = deployed_body(turtle.parse(sample.payload, sample.key))
+            except TurtleError:
+                continue
+            if body is not None:
+                found[sample.key.split("/")[-2]] = body
+        return found
+
     @property
     def sites(self) -> tuple[str, ...]:
         """The sites that were found by the last discovery, sorted."""
@@ -299,17 +394,8 @@ class LivingEcology(Ecology):
 
     def _passed_over(self) -> dict[str, dict[str, list[str]]]:
         """By configurator and role, the candidates that go before those that are deployed."""
-        found: dict[str, dict[str, list[str]]] = {}
-        for sample in self._ask(self._view.keys.configuration()).samples:
-            try:
-                document = turtle.parse(sample.payload, sample.key)
-            except TurtleError:
-                continue
-            roles = found.setdefault(sample.key.split("/")[-2], {})
-            for node in document.instances(SC.Assignment):
-                for role in document.values(node, SC.role):
-                    roles[str(role)] = [str(other) for other in document.values(node, SC.passedOver)]
-        return found
+        deployed = self.deployed().items()
+        return {name: {role["role"]: role["passed_over"] for role in body["roles"]} for name, body in deployed}
 
     def configure(
         self,
@@ -434,6 +520,11 @@ class LivingEcology(Ecology):
             if known is None or known.revision < record.revision:
                 newest[record.task] = record
         return [r for r in newest.values() if not r.ended and name in (None, task_name(r.task))]
+
+    def _told(self, replies: Replies, trouble: str) -> None:
+        """Raise NetworkError, which begins with the trouble, where no site has obeyed."""
+        if not replies.samples:
+            raise NetworkError(f"{trouble}: {'; '.join(replies.errors) or 'it does not answer'}")
 
     def _keep(self, record: TaskRecord) -> None:
         replies = self._ask(self._view.keys.keep(), encode(record))

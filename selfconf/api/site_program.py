@@ -87,8 +87,10 @@ def serve(
         work = WorkQueue()
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints))
+        log_path = _log_path(log, ecology, name).absolute()
+        joining.log = str(log_path)
         keys_of = None if secured is None else secured.keys_of
-        site = Site(bus, ecology, name, shelf, environment, _log_path(log, ecology, name), life, keys_of, beyond)
+        site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond)
         if secured is not None:
             secured.keep_door(site, joining, complain)
         keeper = Keeper(bus, ecology, name, records, partial(_request_of, work))
@@ -165,7 +167,7 @@ def _whose(life: str) -> str:
 def _log_path(folder: Path | None, ecology: str, name: str) -> Path:
     """The log of a site. In the folder of all sites of this user, those of sites that have ended become fewer."""
     if folder is None:
-        folder = rendezvous.runtime_folder() / "log"
+        folder = rendezvous.log_folder()
         forget_oldest(folder, {f"{site.ecology}@{site.site}.log" for site in rendezvous.local_sites()})
     return folder / f"{ecology}@{name}.log"
 

@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import argparse
 import json
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
-from selfconf.model.term import IRI
+from selfconf.cli.terminal import styled_state
+
+if TYPE_CHECKING:
+    from selfconf.api.component_states import ComponentState
 
 EXAMPLE = """  selfconf discover --format json"""
-
-
-class DiscoveredComponent(NamedTuple):
-    """A component that is out there."""
-
-    component: str
-    types: list[IRI]
-    site: str
-    state: str
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,29 +23,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once the ecology has answered."""
-    from selfconf.rdf.sparql import QUERY_PREFIXES
-    from selfconf.rdf.vocabulary import SC
-    from selfconf.render import Names, count, table
+    from selfconf.render import count
 
     with joined(given) as ecology:
-        discovery = ecology.discover()
+        states = ecology.component_states()
+        discovery = ecology.discovery
         complain_of(ecology)
-        rows = [
-            DiscoveredComponent(
-                component,
-                sorted(found.advertisement.profile.types - {SC.Component}),
-                found.site,
-                ecology.state(component),
-            )
-            for component, found in sorted(discovery.found.items())
-        ]
     if given.format == "json":
-        body = {"ecology": ecology.name, "components": [row._asdict() for row in rows], "sites": discovery.sites}
+        body = {"ecology": ecology.name, "components": [one.body() for one in states], "sites": discovery.sites}
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
-    names = Names(QUERY_PREFIXES)
-    kinds = [", ".join(names(kind) for kind in found.types) for found in rows]
-    cells = [[row.component, kind, row.site, row.state] for row, kind in zip(rows, kinds, strict=True)]
-    print(table(["component", "types", "site", "state"], cells))
-    print(f"{count(len(rows), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
+    print(_table(states))
+    print(f"{count(len(states), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
     return 0
+
+
+def _table(states: tuple[ComponentState, ...]) -> str:
+    from selfconf.rdf.sparql import QUERY_PREFIXES
+    from selfconf.render import duration, ecology_names, table
+
+    names, note = ecology_names(QUERY_PREFIXES, [one.component for one in states])
+    rows = [
+        [
+            names(one.component),
+            ", ".join(map(names, one.types)),
+            one.site,
+            one.state,
+            one.task,
+            one.place,
+            duration(one.age) if one.life else "",
+        ]
+        for one in states
+    ]
+    shown = table(["component", "types", "site", "state", "held by", "process", "age"], rows, styled_state)
+    return f"{shown}\n{note}" if note else shown

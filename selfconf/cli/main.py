@@ -26,7 +26,7 @@ COMMANDS = {
     "partition": "show who could play each role of a template, and what keeps the others out",
     "configure": "compute a configuration for a template, or say why there is none; changes nothing",
     "query": "ask the ecology something in SPARQL, over files, at an endpoint, or over everything that is alive",
-    "site": "serve the advertisements of this host to an ecology, and watch their files",
+    "site": "serve the advertisements of this host to an ecology, and watch their files; or restart a component",
     "bridge": "let Things and ROS 2 nodes, which know nothing of selfconf, play in an ecology as they are",
     "discover": "show what is out there: every advertised component, its site, and whether it lives",
     "run": "configure, deploy, monitor and configure again, until Ctrl-C takes everything down",
@@ -36,6 +36,9 @@ COMMANDS = {
     "keys": "make an authority for an ecology, and issue, renew, show and revoke certificates",
     "access": "show who may do what in an ecology with keys, and who has tried what it may not",
     "why": "say why a role is played by whom: what failed, what was passed over, what would change it",
+    "echo": "show what an output of a component issues, as it comes, with its rate",
+    "log": "show what components have printed, as the sites of this machine have kept it",
+    "top": "show who lives, held by which task, how much each issues, and how much memory it takes",
     "serve": "show the ecology in a browser, and answer SPARQL and the W3C directory of Things over HTTP",
     "demo": "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over",
 }

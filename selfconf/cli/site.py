@@ -8,7 +8,9 @@ from pathlib import Path
 from selfconf.cli.options import add_keys_argument
 from selfconf.cli.terminal import complain
 
-EXAMPLE = """  selfconf site examples/peis-home --ecology home"""
+EXAMPLE = """  selfconf site examples/peis-home --ecology home
+  selfconf site restart person-tracker"""
+RESTART = "restart"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,9 +18,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "paths",
         metavar="PATH",
-        type=Path,
-        nargs="*",
-        help="advertisements: files, or folders with *.ttl below them (default: the `ads` of selfconf.toml)",
+        nargs="*",  # texts: a path would make one slash of the two of an IRI
+        help="advertisements: files, or folders with *.ttl below them (default: the `ads` of selfconf.toml); or"
+        " `restart COMPONENT`: have the site that has started a component end it and start it again",
     )
     parser.add_argument(
         "--ecology", metavar="NAME", help="the ecology that this site is part of (default: $SELFCONF_ECOLOGY)"
@@ -60,10 +62,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Serve until SIGINT or SIGTERM; then 0."""
+    """Serve until SIGINT or SIGTERM; then 0. Of `restart`: 0 once the component lives again."""
+    if given.paths[:1] == [RESTART]:
+        return _restart(given)
     from selfconf.api.site_program import serve
 
-    paths = given.paths or given.project.values.get("ads")
+    paths = [Path(path) for path in given.paths] or given.project.values.get("ads")
     if not paths:
         given.misused("there is nothing to serve; name files or folders, or give `ads` in selfconf.toml")
     serve(
@@ -78,4 +82,15 @@ def run(given: argparse.Namespace) -> int:
         given.keys,
         given.insecure,
     )
+    return 0
+
+
+def _restart(given: argparse.Namespace) -> int:
+    from selfconf.cli.options import joined
+
+    if len(given.paths) != 2:
+        given.misused("restart takes one component, by its IRI or local name; a folder of that name is ./restart")
+    with joined(given) as ecology:
+        now = ecology.restart(given.paths[1])
+    print(f"{now.component} lives again at site {now.site}: {now.place}")
     return 0

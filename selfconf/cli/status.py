@@ -5,12 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+from selfconf.cli.terminal import STATE_COLOURS, paint
+from selfconf.model.term import IRI
 
 if TYPE_CHECKING:
     from selfconf.protocol.messages import Status
+    from selfconf.render import Names
 
 EXAMPLE = """  selfconf status --format json"""
 
@@ -23,37 +28,77 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once every configurator has answered, also if nothing is deployed; 2 if one lives and does not answer."""
-    from selfconf.model.term import IRI
-    from selfconf.protocol.keys import task_name
     from selfconf.rdf.sparql import QUERY_PREFIXES
-    from selfconf.render import Names
+    from selfconf.render import ecology_names
 
     with joined(given) as ecology:
         found = ecology.tasks
+        deployed = ecology.deployed() if found else {}
         complain_of(ecology)
     if given.format == "json":
-        print(json.dumps([_body(status) for status in found], indent=2))
+        bodies = [_body(status, deployed.get(status.configurator, {})) for status in found]
+        print(json.dumps(bodies, indent=2, ensure_ascii=False))
         return 2 if ecology.silent else 0
     if not found and not ecology.silent:
         print(f"nothing is deployed in ecology {ecology.name}")
-    names = Names(QUERY_PREFIXES)
+    names, note = ecology_names(QUERY_PREFIXES, [iri for one in found for iri in (one.template, *one.components)])
     for status in found:
-        seconds = max(0.0, time.time() - status.since)
-        print(f"{names(status.template)}: {status.phase} for {seconds:.0f} s, epoch {status.epoch}")
-        print(f"  task {task_name(status.task)}, priority {status.priority}")
-        print(f"  configurator {status.configurator}, process {status.process} on {status.host}")
-        for component in status.components:
-            print(f"  {names(component)}")
-        for lost, cause in status.lost.items():
-            print(f"  lost: {lost} ({cause})")
-        for slow, count in status.dropped.items():
-            print(f"  too slow: {names(IRI(slow))} has passed over {count} signals")
-        for component in status.owed:
-            print(f"  out of control: {names(component)} was turned off and has not obeyed")
+        print("\n".join(_lines(status, deployed.get(status.configurator), names)))
+    if note:
+        print(note)
     return 2 if ecology.silent else 0
 
 
-def _body(status: Status) -> dict[str, object]:
+def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> Iterator[str]:
+    """A task for people: who runs it, what is deployed, and what is wrong."""
+    from selfconf.protocol.keys import task_name
+    from selfconf.render import duration
+
+    phase = paint(status.phase, STATE_COLOURS.get(status.phase, ""))
+    lasts = duration(time.time() - status.since)
+    yield f"{names(status.template)}: {phase} for {lasts}, epoch {status.epoch}"
+    yield f"  task {task_name(status.task)}, priority {status.priority}"
+    yield f"  configurator {status.configurator}, process {status.process} on {status.host}"
+    for line in _held(status, names) if deployed is None else _configuration(deployed, status, names):
+        yield f"  {line}"
+    for lost, cause in status.lost.items():
+        yield f"  lost: {names(IRI(lost))} ({cause})"
+    for slow, count in status.dropped.items():
+        yield f"  too slow: {names(IRI(slow))} has passed over {count} signals"
+    for component in status.owed:
+        yield f"  out of control: {names(component)} was turned off and has not obeyed"
+
+
+def _held(status: Status, names: Names) -> Iterator[str]:
+    """The components of a task of which no more is known."""
+    yield from map(names, status.components)
+
+
+def _configuration(body: Mapping[str, Any], status: Status, names: Names) -> Iterator[str]:
+    """What is deployed: who plays which role, for whom values are bound, and who feeds whom."""
+    for name, value in body["bindings"].items():
+        yield f"{name} = {_value(value, names)}"
+    width = max((len(names(IRI(role["role"]))) for role in body["roles"]), default=0)
+    for role in body["roles"]:
+        yield f"{names(IRI(role['role'])):{width}}  {', '.join(names(IRI(one)) for one in role['components'])}"
+    for one in body["recruits"]:
+        yield f"recruit: {names(IRI(one))}"
+    played = {*body["recruits"], *(one for role in body["roles"] for one in role["components"])}
+    yield from (f"also held: {names(one)}" for one in status.components if one not in played)
+    for wire in body["connections"]:
+        source, sink = wire["from"], wire["to"]
+        yield (
+            f"{names(IRI(source['component']))} {source['output']} -> {names(IRI(sink['component']))} {sink['input']}"
+        )
+
+
+def _value(value: Any, names: Names) -> str:
+    """A value as people read it: a short IRI, or a literal as JSON."""
+    is_iri = isinstance(value, str) and value.startswith(("http://", "https://", "urn:"))
+    return names(IRI(value)) if is_iri else json.dumps(value, ensure_ascii=False)
+
+
+def _body(status: Status, deployed: Mapping[str, Any] = MappingProxyType({})) -> dict[str, object]:
     from selfconf.protocol.keys import task_name
 
     return {
@@ -71,4 +116,8 @@ def _body(status: Status) -> dict[str, object]:
         "beginning": status.beginning,
         "owed": list(status.owed),
         "dropped": dict(status.dropped),
+        "bindings": deployed.get("bindings", {}),
+        "roles": [{"role": one["role"], "components": one["components"]} for one in deployed.get("roles", ())],
+        "recruits": deployed.get("recruits", []),
+        "connections": deployed.get("connections", []),
     }

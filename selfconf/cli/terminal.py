@@ -1,7 +1,8 @@
 """A terminal shows what strangers have written and is not steered by it: control characters become escapes.
 
 Names, labels, file names and the words of a failure come from the network. A file or a program that
-reads the output gets it unchanged; only a terminal obeys `ESC [ 2 J`.
+reads the output gets it unchanged; only a terminal obeys `ESC [ 2 J`. Colours come from `paint` alone: it marks a text
+in a way that nobody else can know, and a `Terminal` makes the sequences of it.
 
 Nor does what a command comes to depend on its readers: one may have seen enough, or never have been there.
 """
@@ -10,10 +11,19 @@ from __future__ import annotations
 
 import io
 import os
+import re
+import secrets
 import sys
 from typing import TextIO
 
 from selfconf.model.wording import plain
+
+COLOURS = {"bold": "1", "dim": "2", "red": "1;31", "green": "32", "yellow": "1;33", "cyan": "36"}
+"""The parameters of SGR (ECMA-48, 8.3.117) by what we call them."""
+STATE_COLOURS = {"alive": "green", "active": "green", "absent": "red", "running": "green", "refused": "red"}
+"""The colours of the states of components and tasks that a reader looks for."""
+_MARK = f"\ue000{secrets.token_hex(8)}"
+_MARKED = re.compile(f"{_MARK}([0-9;]+)m")
 
 
 class Terminal(io.TextIOBase):
@@ -24,8 +34,14 @@ class Terminal(io.TextIOBase):
 
     def write(self, text: str) -> int:
         """Write text that steers nothing."""
-        self._stream.write(plain(text))
+        self._stream.write(_MARKED.sub("\x1b[\\1m", plain(text)))
         return len(text)
+
+    def renew(self, text: str) -> None:
+        """Show a text in place of all that is on the screen."""
+        self._stream.write("\x1b[H\x1b[2J")
+        self.write(text)
+        self.flush()
 
     def flush(self) -> None:
         """Let the terminal have it."""
@@ -55,6 +71,25 @@ def guard() -> None:
                 stream.reconfigure(errors="backslashreplace")
             if stream.isatty():
                 setattr(sys, name, Terminal(stream))
+
+
+def in_colour(stream: TextIO | None = None) -> bool:
+    """Whether a stream, else stdout, is shown in colour: by a terminal that has some, if nobody has said no.
+
+    NO_COLOR (https://no-color.org) says no where it is not empty.
+    """
+    is_terminal = isinstance(stream or sys.stdout, Terminal)
+    return is_terminal and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def paint(text: str, colour: str, stream: TextIO | None = None) -> str:
+    """A text in one of `COLOURS` where the stream, else stdout, is shown in colour; without one as it is."""
+    return f"{_MARK}{COLOURS[colour]}m{text}{_MARK}0m" if text and colour and in_colour(stream) else text
+
+
+def styled_state(column: str, cell: str, padded: str) -> str:
+    """A cell of a table with the states of components or tasks, in the colour of the state."""
+    return paint(padded, STATE_COLOURS.get(cell, "")) if column in ("state", "phase") else padded
 
 
 def for_programs() -> None:

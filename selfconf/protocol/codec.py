@@ -268,6 +268,10 @@ def _revisions(value: object) -> dict[str, int]:
     return {_name(site): _whole(revision) for site, revision in _object(value).items()}
 
 
+def _counts(value: object) -> dict[str, int]:
+    return {_text(port): _whole(count) for port, count in _object(value).items()}
+
+
 def _iris(value: object) -> tuple[IRI, ...]:
     return tuple(_iri(item) for item in _list(value))
 
@@ -311,6 +315,9 @@ _READERS: dict[tuple[type, str], Any] = {
     (Apply, "gently"): _truth,
     (CallAnswer, "place"): _remark,
     (CallAnswer, "dropped"): _whole,
+    (CallAnswer, "age"): _moment,
+    (CallAnswer, "memory"): _whole,
+    (CallAnswer, "issued"): _counts,
     (CallAnswer, "verdict"): _verdict,
     (CallAnswer, "active"): _truth,
     (Fail, "cause"): _cause,

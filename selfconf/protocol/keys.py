@@ -160,8 +160,8 @@ class Keys:
     def call(self, component: IRI, call: str = "*") -> str:
         return self._component(component, f"@ctl/{call}")
 
-    def any_call(self) -> str:
-        return f"selfconf/{self.ecology}/c/*/*/@ctl/*"
+    def any_call(self, call: str = "*") -> str:
+        return f"selfconf/{self.ecology}/c/*/*/@ctl/{call}"
 
     def everything(self) -> tuple[str, ...]:
         """Every key of the ecology."""

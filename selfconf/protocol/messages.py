@@ -135,6 +135,12 @@ class CallAnswer:
     """The process and the host of the component, for people."""
     dropped: int = 0
     """How many signals the component has passed over since it lives, because its code was too slow."""
+    age: float = 0.0
+    """For how long the component has lived, in seconds; this and what follows stand in the answer to `state` alone."""
+    memory: int = 0
+    """The resident memory of its process in bytes; zero where the system does not say."""
+    issued: Mapping[str, int] = field(default_factory=dict)
+    """How many signals each output has issued since the component lives."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,8 @@
 """Values for their readers: as text, as JSON, as HTML and as Mermaid. Nothing here decides anything.
 
 Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`, `count`;
-`Names` shortens IRIs by prefixes, `short` without. JSON: the functions that end in `_body`. Diagrams:
+`Names` shortens IRIs by prefixes, `short` without, `ecology_names` makes
+them for an ecology; `duration` is how long something has lasted. JSON: the functions that end in `_body`. Diagrams:
 `mermaid`, and `diagram` for notebooks, whose tables and texts are `html_table`, `html_text`, `html_sections`.
 The events of a run are worded in `selfconf.render.run_events`, which is loaded where a task runs.
 """
@@ -17,8 +18,8 @@ from selfconf.render.bodies import (
 )
 from selfconf.render.html import diagram, html_sections, html_table, html_text
 from selfconf.render.mermaid import mermaid
-from selfconf.render.names import Names, short
-from selfconf.render.tables import count, table
+from selfconf.render.names import Names, ecology_names, short
+from selfconf.render.tables import count, duration, table
 from selfconf.render.text import (
     Name,
     configuration_text,
@@ -40,6 +41,8 @@ __all__ = [
     "cost_text",
     "count",
     "diagram",
+    "duration",
+    "ecology_names",
     "holder_body",
     "holder_text",
     "html_sections",

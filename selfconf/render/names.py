@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 
 from selfconf.model.term import IRI, Literal, Term
 
@@ -24,6 +25,20 @@ class Names:
             if term.startswith(base) and _LOCAL.fullmatch(term[len(base) :]):
                 return f"{prefix}:{term[len(base) :]}"
         return f"<{term}>" if isinstance(term, IRI) else str(term)
+
+
+def ecology_names(prefixes: Mapping[str, str], iris: Iterable[str]) -> tuple[Names, str]:
+    """What shortens the IRIs of an ecology, and a line that says what the empty prefix stands for; empty if for none.
+
+    Advertisements travel without their prefixes. So beside the prefixes that are known the empty one stands for the
+    namespace that most of the IRIs have, and of several for the first.
+    """
+    spaces = Counter(iri[: len(iri) - len(IRI(iri).short)] for iri in iris)
+    known = set(prefixes.values())
+    found = min((space for space in spaces if space not in known), key=lambda one: (-spaces[one], one), default="")
+    if not found or "" in prefixes:
+        return Names(prefixes), ""
+    return Names({**prefixes, "": found}), f": is <{found}>"
 
 
 def short(term: Term) -> str:

@@ -52,6 +52,8 @@ class Outputs:
         }
         self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.outputs}
         self._sequence = itertools.count(1)
+        self.issued = {port.name: 0 for port in profile.outputs}
+        """How many signals each output has issued in this life."""
         self._last: dict[str, tuple[bytes, bytes]] = {}
         """The last signal of each output in the present activation, with its attachment."""
         self._publishers: dict[str, Publisher] = {
@@ -88,6 +90,7 @@ class Outputs:
         number, moment = next(self._sequence), time.time() if moment is None else moment
         stamp = self._stamps[port].write(number, moment, packed is not None, encoding)
         self._last[port] = payload, stamp
+        self.issued[port] += 1  # a count for people: where two threads emit on one output, one may be missed
         output.put(payload, stamp)
 
     def forget(self) -> None:

@@ -14,6 +14,7 @@ import os
 import secrets
 import socket
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Request, Undo, Urgency
@@ -44,6 +45,7 @@ from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputEvents, Inputs
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
 from selfconf.sdk.supervision import Supervision
+from selfconf.termination import resident_memory
 
 log = logging.getLogger(__name__)
 
@@ -87,6 +89,7 @@ class ComponentRuntime:
         self.bus, self.keys, self.profile, self.component = bus, keys, profile, component
         self.life = life or secrets.token_hex(4)
         """Which incarnation of the component this is."""
+        self._began = bus.now()
         self.activation = Activation()
         self._superseded = superseded
         thread = code_thread or CodeThread(inline=True)
@@ -219,7 +222,10 @@ class ComponentRuntime:
     def _answer(self, call: str, payload: bytes, reply: Reply) -> None:
         """Obey a call, if the table says so, and reply when that is done. Raises PeerError for what is no call."""
         if call == "state":
-            reply(self._verdict(Verdict.DONE, decode(payload, StateOf).task if payload else ""))
+            state = self._verdict(Verdict.DONE, decode(payload, StateOf).task if payload else "")
+            reply(
+                replace(state, age=self.bus.now() - self._began, memory=resident_memory(), issued=self.outputs.issued)
+            )
             return
         if call not in _MESSAGES:
             raise PeerError(f"there is no call {call!r}")

@@ -6,6 +6,7 @@ import logging
 from collections import deque
 from collections.abc import Callable, Iterable
 
+from selfconf.api.deployed import deployed_body
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError, TurtleError
 from selfconf.protocol.codec import decode
@@ -13,7 +14,6 @@ from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.serve.change import Body
-from selfconf.serve.deployed import deployed_body
 from selfconf.serve.watched_task import WatchedTask
 
 log = logging.getLogger(__name__)

@@ -179,3 +179,44 @@ def test_a_task_whose_only_tracker_crashes_goes_on_with_the_tracker_that_its_sit
     run.act("running")
     assert home.active("tracker", "control", "drive") == {"tracker", "control", "drive"}
     assert run.end(signal.SIGINT) == 0
+
+
+def test_a_component_is_restarted_by_the_site_that_has_started_it(
+    home: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("sonar", "encoder", "tracker", "control", "drive"):
+        dormant(home, name)
+    home.site("a", "ads")
+    where = home.arguments()
+    task = home.run()
+    task.act("running")
+    before = home.state(component_of("tracker"))
+    outcome = run(capsys, "site", "restart", "person-tracker", *where)
+    assert outcome.code == 0, outcome.err
+    assert outcome.out.startswith(f"{iri('person-tracker')} lives again at site a: process ")
+    after = home.state(component_of("tracker"))
+    assert before is not None
+    assert after is not None
+    assert before.life != after.life
+    assert task.act("lost")["component"] == iri("person-tracker")
+    task.act("running")
+    assert task.end() == 0
+
+
+def test_what_cannot_be_restarted_is_one_sentence(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    where = inhabited.arguments()
+    refused = run(capsys, "site", "restart", iri("person-tracker"), *where)
+    assert refused.is_one_sentence("the site peis-home cannot start person-tracker", "no sc:command")
+    assert run(capsys, "site", "restart", "nobody", *where).is_one_sentence("no component nobody")
+    assert run(capsys, "site", "restart", *where).is_one_sentence("restart takes one component")
+    assert inhabited.state(component_of("tracker")) is not None
+
+
+def test_a_component_that_another_program_has_started_is_not_its_site_s_to_restart(
+    home: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    dormant(home, "tracker")
+    home.site("a", "ads")
+    home.components("tracker")
+    refused = run(capsys, "site", "restart", "person-tracker", *home.arguments())
+    assert refused.is_one_sentence("the site a did not end person-tracker: this site has not started")

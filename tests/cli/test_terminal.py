@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.terminal import Terminal, display, guard, plain
+from selfconf.cli.terminal import Terminal, display, guard, in_colour, paint, plain
 from tests.lab import PREFIXES
 
 pytestmark = pytest.mark.process
@@ -75,3 +75,27 @@ def test_what_the_system_says_is_told_without_its_number(tmp_path: Path) -> None
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (done.returncode, done.stderr) == (2, "selfconf query: No space left on device\n")
+
+
+def test_only_a_terminal_gets_colours_and_only_from_paint(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    assert paint("bad", "red") == "bad"
+    ours, theirs = os.openpty()
+    with os.fdopen(theirs, "w") as terminal, os.fdopen(ours, "rb", buffering=0) as screen:
+        monkeypatch.setattr(sys, "stdout", Terminal(terminal))
+        print(paint("bad", "red"), "\x1b[31m", paint("", "red"), flush=True)
+        assert screen.read(100) == b"\x1b[1;31mbad\x1b[0m \\x1b[31m \r\n"
+        assert paint("plain", "") == "plain"
+        for name, value in (("NO_COLOR", "1"), ("TERM", "dumb")):
+            with monkeypatch.context() as patch:
+                patch.setenv(name, value)
+                assert not in_colour()
+                assert paint("bad", "red") == "bad"
+
+
+def test_a_screen_is_renewed_as_a_whole() -> None:
+    ours, theirs = os.openpty()
+    with os.fdopen(theirs, "w") as terminal, os.fdopen(ours, "rb", buffering=0) as screen:
+        Terminal(terminal).renew("new\x1b[2J\n")
+        assert screen.read(100) == b"\x1b[H\x1b[2Jnew\\x1b[2J\r\n"

@@ -6,7 +6,7 @@ import pytest
 
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
 from selfconf.rdf.turtle import parse
-from selfconf.render import Names, short
+from selfconf.render import Names, ecology_names, short
 
 PREFIXES = {"": "https://example.org/home#", "ex": "https://example.org/", "xsd": XSD_NAMESPACE, "u": "urn:"}
 NAMES = Names(PREFIXES)
@@ -50,3 +50,11 @@ def test_without_prefixes_the_local_name_has_to_do() -> None:
     assert short(Literal("5", IRI(XSD_NAMESPACE + "byte"))) == '"5"^^byte'
     assert short(BlankNode("_:b")) == "_:b"
     assert Names({})(IRI("urn:x")) == "<urn:x>"
+
+
+def test_the_empty_prefix_stands_for_the_namespace_that_most_iris_of_an_ecology_have() -> None:
+    home, lab = "https://example.org/home#", "https://example.org/lab/"
+    names, note = ecology_names({"rob": "urn:rob:"}, [f"{lab}a", f"{home}b", f"{home}c"])
+    assert (names(IRI(f"{home}b")), names(IRI(f"{lab}a")), note) == (":b", f"<{lab}a>", f": is <{home}>")
+    assert ecology_names({"rob": "urn:rob:"}, [])[1] == ""
+    assert ecology_names({"h": home}, [f"{home}b"])[1] == ""

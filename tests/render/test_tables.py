@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.render import count, table
+from selfconf.render import count, duration, table
 
 
 def test_the_columns_of_a_table_are_as_wide_as_their_widest_cell() -> None:
@@ -32,3 +32,26 @@ def test_a_row_with_a_cell_too_many_is_no_row() -> None:
 @pytest.mark.parametrize(("number", "words"), [(0, "0 sites"), (1, "1 site"), (2, "2 sites")])
 def test_one_is_one(number: int, words: str) -> None:
     assert count(number, "site") == words
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (-1, "0 s"),
+        (0.9, "0 s"),
+        (59, "59 s"),
+        (60, "1 min"),
+        (185, "3 min 5 s"),
+        (7440, "2 h 4 min"),
+        (435600, "5 d 1 h"),
+    ],
+)
+def test_a_duration_has_its_two_largest_units(seconds: float, words: str) -> None:
+    assert duration(seconds) == words
+
+
+def test_cells_may_be_styled_without_a_change_of_their_widths() -> None:
+    shown = table(
+        ["a", "state"], [["x", "up"]], lambda column, cell, padded: padded.upper() if cell == "up" else padded
+    )
+    assert shown.splitlines()[-1] == "x  UP"

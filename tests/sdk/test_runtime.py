@@ -586,3 +586,15 @@ def test_what_a_component_says_of_itself_names_its_process_and_who_holds_it_sinc
     answer = stage.state()
     assert (answer.task, answer.priority, answer.beginning, answer.supervisor) == (TASKS[US], 3, 12.0, US)
     assert answer.place == f"process {os.getpid()} on {socket.gethostname()}"
+
+
+def test_the_answer_to_state_says_how_long_it_has_lived_what_it_takes_and_what_it_has_issued() -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    stage.component.emit("velocity", 1)
+    stage.let_pass(2.0)
+    answer = stage.state()
+    assert answer.age >= 2.0
+    assert answer.memory > 0
+    assert answer.issued == {"velocity": 1}
+    assert stage.call(apply(2, US)).issued == {}

@@ -4,10 +4,10 @@ message`.
 
 from __future__ import annotations
 
+from selfconf.cli.terminal import paint
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
 
-_COLOURS = {Severity.ERROR: "\x1b[1;31m", Severity.WARNING: "\x1b[1;33m"}
-_PLAIN = "\x1b[0m"
+_COLOURS = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
 
 
 def render(report: Report) -> str:
@@ -58,7 +58,7 @@ def _words(found: Diagnostic) -> str:
 
 
 def _coloured(found: Diagnostic) -> str:
-    return f"{_place(found)}: {_COLOURS[found.severity]}{_kind(found)}{_PLAIN}: {_words(found)}"
+    return f"{_place(found)}: {paint(_kind(found), _COLOURS[found.severity])}: {_words(found)}"
 
 
 def _underlined(found: Diagnostic) -> str:
@@ -68,7 +68,7 @@ def _underlined(found: Diagnostic) -> str:
     column = found.column - found.source_column + 1
     before = "".join("\t" if character == "\t" else " " for character in found.source[: column - 1])
     mark = "^" * max(1, min(found.width, len(found.source) - column + 1))
-    below = f"{' ' * len(number)} | {before}{_COLOURS[found.severity]}{mark}{_PLAIN}"
+    below = f"{' ' * len(number)} | {before}{paint(mark, _COLOURS[found.severity])}"
     return f"{number} | {_visible(found.source)}\n{below}\n"
 
 

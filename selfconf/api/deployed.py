@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
 from selfconf.render.bodies import value_body
-from selfconf.serve.change import Body
 
 
-def deployed_body(document: Document) -> Body | None:
+def deployed_body(document: Document) -> dict[str, Any] | None:
     """The configuration of a document as JSON, with role, component and port names; None if it holds none."""
     name = next(iter(document.instances(SC.Configuration)), None)
     if name is None:
@@ -38,6 +39,11 @@ def deployed_body(document: Document) -> Body | None:
             }
             for node in document.values(name, SC.connection)
         ],
+        "bindings": {
+            local_name(document.value(node, SC.parameter)): _value(document.value(node, SC.value))
+            for asked in document.values(name, SC.task)
+            for node in document.values(asked, SC.binding)
+        },
         "parameters": [
             {
                 "component": _text(document, node, SC.component),
@@ -53,6 +59,11 @@ def deployed_body(document: Document) -> Body | None:
 def _text(document: Document, node: Term, predicate: IRI) -> str:
     value = document.value(node, predicate)
     return "" if value is None else value.lexical if isinstance(value, Literal) else str(value)
+
+
+def local_name(term: Term | None) -> str:
+    """The local name of a parameter's IRI, by which people know it; empty for what is no IRI."""
+    return term.short if isinstance(term, IRI) else ""
 
 
 def _value(value: Term | None) -> object:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from selfconf.api.deployed import deployed_body
 from selfconf.rdf.turtle import parse
-from selfconf.serve.deployed import deployed_body
 from tests.lab import Lab, iri
 
 

@@ -1,0 +1,88 @@
+"""How each component of a living ecology is: whether it lives, who holds it, where, since when, and what it issues.
+
+Each living component is asked for its `state`, which it answers from its control thread whatever its code does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from selfconf.bus.port import Replies
+from selfconf.discovery import Discovery
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import Keys, task_name
+from selfconf.protocol.messages import CallAnswer
+from selfconf.rdf.vocabulary import SC
+
+
+class ComponentState(NamedTuple):
+    """How a component is; what only a living component can say is empty for one that does not live or answer."""
+
+    component: IRI
+    types: tuple[IRI, ...]
+    site: str
+    state: str
+    """`alive`, `dormant` or `absent`, as `LivingEcology.state` says it."""
+    active: bool = False
+    task: str = ""
+    """The name of the task that holds it; of several the first in rank."""
+    place: str = ""
+    """Its process and host, for people."""
+    age: float = 0.0
+    """For how long it has lived, in seconds."""
+    memory: int = 0
+    """The resident memory of its process in bytes."""
+    issued: Mapping[str, int] = {}
+    """How many signals each output has issued since it lives."""
+    life: str = ""
+
+    def body(self) -> dict[str, object]:
+        """The state as JSON."""
+        return {
+            "component": self.component,
+            "types": list(self.types),
+            "site": self.site,
+            "state": self.state,
+            "active": self.active,
+            "task": self.task,
+            "place": self.place,
+            "age": round(self.age, 3),
+            "memory": self.memory,
+            "issued": dict(self.issued),
+        }
+
+
+def component_states(discovery: Discovery, keys: Keys, replies: Replies) -> Iterator[ComponentState]:
+    """The state of each advertised component, sorted by IRI; the answers of strangers are passed over.
+
+    The state is `dormant` or `absent` for a component that has not answered; who knows that it lives corrects that.
+    """
+    answers: dict[IRI, CallAnswer] = {}
+    for sample in replies.samples:
+        try:
+            answer = decode(sample.payload, CallAnswer)
+        except PeerError:
+            continue
+        known = answers.get(answer.component)
+        if sample.key == keys.call(answer.component, "state") and (known is None or answer.life < known.life):
+            answers[answer.component] = answer  # of two lives the smaller one stays
+    for component, found in sorted(discovery.found.items()):
+        types = tuple(sorted(found.advertisement.profile.types - {SC.Component}))
+        state = "dormant" if found.startable else "absent"
+        one = ComponentState(component, types, found.site, state)
+        heard = answers.get(component)
+        if heard is not None:
+            task = task_name(heard.task)
+            told = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.life
+            one = ComponentState(component, types, found.site, "alive", *told)
+        yield one
+
+
+def issue_rates(before: ComponentState, now: ComponentState, seconds: float) -> dict[str, float]:
+    """The signals a second of each output between two looks; none where another life has begun."""
+    if now.state != "alive" or before.life != now.life or seconds <= 0:
+        return {}
+    return {port: (count - before.issued.get(port, 0)) / seconds for port, count in now.issued.items()}

@@ -1,0 +1,88 @@
+"""What an output issues, as it comes, for a reader who looks on.
+
+The reader follows the output as an input does, and takes part in nothing. What it cannot take in time is passed over
+here, and counted: neither the component nor anybody else waits for it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import deque
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+from selfconf.bus.port import Bus, Sample
+from selfconf.errors import PeerError
+from selfconf.protocol.messages import Stamp
+from selfconf.protocol.stamps import StampReader
+
+SIGNALS_HELD = 256
+"""How many signals may wait for the reader; then the oldest are passed over."""
+RATE_OVER = 2.0
+"""Seconds over which the rate is taken."""
+
+
+class HeardSignal(NamedTuple):
+    """A signal as a reader hears it."""
+
+    stamp: Stamp
+    rate: float
+    """Signals a second, as they came during the last seconds; zero for the first."""
+    size: int
+    """The bytes of its payload."""
+    raw: bool
+    """Whether it is bytes, or an array, and no JSON: then there is no value, and the stamp says what it is."""
+    value: Any = None
+    passed_over: int = 0
+    """How many signals before this one the reader has missed."""
+
+    def body(self) -> dict[str, Any]:
+        """The signal as JSON; bytes and arrays are described."""
+        stamp, encoding = self.stamp, self.stamp.encoding
+        said: dict[str, Any] = {"value": self.value}
+        if self.raw:
+            said = {"bytes": self.size, "media": encoding.media, "datatype": encoding.datatype}
+            said["shape"] = list(encoding.shape)
+        return {
+            "component": stamp.component,
+            "life": stamp.life,
+            "sequence": stamp.sequence,
+            "time": stamp.time,
+            "rate": round(self.rate, 3),
+            "passed_over": self.passed_over,
+            **said,
+        }
+
+
+def echo(bus: Bus, key: str, complain: Callable[[str], None] = lambda _: None) -> Iterator[HeardSignal]:
+    """The signals of an output, by its key, from now on and without an end; `complain` hears of what is no signal."""
+    arrived: deque[tuple[float, Sample]] = deque(maxlen=SIGNALS_HELD)
+    stamps, moments = StampReader(), deque[float]()
+    taken = heard = 0
+
+    def receive(sample: Sample) -> None:
+        nonlocal taken
+        taken += 1
+        arrived.append((bus.now(), sample))
+
+    undo = bus.subscribe(key, receive)
+    try:
+        while True:
+            bus.run(lambda: bool(arrived))
+            missed = taken - heard - len(arrived)
+            moment, sample = arrived.popleft()
+            heard += missed + 1
+            moments.append(moment)
+            while moment - moments[0] > RATE_OVER:
+                moments.popleft()
+            span = moments[-1] - moments[0]
+            try:
+                raw, stamp = stamps.read(sample.attachment)
+                value = None if raw else json.loads(sample.payload)
+            except (PeerError, ValueError, RecursionError) as error:
+                complain(f"passed over what is no signal: {error}")
+                continue
+            rate = (len(moments) - 1) / span if span else 0.0
+            yield HeardSignal(stamp, rate, len(sample.payload), raw, value, missed)
+    finally:
+        undo()

@@ -1,0 +1,79 @@
+"""`echo`: what an output of a component issues, as it comes, until Ctrl-C or a number of signals."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from typing import TYPE_CHECKING
+
+from selfconf.cli.options import add_ecology_arguments, joined
+from selfconf.cli.terminal import complain, paint
+
+if TYPE_CHECKING:
+    from selfconf.api.echo import HeardSignal
+
+EXAMPLE = """  selfconf echo person-tracker pose --count 5"""
+LONGEST_VALUE = 400
+"""Characters of a value that are shown, in text."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument("component", metavar="COMPONENT", help="a component: its IRI or its local name")
+    parser.add_argument("output", metavar="PORT", help="the name of one of its outputs")
+    parser.add_argument("--count", metavar="N", type=_count, help="end after so many signals (default: at Ctrl-C)")
+    parser.add_argument(
+        "--format",
+        choices=["text", "json"],
+        default="text",
+        help="json: an object on a line for each signal; bytes and arrays are described (default: %(default)s)",
+    )
+    add_ecology_arguments(parser)
+
+
+def run(given: argparse.Namespace) -> int:
+    """0 after Ctrl-C, and once as many signals have come as were wanted."""
+    from selfconf.termination import end_as_by_ctrl_c
+
+    end_as_by_ctrl_c()
+    show = _json if given.format == "json" else _text
+    try:
+        with joined(given) as ecology:
+            for number, signal in enumerate(ecology.signals(given.component, given.output, complain), 1):
+                print(show(signal), flush=True)
+                if number == given.count:
+                    break
+    except KeyboardInterrupt:  # the way to end it
+        return 0
+    return 0
+
+
+def _json(signal: HeardSignal) -> str:
+    return json.dumps(signal.body(), ensure_ascii=False)
+
+
+def _text(signal: HeardSignal) -> str:
+    stamp = signal.stamp
+    moment = time.strftime("%H:%M:%S", time.localtime(stamp.time)) + f".{int(stamp.time % 1 * 1000):03}"
+    missed = f" ({signal.passed_over} passed over)" if signal.passed_over else ""
+    return f"{paint(moment, 'dim')}  {signal.rate:6.1f}/s  {_value(signal)}{missed}"
+
+
+def _value(signal: HeardSignal) -> str:
+    """The value as JSON, shortened; bytes and arrays are described."""
+    encoding = signal.stamp.encoding
+    if not signal.raw:
+        text = json.dumps(signal.value, ensure_ascii=False)
+        left_out = len(text) - LONGEST_VALUE
+        return text if left_out <= 0 else f"{text[:LONGEST_VALUE]}... ({left_out} characters more)"
+    what = f"{encoding.media} of " if encoding.media else ""
+    if not encoding.datatype:
+        return f"<{what}{signal.size} bytes>"
+    return f"<{what}{encoding.datatype} {' x '.join(map(str, encoding.shape))}, {signal.size} bytes>"
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or not int(text):
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of signals; it takes a whole number above zero")
+    return int(text)
