@@ -75,9 +75,9 @@ def action_step(
     return on_runner(repository, step["run"], **filled, **environment)
 
 
-def validate_step(repository: Path, paths: str, ontology: str = "") -> subprocess.CompletedProcess[str]:
+def validate_step(repository: Path, paths: str, ontology: str = "", **inputs: str) -> subprocess.CompletedProcess[str]:
     """The last step of the action."""
-    return action_step(repository, -1, {"paths": paths, "ontology": ontology})
+    return action_step(repository, -1, {"paths": paths, "ontology": ontology, **inputs})
 
 
 def test_the_action_installs_the_checkout_it_lies_in(repository: Path, offline: dict[str, str]) -> None:
@@ -126,6 +126,12 @@ def test_the_action_knows_the_ontologies_it_is_given(repository: Path) -> None:
     assert not validate_step(repository, "my robots", "my words.ttl\n").stdout
 
 
+def test_warnings_fail_the_action_where_it_is_strict(repository: Path) -> None:
+    (repository / "my robots" / "tuner.ttl").write_text(STRANGE)
+    assert validate_step(repository, "my robots").returncode == 0
+    assert validate_step(repository, "my robots", strict="true").returncode == 1
+
+
 def test_the_action_is_a_composite_of_shell_steps() -> None:
     assert ACTION["runs"]["using"] == "composite"
     assert all(step["shell"] == "bash" for step in ACTION["runs"]["steps"])
@@ -145,6 +151,18 @@ def test_the_hook_runs_validate_on_the_files_of_a_commit(repository: Path, text:
     assert not re.search(hook["files"], "my robots/tuner.ttl.orig")
     entry = [sys.executable, "-m", *shlex.split(hook["entry"])]
     assert subprocess.run([*entry, str(file)], cwd=repository, capture_output=True, check=False).returncode == code
+
+
+def test_the_hook_takes_a_folder_of_ontologies_as_the_page_says(repository: Path) -> None:
+    (hook,) = HOOKS
+    (arguments,) = re.findall(r"`args: \[(--ontology.*?)\]`", PAGE)
+    (repository / "vocabulary").mkdir()
+    (repository / "vocabulary" / "words.ttl").write_text(VOCABULARY)
+    (repository / "tuner.ttl").write_text(STRANGE)
+    entry = [sys.executable, "-m", *shlex.split(hook["entry"])]
+    for given, code in ((["--warnings-as-errors"], 1), (arguments.split(", "), 0)):
+        done = subprocess.run([*entry, *given, "tuner.ttl"], cwd=repository, capture_output=True, check=False)
+        assert done.returncode == code, done
 
 
 def test_the_page_speaks_of_what_there_is() -> None:

@@ -22,9 +22,11 @@ from selfconf.errors import AuthorError, reason
 
 if TYPE_CHECKING:
     from selfconf.query import Shown
+    from selfconf.rdf.sparql import Dataset
 
 EXAMPLE = """  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --ads examples/peis-home
-  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --endpoint http://127.0.0.1:7878/query"""
+  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --endpoint http://127.0.0.1:7878/query
+  selfconf query 'SELECT ?when { ?c prov:generatedAtTime ?when }' --history history"""
 ANSWER_FORMATS = ("table", "json", "csv", "tsv", "turtle")
 SECONDS, ROWS = 60.0, 100_000
 # All three are the library's (`selfconf.query`), which is not loaded to parse arguments; a test compares them.
@@ -36,6 +38,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_ads_argument(parser)
     add_endpoint_argument(parser)
     add_ontology_argument(parser)
+    parser.add_argument(
+        "--history",
+        metavar="DIR",
+        type=Path,
+        help="what `selfconf serve --history DIR` has kept: every configuration as a graph of its own, with its"
+        " provenance; alone, or together with --ads",
+    )
     parser.add_argument("--format", choices=ANSWER_FORMATS, default=ANSWER_FORMATS[0], help="default: %(default)s")
     parser.add_argument(
         "--seconds",
@@ -55,6 +64,7 @@ def run(given: argparse.Namespace) -> int:
     """0 with an answer, be it empty."""
     from selfconf.api.ontologies import with_ontologies
     from selfconf.query import Question, answer
+    from selfconf.rdf.sparql import Dataset
 
     one_stdin(Path(given.sparql), *(given.ads or ()), *given.ontology)
     text = _text(given.sparql)
@@ -63,13 +73,29 @@ def run(given: argparse.Namespace) -> int:
     if given.endpoint is not None and given.ontology:
         raise AuthorError("an endpoint holds what it holds; --ontology is for files and the living ecology")
     question = Question(text, given.format, given.rows, seconds=given.answer_seconds)
-    with closing(given_ecology(given)) as ecology:
-        if ecology.remote:
-            return _told(ecology.asked(question), given.rows)
-        dataset = ecology.dataset()
-        if given.ads is None:
-            complain_of(ecology)
+    if given.history is not None and given.endpoint is not None:
+        raise AuthorError(
+            "an endpoint holds what it holds; --history is for the past of a living ecology, and for files"
+        )
+    if given.history is not None and (given.ads is None or "ads" in given.from_project):
+        dataset = Dataset()
+    else:
+        with closing(given_ecology(given)) as ecology:
+            if ecology.remote:
+                return _told(ecology.asked(question), given.rows)
+            dataset = ecology.dataset()
+            if given.ads is None:
+                complain_of(ecology)
+    if given.history is not None:
+        _add_past(dataset, given.history)
     return _told(answer(*with_ontologies(dataset, question, given.ontology)), given.rows)
+
+
+def _add_past(dataset: Dataset, folder: Path) -> None:
+    from selfconf.api.past import past_graphs
+
+    for name, triples in past_graphs(folder).items():
+        dataset.replace(name, triples)
 
 
 def _told(shown: Shown, rows: int) -> int:

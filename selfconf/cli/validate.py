@@ -45,6 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="an ontology whose terms the files use, besides those of selfconf, or a folder of them; repeatable",
     )
     parser.add_argument(
+        "--warnings-as-errors",
+        action="store_true",
+        help="the exit code is 1 where there are warnings, too",
+    )
+    parser.add_argument(
         "--cache",
         action="store_true",
         help="remember what was found, and look only at what has changed since the last run over the same paths",
@@ -75,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
         names = ", ".join(sorted(result.unreadable))
         complain(f"selfconf validate: cannot read {names}; correct the path or the syntax.")
         return 2
-    return 0 if result.conforms else 1
+    return 0 if result.conforms and not (arguments.warnings_as_errors and result.warnings) else 1
 
 
 def _project_paths(project: Project) -> list[Path]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 from datetime import datetime
+from pathlib import Path
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 
 EXAMPLE = """  selfconf why position
-  selfconf why Astrid --at 14:02"""
+  selfconf why Astrid --at 14:02
+  selfconf why :position --at 14:02 --history history"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,11 +26,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_moment,
         help="the moment that is meant: HH:MM, HH:MM:SS, or a date and time as ISO 8601 has it (default: now)",
     )
+    parser.add_argument(
+        "--history",
+        metavar="DIR",
+        type=Path,
+        help="ask what `selfconf serve --history DIR` has kept, in place of the living ecology; it goes on meanwhile",
+    )
     add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 with an answer, 1 if no task that its configurator remembers has to do with the term."""
+    """0 with an answer, 1 if no task that is remembered has to do with the term."""
+    if given.history is not None:
+        return _then(given)
     with joined(given) as ecology:
         sentences = ecology.why(given.term, given.at)
         complain_of(ecology)
@@ -37,6 +47,15 @@ def run(given: argparse.Namespace) -> int:
         return 1
     print("\n".join(sentences))
     return 0
+
+
+def _then(given: argparse.Namespace) -> int:
+    """The answer of what was kept."""
+    from selfconf.api.past import past_why
+
+    sentences = past_why(given.history, given.term, given.at)
+    print("\n".join(sentences) if sentences else f"no task has to do with {given.term} in {given.history}")
+    return 0 if sentences else 1
 
 
 def _moment(text: str) -> float:

@@ -29,7 +29,8 @@ class TaskStory:
     lost: dict[str, EventBody] = field(default_factory=dict)
     replaced: dict[str, str] = field(default_factory=dict)
     """The component before, by the one that took over from it."""
-    ended: bool = False
+    ended: float | None = None
+    """When it was taken down, if it was."""
 
     def take(self, event: EventBody) -> None:
         """Note an event."""
@@ -37,16 +38,19 @@ class TaskStory:
         if act == "lost":
             self.lost[str(event.get("component"))] = event
         elif act == "running" and isinstance(event.get("configuration"), dict):
-            before = self.configuration
+            before = self.configuration if self.ended is None else None  # one that was taken down is replaced by none
             self.configuration, self.refusal, self.since = event["configuration"], None, _time(event)
+            self.ended = None
             for role, components in self.roles():
                 gone = [one for one in _components(before, role) if one not in components]
                 come = [one for one in components if one not in _components(before, role)]
+                for one in come:
+                    self.replaced.pop(one, None)
                 self.replaced.update(zip(come, gone, strict=False))
         elif act in ("waiting", "refused"):
             self.refusal, self.since = event.get("refusal") or {}, _time(event)
         elif act in ("stopped", "detached"):
-            self.ended, self.since = True, _time(event)
+            self.ended = _time(event)
 
     def roles(self) -> Iterator[tuple[str, list[str]]]:
         """Each role with its components."""
@@ -107,7 +111,8 @@ def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Seque
 
 def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequence[str]) -> list[str]:
     who = ", ".join(map(_name, components)) or "nobody"
-    sentences = [f"{_name(role)} in {found.task}: {who}, since {_clock(found.since)}"]
+    until = "" if found.ended is None else f", until {_clock(found.ended)}"
+    sentences = [f"{_name(role)} in {found.task}: {who}, since {_clock(found.since)}{until}"]
     for component in components:
         instead = found.replaced.get(component)
         if instead is not None:

@@ -35,7 +35,7 @@ class History:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._store = ox.Store(str(folder))
-        except OSError as error:
+        except (OSError, RuntimeError) as error:  # the latter is how Oxigraph says that a store is broken
             raise AuthorError(f"cannot keep a history in {folder} ({error}); does another server use it?") from None
         self._current: dict[str, str] = {}
         """The configuration that is deployed, by the graph in which it is told."""

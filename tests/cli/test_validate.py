@@ -144,3 +144,11 @@ def test_the_option_remembers(folder: Path, tmp_path: Path, monkeypatch: pytest.
     codes = {main(["validate", str(folder), "--cache"]) for _ in range(2)}
     assert codes == {2}
     assert len(list((tmp_path / "cache" / "validate").iterdir())) == 1
+
+
+def test_warnings_count_where_they_are_to_be_errors(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "empty").mkdir()
+    assert main(["validate", "good.ttl", "--warnings-as-errors"]) == 0
+    assert main(["validate", "empty"]) == 0
+    assert main(["validate", "empty", "--warnings-as-errors"]) == 1
+    assert "warning[SC-S04]" in capsys.readouterr().out

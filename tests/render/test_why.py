@@ -78,3 +78,10 @@ def test_what_a_stranger_tells_does_no_harm() -> None:
         told_why("navigate", [{"act": "running", "configuration": {"roles": [3]}}], "navigate", None, {})
     odd = [{"act": "running", "time": "noon", "configuration": 3}, {"act": ["lost"]}, {}, {"act": "waiting"}]
     assert why_sentences(story("navigate", odd), "navigate", {})[0].startswith("navigate has no configuration")
+
+
+def test_of_a_task_that_was_taken_down_it_is_said_until_when() -> None:
+    stopped = {"act": "stopped", "time": 30.0}
+    assert ", until " in why_sentences(story("navigate", [*EVENTS, stopped]), "position", {})[0]
+    again = story("navigate", [*EVENTS, stopped, running(40.0, "tracker")])
+    assert ", until " not in why_sentences(again, "position", {})[0]

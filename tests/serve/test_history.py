@@ -78,3 +78,10 @@ def test_a_real_configuration_keeps_its_provenance(tmp_path: Path) -> None:
     (revision,) = [str(o) for _, p, o in document.triples() if p == PROV.wasRevisionOf]
     assert revision == before
     assert iri("person-tracker") in after.decode()
+
+
+def test_a_folder_with_a_broken_store_is_a_sentence(tmp_path: Path) -> None:
+    History(tmp_path).close()
+    (tmp_path / "CURRENT").write_text("nothing")
+    with pytest.raises(AuthorError, match="cannot keep a history in"):
+        History(tmp_path)
