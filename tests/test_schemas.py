@@ -56,7 +56,7 @@ EXAMPLES: dict[str, tuple[tuple[str, ...], ...]] = {
         (*WATCH, "--steps", "1"),
         (*WATCH, "--strategy", "best"),
     ),
-    "partition": ((*CLOCK, "--bind", "room=:kitchen"),),
+    "partition": ((*CLOCK, "--bind", "room=:kitchen"), (*WATCH, "--why")),
     "query": (
         ("SELECT ?c ?input WHERE { ?c sc:hasInput/sc:name ?input }", "--ads", "examples/clock"),
         ("ASK { ?c a rob:Display }", "--ads", "examples/clock"),
@@ -379,7 +379,20 @@ def changed(body: Any, path: str) -> Iterator[tuple[str, Any]]:
 
 OPEN = frozenset(("bindings", "lost", "dropped", "eligible", "values", "issued", "rates", "value"))
 """Members whose own members have names that an author gives: any may be missing."""
-OPTIONAL = frozenset(("additions", "cost", "what_if", "place", "role", "datatype"))
+OPTIONAL = frozenset(
+    (
+        "candidates",
+        "total",
+        "unknown_terms",
+        "total_proved",
+        "additions",
+        "cost",
+        "what_if",
+        "place",
+        "role",
+        "datatype",
+    )
+)
 """Members that some answers do not have."""
 
 

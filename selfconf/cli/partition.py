@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
@@ -21,10 +21,16 @@ from selfconf.cli.terminal import complain, display
 if TYPE_CHECKING:
     from selfconf.api.answer import Inquiry
     from selfconf.api.partition_table import PartitionTable, RolePartition
+    from selfconf.model.alternative import Alternative
+    from selfconf.model.term import IRI
     from selfconf.render import Names
 
+    Why = Mapping[IRI, Sequence[Alternative]]
+    """Of each role, its candidates with what would come of them."""
+
 EXAMPLE = """  selfconf partition examples/navigate.ttl --ads examples/peis-home --bind robot=:Astrid --bind goal=x
-  selfconf partition examples/navigate.ttl --ads examples/peis-home --bind robot=:Astrid --bind goal=x --show sparql"""
+  selfconf partition examples/navigate.ttl --ads examples/peis-home --bind robot=:Astrid --bind goal=x --show sparql
+  selfconf partition examples/watch.ttl --ads examples/watch --why"""
 SHOWN = 8
 """How many of those kept out are shown for each role, in text."""
 
@@ -37,17 +43,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--show", choices=["shape", "sparql"], help="print each role as the SHACL shape or SPARQL query it stands for"
     )
+    parser.add_argument(
+        "--why",
+        action="store_true",
+        help="tell for each candidate its preference and cost, and what the cheapest configuration with it would cost",
+    )
     add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
     """0 if every role has as many candidates as it asks for, else 1."""
+    from selfconf.api.alternatives import alternatives
     from selfconf.api.answer import Inquiry, Method
     from selfconf.api.partition_table import PartitionTable
 
     task = task_of(given)
     with closing(given_ecology(given)) as ecology:
-        inquiry = Inquiry(task, ecology, Method.of(reasoning=given.reasoning, ontologies=given.ontology))
+        strategy = "best" if given.why else "first"
+        inquiry = Inquiry(task, ecology, Method.of(strategy, given.reasoning, given.ontology))
         if given.ads is None:
             complain_of(ecology)
     for one in inquiry.left_out:
@@ -56,10 +69,11 @@ def run(given: argparse.Namespace) -> int:
         display(_exported(inquiry, given.show))
         return 0
     found = PartitionTable(inquiry)
+    why = alternatives(inquiry) if given.why else {}
     if given.format == "json":
-        display(json.dumps(_body(found), indent=2, ensure_ascii=False))
+        display(json.dumps(_body(found, why), indent=2, ensure_ascii=False))
     else:
-        display("\n".join(line for one in found.roles for line in _lines(one, found.names)))
+        display("\n".join(line for one in found.roles for line in _lines(one, found.names, why)))
     return 0 if found.sufficient else 1
 
 
@@ -75,13 +89,17 @@ def _exported(inquiry: Inquiry, how: str) -> str:
     return "\n\n".join(f"# {role.iri}\n{texts[how](role)}" for role in partitioner.roles)
 
 
-def _lines(one: RolePartition, names: Names) -> Iterator[str]:
-    from selfconf.render import holder_text
+def _lines(one: RolePartition, names: Names, why: Why) -> Iterator[str]:
+    from selfconf.render import alternative_text, holder_text
+
+    told = {found.component: found for found in why.get(one.role.iri, ())}
+    chosen = next((found for found in told.values() if found.chosen), None)
 
     yield f"{names(one.role.iri)}  {len(one.eligible) or 'nobody is'} eligible"
     for number, component in enumerate(one.eligible, 1):
         held = one.held.get(component)
-        yield f"  {number}. {names(component)}" + (f"  ({holder_text(held)})" if held is not None else "")
+        said = f": {alternative_text(told[component], chosen)}" if component in told else ""
+        yield f"  {number}. {names(component)}{said}" + (f"  ({holder_text(held)})" if held is not None else "")
     if one.excluded:
         yield "  kept out"
         yield from (f"    {names(e.component)}: {', '.join(map(str, e.obstacles))}" for e in one.excluded[:SHOWN])
@@ -89,8 +107,8 @@ def _lines(one: RolePartition, names: Names) -> Iterator[str]:
         yield f"    and {len(one.excluded) - SHOWN} more; --format json has them all"
 
 
-def _body(found: PartitionTable) -> dict[str, Any]:
-    from selfconf.render import holder_body, value_body
+def _body(found: PartitionTable, why: Why) -> dict[str, Any]:
+    from selfconf.render import alternative_body, holder_body, value_body
 
     return {
         "template": found.inquiry.task.iri,
@@ -100,6 +118,7 @@ def _body(found: PartitionTable) -> dict[str, Any]:
                 "role": one.role.iri,
                 "eligible": list(one.eligible),
                 **({"held": [{"component": c, **holder_body(h)} for c, h in one.held.items()]} if one.held else {}),
+                **({"candidates": list(map(alternative_body, why[one.role.iri]))} if why else {}),
                 "excluded": [
                     {"component": e.component, "of_its_class": e.akin, "obstacles": list(map(str, e.obstacles))}
                     for e in one.excluded

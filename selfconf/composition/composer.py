@@ -118,15 +118,24 @@ class Composer:
         return answer.configuration if isinstance(answer, Optimum) else answer
 
     def answers(
-        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+        self,
+        ecology: Mapping[IRI, Advertisement],
+        lost: frozenset[IRI],
+        running: Configuration | None,
+        played: tuple[IRI, IRI] | None = None,
     ) -> Iterator[Optimum | Outcome]:
         """Better and better configurations, with their costs where there are any; or why there is none.
 
-        The last answer so far is the one to keep when the time is up. A configuration is certified before it is handed
+        The last answer so far is the one to keep when the time is up. `played` is a role and the component that alone
+        may play it, for a question about an alternative. A configuration is certified before it is handed
         out, by rules that share nothing with the search.
         """
         partition = self.partition(ecology)
-        problem = Problem(self.task.task, partition.without(lost) if lost else partition, self.hierarchy)
+        partition = partition.without(lost) if lost else partition
+        if played is not None:
+            number = next(n for n, role in enumerate(self.task.task.template.roles) if role.iri == played[0])
+            partition = partition.with_only(number, played[1])
+        problem = Problem(self.task.task, partition, self.hierarchy)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
         for answer in self._with_recruits(problem, self._with_additions(self._search, problem, running), running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer

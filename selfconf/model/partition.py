@@ -86,6 +86,15 @@ class Partition:
         """The partition once some components, and with them the values that no other states, have left the ecology."""
         recruits = tuple(recruit for recruit in self.recruits if recruit.component not in lost)
         left = tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates)
+        return self._narrowed(left, recruits)
+
+    def with_only(self, role: int, component: IRI) -> Partition:
+        """The partition in which one component alone is eligible for a role, given by its number."""
+        only = tuple(c for c in self.candidates[role] if c.profile.component == component)
+        return self._narrowed((*self.candidates[:role], only, *self.candidates[role + 1 :]), self.recruits)
+
+    def _narrowed(self, left: tuple[tuple[Candidate, ...], ...], recruits: tuple[Recruit, ...]) -> Partition:
+        """The partition with these candidates, and without the values of variables that none of them states."""
         kept = [_places_stated(variable, number, left) for number, variable in enumerate(self.variables)]
         if all(len(places) == len(variable.domain) for places, variable in zip(kept, self.variables, strict=True)):
             return Partition(left, self.variables, recruits)

@@ -8,6 +8,7 @@ The events of a run are worded in `selfconf.render.run_events`, which is loaded 
 """
 
 from selfconf.render.bodies import (
+    alternative_body,
     configuration_body,
     consequences_body,
     cost_body,
@@ -22,6 +23,7 @@ from selfconf.render.names import Names, ecology_names, short
 from selfconf.render.tables import count, duration, table
 from selfconf.render.text import (
     Name,
+    alternative_text,
     configuration_text,
     consequences_text,
     cost_text,
@@ -33,6 +35,8 @@ from selfconf.render.text import (
 __all__ = [
     "Name",
     "Names",
+    "alternative_body",
+    "alternative_text",
     "configuration_body",
     "configuration_text",
     "consequences_body",

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from selfconf.model.alternative import Alternative
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.holder import Holder
@@ -53,6 +54,22 @@ def consequences_body(consequences: Sequence[Consequence]) -> list[dict[str, Any
         }
         for one in consequences
     ]
+
+
+def alternative_body(one: Alternative) -> dict[str, Any]:
+    """A candidate of a role with what would come of it; costs only where the template states some."""
+    costs = {
+        "cost": [float(amount) for amount in one.cost],
+        "unknown_terms": one.unknown,
+        **({"total": [float(amount) for amount in one.total], "total_proved": one.proved} if one.total else {}),
+    }
+    return {
+        "component": one.component,
+        "preference": float(one.preference),
+        "chosen": one.chosen,
+        "outcome": one.outcome,
+        **(costs if one.cost else {}),
+    }
 
 
 def cost_body(optimum: Optimum, unknown: Iterable[IRI]) -> dict[str, Any]:

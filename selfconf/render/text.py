@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 
+from selfconf.model.alternative import Alternative
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.holder import Holder
@@ -67,6 +68,40 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
     told = dict.fromkeys(pair for pair in optimum.missing if pair[1] not in unstated)
     lines += [f"    {name(component)} has no number for {name(wanted)}" for component, wanted in told]
     return "\n".join(lines)
+
+
+def alternative_text(one: Alternative, chosen: Alternative | None) -> str:
+    """What speaks for a candidate of a role and against it, beside the one that is chosen."""
+    said = [f"preference {one.preference:g}" if one.preference else "no preference"]
+    if one.cost:
+        said.append(f"cost {_amounts(one.cost)}")
+    if one.unknown:
+        said.append(f"{one.unknown} {'term' if one.unknown == 1 else 'terms'} of the cost unknown")
+    return f"{', '.join(said)}; {_outcome(one, chosen)}"
+
+
+def _outcome(one: Alternative, chosen: Alternative | None) -> str:
+    """What comes of a candidate."""
+    proved = "" if one.proved else " at most"
+    if one.chosen:
+        return f"chosen, all in all{proved} {_amounts(one.total)}" if one.total else "chosen"
+    if one.outcome != "possible":
+        return {"impossible": "no configuration has it", "undecided": "not decided in time"}.get(
+            one.outcome, "not tried"
+        )
+    if not one.total:
+        return "possible, and comes later in the order"
+    level, more = next(((n, x) for n, x in enumerate(one.extra(chosen), 1) if x), (0, Fraction(0)))
+    least = f"with it all in all{proved} {_amounts(one.total)}"
+    if not level:
+        return f"{least}, which is no more: it comes later in the order"
+    where = f" on level {level}" if len(one.total) > 1 else ""
+    return f"{least}, {_decimal(abs(more))} {'more' if more > 0 else 'less'}{where}"
+
+
+def _amounts(levels: Iterable[Fraction]) -> str:
+    """Amounts, level by level."""
+    return " / ".join(map(_decimal, levels))
 
 
 def _decimal(amount: Fraction) -> str:

@@ -27,7 +27,8 @@ class Clock:
 def told(number: int, position: str, before: str = "", at: float = 0.0) -> bytes:
     """What a configurator tells of a configuration, which the loss of another position has led to."""
     failure = (
-        f'prov:wasInfluencedBy [ sc:component :{before} ; sc:cause "fail" ; sc:detail "out of view" ;'
+        f"prov:wasRevisionOf <urn:c:{number - 1}> ;"
+        f' prov:wasInfluencedBy [ sc:component :{before} ; sc:cause "fail" ; sc:detail "out of view" ;'
         f' prov:atTime "1970-01-12T13:46:{int(at - 1_000_000 + 40):02}.000+00:00"^^xsd:dateTime ] ;'
         if before
         else ""
@@ -36,7 +37,7 @@ def told(number: int, position: str, before: str = "", at: float = 0.0) -> bytes
     text = f"""@prefix : <https://example.org/peis-home#> . @prefix sc: <https://w3id.org/selfconf#> .
         @prefix prov: <http://www.w3.org/ns/prov#> . @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
         <urn:c:{number}> a sc:Configuration ; sc:template :navigate ; sc:task [ sc:template :navigate ] ;
-            {f"prov:wasRevisionOf <urn:c:{number - 1}> ;" if before else ""} prov:wasAttributedTo <urn:selfconf:configurator:c1> ; {failure}
+            prov:wasAttributedTo <urn:selfconf:configurator:c1> ; {failure}
             prov:generatedAtTime "1970-01-12T13:46:{int(at - 1_000_000 + 40):02}.500+00:00"^^xsd:dateTime ;
             sc:assignment [ sc:role :position ; sc:component :{position} {over} ] ."""
     return ntriples(parse(text, "cfg").triples())

@@ -196,3 +196,22 @@ def test_a_server_that_refuses_the_query_is_quoted(
     given = home[: home.index("--ads")]
     assert main(["partition", *given, "--endpoint", endpoint.replace("/query", "/nothing")]) == 2
     assert "answers 404" in capsys.readouterr().err
+
+
+def test_why_tells_what_each_candidate_costs_and_what_would_come_of_it(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(Path(__file__).parents[2])
+    watch = "partition", "examples/watch.ttl", "--ads", "examples/watch", "--why"
+    assert main(watch) == 0
+    said = capsys.readouterr().out
+    assert "1. :corner-camera: preference 10, cost 0.04 / 6; with it all in all 0.24 / 66, 0.13 more on level 1" in said
+    assert "2. :stereo-camera: preference 5, cost 0.08 / 9; with it all in all 0.11 / 29, 5 more on level 2" in said
+    assert "3. :shelf-camera: no preference, cost 0.08 / 4; chosen, all in all 0.11 / 24" in said
+
+
+def test_why_without_a_cost_tells_the_order(home: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["partition", *home, "--why"]) == 0
+    said = capsys.readouterr().out
+    assert ":person-tracker: preference 10; chosen" in said
+    assert ":absolute-odometry: no preference; possible, and comes later in the order" in said

@@ -1,0 +1,78 @@
+"""Why a candidate plays a role and another does not: its preference, its cost, and what a configuration with it costs.
+
+For each candidate the task is composed once more as if it alone were eligible for the role. Where the template states
+a cost, the cheapest such configuration is told; else only whether there is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from selfconf.api.answer import Inquiry
+from selfconf.composition import TimeLimit
+from selfconf.model import cost
+from selfconf.model.alternative import Alternative
+from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
+from selfconf.model.partition import Candidate
+from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.template import Role
+from selfconf.model.term import IRI
+
+MOST_TRIED = 12
+"""How many candidates of a role are tried, in their order; with thousands nobody reads the others."""
+SECONDS_FOR_ALL = 20.0
+"""The time for all of them together."""
+
+
+def alternatives(inquiry: Inquiry, seconds: float = SECONDS_FOR_ALL) -> dict[IRI, list[Alternative]]:
+    """The candidates of each role in their order, each with what would come of it; within so many seconds in all."""
+    limit = TimeLimit(seconds)
+    answer = _answer(inquiry, None, limit)
+    partition = inquiry.composer.partition(inquiry.ecology)
+    roles = zip(inquiry.task.roles, partition.candidates, strict=True)
+    return {role.iri: list(_of_role(inquiry, role, candidates, answer, limit)) for role, candidates in roles}
+
+
+def _of_role(
+    inquiry: Inquiry, role: Role, candidates: Sequence[Candidate], answer: Optimum | Outcome, limit: TimeLimit
+) -> Iterator[Alternative]:
+    levels, hierarchy = inquiry.composer.task.task.template.cost, inquiry.composer.hierarchy
+    chosen = _players(answer, role.iri)
+    for number, candidate in enumerate(candidates):
+        profile = candidate.profile
+        price = cost.cost(levels, role.iri, profile, hierarchy) if levels else (Fraction(0),)
+        one = Alternative(profile.component, profile.preference, price[1:], int(price[0]), False, "not tried")
+        if profile.component in chosen:
+            yield _with(one._replace(chosen=True), answer)
+        elif profile.component in inquiry.holders or role.minimum != 1 or number >= MOST_TRIED:
+            yield one  # one that another task holds cannot play, and of several players none is alone
+        else:
+            yield _with(one, _answer(inquiry, (role.iri, profile.component), limit))
+
+
+def _answer(inquiry: Inquiry, played: tuple[IRI, IRI] | None, limit: TimeLimit) -> Optimum | Outcome:
+    """The last answer in the time, of the whole task or of one with a role that is played by one component."""
+
+    def ask() -> Optimum | Outcome:
+        *_, last = inquiry.composer.answers(inquiry.ecology, frozenset(inquiry.holders), None, played)
+        return last
+
+    too_late: Optimum | Outcome = Undecided(seconds=SECONDS_FOR_ALL)
+    return limit.within(ask, too_late)
+
+
+def _with(one: Alternative, answer: Optimum | Outcome) -> Alternative:
+    if isinstance(answer, Optimum):
+        return one._replace(outcome="possible", total=answer.cost, total_unknown=answer.unknown, proved=answer.proved)
+    if isinstance(answer, Configuration):
+        return one._replace(outcome="possible")
+    return one._replace(outcome="impossible" if isinstance(answer, Refusal) else "undecided")
+
+
+def _players(answer: Optimum | Outcome, role: IRI) -> tuple[IRI, ...]:
+    outcome = answer.configuration if isinstance(answer, Optimum) else answer
+    if not isinstance(outcome, Configuration):
+        return ()
+    return next((one.components for one in outcome.assignments if one.role == role), ())
