@@ -35,11 +35,13 @@ quick: $(VENV)/with-dev
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow'
 
 # Mistakes in good files, ten thousand random ecologies for each property of the search, against every oracle, ten
-# thousand histories with faults, all that is recorded, and drives of ten seeds; about half an hour.
+# thousand histories with faults, all that is recorded, drives of ten seeds, and a hundred kills of a server that writes
+# its history; about half an hour.
 nightly: $(VENV)/with-dev fuzz
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/test_certificate.py tests/faults \
 		tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
 		tests/test_compare_benchmark.py tests/test_ci_for_users.py
+	$(BIN)/python -m benchmarks.history --kills 100
 
 # Ten thousand mangled messages, payloads, advertisements, certificates and HTTP requests each; some minutes.
 mangled: $(VENV)/with-dev

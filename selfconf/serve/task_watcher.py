@@ -40,7 +40,8 @@ class TaskWatcher:
         """By the name of the configurator."""
         self._over: deque[str] = deque()
         self._kept: dict[str, TaskRecord] = {}
-        self._graphs: dict[str, bytes] = {}
+        self._graphs: list[dict[str, bytes]] = [{}]
+        """What is to be handed on, in its order: one that replaces another before that was handed on comes after it."""
         self._deployed_text: dict[str, bytes] = {}
         """What each configurator has said last of what it has deployed."""
         self._asking: set[str] = set()
@@ -63,10 +64,16 @@ class TaskWatcher:
         for task in sorted(self._tasks.values(), key=lambda task: task.alive):
             yield task.identity, task.body(task.identity in kept)
 
-    def take_graphs(self) -> dict[str, bytes]:
-        """What was deployed or has ended since the last call, as N-Triples by the name of its graph."""
-        graphs, self._graphs = self._graphs, {}
+    def take_graphs(self) -> list[dict[str, bytes]]:
+        """What was deployed or has ended since the last call, as N-Triples by the name of its graph, in its order."""
+        graphs, self._graphs = self._graphs, [{}]
         return graphs
+
+    def _put_graph(self, configurator: str, triples: bytes) -> None:
+        graph = f"urn:selfconf:{self.keys.configuration(configurator)}"
+        if graph in self._graphs[-1]:  # the history is to have also what was replaced within moments
+            self._graphs.append({})
+        self._graphs[-1][graph] = triples
 
     def _task(self, configurator: str) -> WatchedTask:
         """The task of a configurator; of one too many, a task that is not followed."""
@@ -86,7 +93,7 @@ class TaskWatcher:
             while len(self._over) > ENDED_TASKS:
                 self._tasks.pop(self._over.popleft(), None)
             self._deployed_text.pop(name, None)
-            self._graphs[self._graph(name)] = b""
+            self._put_graph(name, b"")
             self._changed()
 
     def _noticed(self, sample: Sample) -> None:
@@ -158,9 +165,6 @@ class TaskWatcher:
                 self._task(status.configurator).take_status(status)
         self._changed()
 
-    def _graph(self, configurator: str) -> str:
-        return f"urn:selfconf:{self.keys.configuration(configurator)}"
-
     def _deployed(self, replies: Replies) -> None:
         for sample in replies.samples:
             name = sample.key.split("/")[3] if sample.key.count("/") == 4 else ""
@@ -175,7 +179,7 @@ class TaskWatcher:
             except TurtleError as error:
                 log.warning("passed over a configuration: %s", error)
                 continue
-            self._graphs[self._graph(name)] = turtle.ntriples(document.triples())
+            self._put_graph(name, turtle.ntriples(document.triples()))
             if task.refusal is None:
                 task.configuration = deployed_body(document)
         self._changed()

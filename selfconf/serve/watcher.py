@@ -147,9 +147,10 @@ class EcologyWatcher:
         self._shown = shown
         # What was asked for at the beginning comes from several configurators, one after the other.
         events, self._events = tuple(sorted(self._events, key=_moment)), []
-        self._hand_on(
-            EcologyChange(components=components, tasks=tasks, events=events, graphs=self._tasks.take_graphs())
-        )
+        *earlier, graphs = self._tasks.take_graphs()
+        for before in earlier:
+            self._hand_on(EcologyChange(graphs=before))
+        self._hand_on(EcologyChange(components=components, tasks=tasks, events=events, graphs=graphs))
 
     def _hand_on(self, change: EcologyChange) -> None:
         if not change.empty:

@@ -50,11 +50,26 @@ def test_a_configurator_that_is_cut_down_is_gone(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
     lab.let_pass(1.0)
-    (graph,) = tasks.watcher.take_graphs().items()
+    ((graph,),) = (graphs.items() for graphs in tasks.watcher.take_graphs())
     lab.crash(agent)
     lab.let_pass(3.0)
     assert tasks.phases() == ["gone"]
-    assert tasks.watcher.take_graphs() == {graph[0]: b""}
+    assert tasks.watcher.take_graphs() == [{graph[0]: b""}]
+
+
+def test_a_configuration_that_is_replaced_before_it_is_handed_on_is_handed_on_before_the_other(lab: Lab) -> None:
+    tasks = Tasks(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    first, second = tasks.watcher.take_graphs()
+    assert first.keys() == second.keys()
+    assert [iri("absolute-odometry").encode() in next(iter(graphs.values())) for graphs in (first, second)] == [
+        False,
+        True,
+    ]
 
 
 def test_a_task_that_the_sites_keep_and_none_runs_is_shown_as_kept(lab: Lab) -> None:

@@ -1,0 +1,28 @@
+"""kill -9 of a server in the middle of writing: a few times here, a hundred times by `make nightly`."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks.history import ALLOWED, Killed, kills, report
+
+KILLED = Killed(3, 0.02, (), ())
+
+
+@pytest.mark.process
+@pytest.mark.slow
+def test_the_history_opens_is_whole_and_lacks_at_most_the_last_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("starlette", reason="the extra `serve` is not installed")
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", "")  # the benchmark chooses its own; this puts the present one back
+    found = kills(5, 1)
+    assert [(one.lost, one.torn) for one in found] == [((), ())] * 5
+    assert max(one.lacks for one in found) <= ALLOWED
+    assert [one.kept for one in found] == sorted(one.kept for one in found)
+    assert found[-1].kept > 5
+
+
+def test_the_report_tells_what_is_torn_and_what_is_missing() -> None:
+    said = report([KILLED, KILLED._replace(kept=9, lacks=1.5, lost=("urn:a",), torn=("urn:b", "urn:c"))])
+    assert "opens: 2 of 2, 9 configurations in the end" in said
+    assert "2 configurations are torn; kept: 1 are missing that should be there" in said
+    assert "1500 ms at most" in said
