@@ -155,7 +155,9 @@ def kill(restless: Restless, serve: Callable[[], subprocess.Popen[str]], folder:
     missing = {name: at for name, at in missing.items() if at < moment}
     lost = [name for name, at in missing.items() if at < moment - ALLOWED] + sorted(before - set(graphs))
     sizes = {name: text.count(b" .\n") for name, text in graphs.items()}
-    torn = [name for name, size in sizes.items() if not 0 <= size - restless.sizes[name] <= 1]  # with or without its end
+    torn = [
+        name for name, size in sizes.items() if not 0 <= size - restless.sizes[name] <= 1
+    ]  # with or without its end
     return Killed(len(graphs), moment - min(missing.values(), default=moment), tuple(lost), tuple(torn))
 
 

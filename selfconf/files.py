@@ -94,8 +94,12 @@ def advertisements(
     return read_advertisements(text(octets(path), str(path)), str(path), base(path), segments)
 
 
-def signal_fields(paths: Iterable[Path], signals: Iterable[IRI]) -> dict[IRI, SignalFields]:
-    """The fields of those kinds of signals of which some Turtle files say what they consist of.
+def signal_fields(
+    paths: Iterable[Path], signals: Iterable[IRI], texts: Iterable[tuple[bytes, str, str | None]] = ()
+) -> dict[IRI, SignalFields]:
+    """The fields of those kinds of signals of which some Turtle files, or texts, say what they consist of.
+
+    A text goes with its name, and with the IRI that relative IRIs in it are relative to.
 
     Raises AuthorError for what is not there, cannot be read, or is not Turtle.
     """
@@ -103,6 +107,7 @@ def signal_fields(paths: Iterable[Path], signals: Iterable[IRI]) -> dict[IRI, Si
     from selfconf.rdf.turtle import parse
 
     documents = [parse(text(octets(path), str(path)), str(path), base(path), SAYING) for path in paths]
+    documents += (parse(text(found, name), name, base_iri, SAYING) for found, name, base_iri in texts)
     found = {signal: fields_of(documents, signal) for signal in signals}
     return {signal: fields for signal, fields in found.items() if fields is not None}
 

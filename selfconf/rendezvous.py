@@ -33,6 +33,8 @@ CONNECT_VARIABLE = "SELFCONF_CONNECT"
 """The variable with the endpoints, apart by spaces, that a program connects to when none are given."""
 KEYS_VARIABLE = "SELFCONF_KEYS"
 """The variable with the folder of keys of a program to which none is given."""
+ONTOLOGY_VARIABLE = "SELFCONF_ONTOLOGY"
+"""The variable with the ontologies of a site, apart as the folders of $PATH are; its components are checked by them."""
 LIFE_VARIABLE = "SELFCONF_LIFE"
 """The variable with the life that a site gives to the components of a program that it starts, so that it knows them."""
 ECOLOGY_ANSWER = 3.0
@@ -202,9 +204,15 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
     return found
 
 
-def environment(ecology: str, endpoint: str) -> dict[str, str]:
-    """The variables by which a program that is started finds an ecology."""
-    return {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
+def environment(ecology: str, endpoint: str, ontologies: Sequence[Path] = ()) -> dict[str, str]:
+    """The variables by which a program that is started finds an ecology, and the ontologies of who starts it."""
+    found = {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
+    return {**found, ONTOLOGY_VARIABLE: os.pathsep.join(str(path.resolve()) for path in ontologies)}
+
+
+def ontologies() -> list[Path]:
+    """The ontologies that the environment names: those of the site that has started this program."""
+    return [Path(path) for path in os.environ.get(ONTOLOGY_VARIABLE, "").split(os.pathsep) if path]
 
 
 def asked_for(ecology: str | None, connect: Sequence[str]) -> tuple[str | None, list[str]]:

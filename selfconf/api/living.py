@@ -488,7 +488,7 @@ class LivingEcology(Ecology):
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them.
 
-        Returns the names of the configurators, and of tasks that live in the sites and that none was running. Raises
+        Returns the names of the tasks. Raises
         NetworkError if there is none of that name, if one does not answer or does not end in time, or if a component
         does not obey.
         """
@@ -505,8 +505,8 @@ class LivingEcology(Ecology):
         for status in running:
             self._ask(self._view.keys.configurator_call(status.configurator, "stop"))
         self._await_end({status.configurator for status in running})
-        idle = {task_name(record.task) for record in kept if all(record.task != status.task for status in running)}
-        return tuple(sorted({status.configurator for status in running} | idle))
+        names = {task_name(status.task) or status.configurator for status in running}
+        return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
     def _kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""

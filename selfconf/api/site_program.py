@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf import rendezvous
+from selfconf import files, rendezvous
 from selfconf.api.joining import Joining
 from selfconf.api.reading import existing
 from selfconf.api.work_queue import WorkQueue
@@ -49,6 +49,7 @@ def serve(
     keys: Path | None = None,
     insecure: bool = False,
     beside: Beside = lambda ecology, session: nullcontext(),
+    ontologies: Sequence[Path] = (),
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
 
@@ -56,11 +57,13 @@ def serve(
     `complain` hears what is left out, and where it listens. In the folder `state` are the tasks that it keeps, in the
     folder `log` what the components print that it starts; by default both are folders of the runtime folder. With the
     folder `keys` only those are let in whom its authority vouches for; without it the site listens beyond loopback
-    only if it may be `insecure`. `beside` is what lives with the site, from when it listens to when it ends. Raises
-    AuthorError and NetworkError.
+    only if it may be `insecure`. `beside` is what lives with the site, from when it listens to when it ends. By
+    `ontologies`, files and folders of Turtle, the components that it starts check what they emit. Raises AuthorError
+    and NetworkError.
     """
-    for path in paths:
+    for path in (*paths, *ontologies):
         existing(path)
+    files.signal_fields((file for path in ontologies for file in files.within(path)), ())  # that they can be read
     ecology, connect = rendezvous.asked_for(ecology, connect)
     if ecology is None:
         raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
@@ -86,7 +89,7 @@ def serve(
         ended = Termination(bus)
         work = WorkQueue()
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
-        environment = rendezvous.environment(ecology, " ".join(joining.endpoints))
+        environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
         log_path = _log_path(log, ecology, name).absolute()
         joining.log = str(log_path)
         keys_of = None if secured is None else secured.keys_of

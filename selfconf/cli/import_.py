@@ -48,7 +48,9 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.importing import import_descriptions
 
     report = import_descriptions(given.form, given.sources, given.out, given.namespace)
-    for each in (*report.unreadable, *report.renamed, *report.left_out):
+    for unreadable in report.unreadable:
+        complain(str(unreadable) if unreadable.file else f"selfconf import: {unreadable}")  # a place comes first
+    for each in (*report.renamed, *report.left_out):
         complain(str(each))
     if given.format == "json":
         print(json.dumps(_body(report), indent=2, ensure_ascii=False))

@@ -8,8 +8,9 @@ import queue
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -100,7 +101,8 @@ def run(given: argparse.Namespace) -> int:
         return _detach(given, task)
     with _begun(given, task) as (running, site):
         running.stop_on_signals()
-        printer = LinePrinter(json_lines if given.format == "json" else TextLines(task), running.stop)
+        lines = TextLines(task)
+        printer = LinePrinter(json_lines if given.format == "json" else lines, running.stop)
         for event in running.events():
             printer.put(event)
         printer.end()
@@ -113,7 +115,7 @@ def run(given: argparse.Namespace) -> int:
         complain(undecided_text(running.refusal, task.iri, task.names))
         return 2
     if running.refusal is not None and given.format == "text":
-        _explain(running, task)
+        _explain(running, task, lines.told)
     return 1 if running.refusal is not None else 0
 
 
@@ -212,8 +214,8 @@ def _described(paths: Sequence[Path]) -> Mapping[IRI, Advertisement]:
         return {}
 
 
-def _explain(running: Run, task: TaskSpecification) -> None:
-    """Everything is down, so there is time to find out what else can be told."""
+def _explain(running: Run, task: TaskSpecification, told: Collection[IRI]) -> None:
+    """Everything is down, so there is time to find out what else can be told than what has been told already."""
     from selfconf.model.refusal import Refusal
     from selfconf.render import refusal_text
     from selfconf.render.run_events import lost_sentences
@@ -221,7 +223,7 @@ def _explain(running: Run, task: TaskSpecification) -> None:
     refusal = running.explained()
     if isinstance(refusal, Refusal):
         complain(refusal_text(refusal, task.names))
-    for sentence in lost_sentences(running.lost, task.names):
+    for sentence in lost_sentences(running.lost, task.names, told):
         complain(sentence)
     losses = running.losses.values()
     if any(loss.busy for loss in losses):
@@ -269,23 +271,37 @@ class LinePrinter:
 
 
 class TextLines:
-    """Reports events to people, one line each on stderr, with the seconds since the first one."""
+    """Reports events to people, one line each on stderr, with the seconds since the first one; no failure twice."""
 
     def __init__(self, task: TaskSpecification) -> None:
         self._names = task.names
         self._began: float | None = None
+        self.told: set[IRI] = set()
+        """The components of which it was told that they were lost, and why."""
+        self._trouble: dict[IRI, str] = {}
+        """What was told last of a component that declines or cannot be reached, which is then lost for that."""
 
     def __call__(self, event: RunEvent) -> None:
         """Raises OSError if the line cannot be written."""
-        from selfconf.model.run_event import TaskStopped, TaskWaiting
-        from selfconf.render.run_events import details, sentence
+        from selfconf.model.run_event import CallDeclined, ComponentLost, ComponentUnreachable, TaskStopped, TaskWaiting
+        from selfconf.render.run_events import details, log_hint, sentence
 
         self._began = event.time if self._began is None else self._began
-        for detail in details(event, self._names) if isinstance(event, TaskWaiting | TaskStopped) else ():
+        for detail in details(event, self._names, self.told) if isinstance(event, TaskWaiting | TaskStopped) else ():
             print(detail, file=sys.stderr, flush=True)
+        hint = ""
+        if isinstance(event, CallDeclined | ComponentUnreachable):
+            self._trouble[event.component] = event.detail
+        elif isinstance(event, ComponentLost):
+            hint = log_hint(event) if event.component not in self.told else ""
+            self.told.add(event.component)
+            if self._trouble.pop(event.component, None) == event.detail:
+                event = replace(event, detail="")
         said = sentence(event, self._names)
         if said:
             print(f"{event.time - self._began:9.3f} s  {said}", file=sys.stderr, flush=True)
+        if hint:
+            print(f"{'':11}  {hint}", file=sys.stderr, flush=True)
 
 
 def json_lines(event: RunEvent) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from selfconf.cli.options import add_keys_argument
+from selfconf.cli.options import add_keys_argument, add_ontology_argument
 from selfconf.cli.terminal import complain
 
 EXAMPLE = """  selfconf site examples/peis-home --ecology home
@@ -52,6 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="where the tasks that live in the ecology are kept (default: in the runtime folder of this machine)",
     )
+    add_ontology_argument(parser)
     parser.add_argument(
         "--log",
         metavar="DIR",
@@ -81,6 +82,7 @@ def run(given: argparse.Namespace) -> int:
         given.log,
         given.keys,
         given.insecure,
+        ontologies=given.ontology,
     )
     return 0
 

@@ -99,6 +99,10 @@ class Calls:
         """The connections that each component was given, in which life, so that only new ones are reported."""
         self._lives: dict[IRI, str] = {}
         """The life of each component that has obeyed a call of this task, and not yet a release."""
+        self._called: set[IRI] = set()
+        """The components that were asked to be held, or to act, whatever has come of it."""
+        self._unborn: set[IRI] = set()
+        """The components that had no life when their sites were asked to start them, and have had none since."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
 
@@ -119,6 +123,7 @@ class Calls:
 
     def woken(self, component: IRI) -> None:
         """A component lives; perhaps it was started for this task."""
+        self._unborn.discard(component)
         waiting = self._waking.pop(component, None)
         if waiting is not None:
             waiting[1]()
@@ -148,6 +153,7 @@ class Calls:
         """Have the site start the process; that is done when the component lives."""
         self._report(ComponentWoken(effect.component, found.site))
         self.abandon(effect.component)
+        self._unborn.add(effect.component)
         too_late = f"it was started, but does not live after {WAKING:.0f} s"
         waking = effect, self.bus.later(WAKING, lambda: self._give_up(waking, too_late))
         self._waking[effect.component] = waking
@@ -233,7 +239,8 @@ class Calls:
         self._awaited.discard(component)
         if not self._lives_on(component):
             self._lives.pop(component, None)
-            off = Answered(component, Call.RELEASE, effect.epoch, None)
+            never_acted = component in self._unborn - self._called
+            off = Answered(component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE if never_acted else None)
             self.bus.wake_up(lambda: self._step(off))
             self.bus.later(GONE, partial(self._is_gone, effect))
             return
@@ -278,6 +285,8 @@ class Calls:
         self, component: IRI, call: Call, message: Reserve | Apply | Release, attempts: int = CALL_ATTEMPTS
     ) -> None:
         began = self.bus.now()
+        if call is not Call.RELEASE:
+            self._called.add(component)
 
         def answered(replies: Replies) -> None:
             answer = self._answer_in(replies, message.life)

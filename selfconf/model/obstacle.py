@@ -108,7 +108,9 @@ class NotAmong:
 
     def said(self, name: str) -> str:
         """The fault of the property of that name."""
-        return f"{name} is {in_words(self.values)}, not {in_words(self.members)}"
+        alike = {_word(value) for value in self.values} & {_word(member) for member in self.members}
+        worded = _in_full if alike else in_words
+        return f"{name} is {worded(self.values)}, not {worded(self.members)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,6 +269,12 @@ def in_words(values: Iterable[Term]) -> str:
     """Values for people: `Astrid or Pippi`; of literals also what tells them from others, `"1"` from `1`."""
     names = sorted(map(_word, values))
     return " or ".join(names) if names else "nothing"
+
+
+def _in_full(values: Iterable[Term]) -> str:
+    """Values for people where local names do not tell them apart: IRIs as a whole."""
+    said = sorted(repr(value) if isinstance(value, IRI) else _word(value) for value in values)
+    return " or ".join(said) if said else "nothing"
 
 
 def _word(value: Term) -> str:

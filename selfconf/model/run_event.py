@@ -7,7 +7,7 @@ Each event has an `act`, a name that is stable for programs, and a time in secon
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import ClassVar
 
 from selfconf.model.configuration import Configuration
@@ -21,6 +21,11 @@ class RunEvent:
 
     act: ClassVar[str] = ""
     time: float = field(default=0.0, kw_only=True)
+
+    def __str__(self) -> str:
+        """The act and its facts in one line: `lost component=clock cause=crash detail='its life has ended'`."""
+        facts = ((one.name, getattr(self, one.name)) for one in fields(self) if one.name != "time")
+        return " ".join((self.act, *(f"{name}={_brief(value)}" for name, value in facts)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,3 +231,18 @@ class EcologyReachable(RunEvent):
     """The configurator is linked to the ecology again."""
 
     act: ClassVar[str] = "connected"
+
+
+def _brief(value: object) -> str:
+    """A fact of an event in a few words; of what is large, how much there is of it."""
+    if isinstance(value, IRI):
+        return value.short
+    if isinstance(value, Configuration):
+        return f"<{len(value.components)} components>"
+    if isinstance(value, Refusal | Undecided):
+        return "<refused>" if isinstance(value, Refusal) else "<undecided>"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_brief, value))})"
+    if isinstance(value, Mapping):
+        return f"({', '.join(map(_brief, value))})"
+    return value if isinstance(value, str) and value.isidentifier() else repr(value)

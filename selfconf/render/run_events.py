@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.run_event import EcologyDiscovered, RunEvent, SearchEnded, TaskRefused, TaskStopped, TaskWaiting
+from selfconf.model.run_event import (
+    ComponentLost,
+    EcologyDiscovered,
+    RunEvent,
+    SearchEnded,
+    TaskRefused,
+    TaskStopped,
+    TaskWaiting,
+)
 from selfconf.model.term import IRI
 from selfconf.model.wording import MANY
 from selfconf.render.bodies import configuration_body, refusal_body, undecided_body
@@ -30,7 +38,7 @@ SENTENCES: Mapping[str, str] = {
     "set": "act 4  {component} has its parameters",
     "declined": "       {component} declines: {detail}",
     "unreachable": "       {component} cannot be reached: {detail}",
-    "lost": "LOST   {component}: {cause}, {detail}",
+    "lost": "LOST   {component}: {loss}",
     "released": "       {component} is off",
     "running": "       running",
     "waiting": "       waiting for the ecology to change",
@@ -48,6 +56,8 @@ SENTENCES: Mapping[str, str] = {
 def sentence(event: RunEvent, name: Name) -> str:
     """An event in one line; empty for an event that is not worth one."""
     facts: dict[str, Any] = {one.name: _word(getattr(event, one.name), name) for one in fields(event)}
+    if isinstance(event, ComponentLost):
+        facts["loss"] = f"{event.cause}, {event.detail}" if event.detail else event.cause
     if isinstance(event, SearchEnded):
         facts |= {"found": _outcome(event), "milliseconds": event.seconds * 1000}
     if isinstance(event, EcologyDiscovered):
@@ -57,21 +67,33 @@ def sentence(event: RunEvent, name: Name) -> str:
     return SENTENCES[event.act].format(**facts)
 
 
-def details(event: RunEvent, name: Name) -> Iterator[str]:
-    """What there is to say before an event: why a task waits or is refused, what is lost or does not obey."""
+def log_hint(event: ComponentLost) -> str:
+    """Where to look for the last words of a component that has ended or hangs; empty for one that said them itself."""
+    return (
+        f"       `selfconf log {event.component.short}` shows what it has printed"
+        if event.cause in ("crash", "hung")
+        else ""
+    )
+
+
+def details(event: RunEvent, name: Name, told: Collection[IRI] = ()) -> Iterator[str]:
+    """What there is to say before an event: why a task waits or is refused, what is lost or does not obey.
+
+    Of the components that have been `told`, it is not said once more why they were lost.
+    """
     if isinstance(event, TaskWaiting | TaskRefused):
         if isinstance(event.refusal, Undecided):
             yield f"  {event.refusal}"
         elif isinstance(event.refusal, Refusal):
             yield refusal_text(event.refusal, name)
-        yield from lost_sentences(event.lost, name)
+        yield from lost_sentences(event.lost, name, told)
     if isinstance(event, TaskRefused | TaskStopped):
         yield from (f"  out of control: {name(one)} was turned off and has not obeyed" for one in event.owed)
 
 
-def lost_sentences(losses: Mapping[IRI, str], name: Name) -> Iterator[str]:
-    """Why each component was lost, a line each."""
-    return (f"  {name(component)} was lost: {why}" for component, why in losses.items())
+def lost_sentences(losses: Mapping[IRI, str], name: Name, told: Collection[IRI] = ()) -> Iterator[str]:
+    """Why each component was lost, a line each, but for those of which that has been told."""
+    return (f"  {name(component)} was lost: {why}" for component, why in losses.items() if component not in told)
 
 
 def _outcome(event: SearchEnded) -> str:

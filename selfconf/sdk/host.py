@@ -7,12 +7,12 @@ a call of a configurator nor the end of its life waits for that code, and so tha
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import TypeVar
 
-from selfconf import files, library
+from selfconf import files, library, rendezvous
 from selfconf.bus.port import Bus, Replies
 from selfconf.errors import AuthorError, NetworkError, PeerError, ProgrammerError
 from selfconf.model.profile import Profile
@@ -175,13 +175,18 @@ class Host:
 
 
 def signal_fields_of(path: Path, profile: Profile) -> Mapping[IRI, SignalFields]:
-    """The fields of the signals that a component emits, as its advertisement and the ontologies of selfconf say."""
-    return _signal_fields(path, frozenset(signal for port in profile.outputs for signal in port.signals))
+    """The fields of the signals that a component emits.
+
+    What they are is said by its advertisement, the ontologies of selfconf, and those of the site that has started it.
+    """
+    paths = [path, *rendezvous.ontologies()]
+    signals = frozenset(signal for port in profile.outputs for signal in port.signals)
+    return _signal_fields(tuple(file for path in paths for file in files.within(path)), signals)
 
 
 @cache
-def _signal_fields(path: Path, signals: frozenset[IRI]) -> Mapping[IRI, SignalFields]:
-    return files.signal_fields([path, *library.ontologies()], signals) if signals else {}
+def _signal_fields(paths: tuple[Path, ...], signals: frozenset[IRI]) -> Mapping[IRI, SignalFields]:
+    return files.signal_fields([*paths, *library.ontologies()], signals) if signals else {}
 
 
 def profile_of(kind: type[Component]) -> Profile:

@@ -100,7 +100,7 @@ class ComponentProgram:
             return
         wait = self._limit.wait(self._bus.now(), self._restarts())
         if wait > 0:
-            crashed = f"has crashed more than {self._restarts()} times within {CRASH_WINDOW:.0f} s"
+            crashed = f"has ended more than {self._restarts()} times within {CRASH_WINDOW:.0f} s"
             raise PeerError(f"the command of {profile.component} {crashed}; it can be started in {wait:.0f} s")
         if self.group is None:
             self._launch()
@@ -239,7 +239,8 @@ class ComponentProgram:
     def _ended(self, code: int) -> None:
         """The process has ended by itself."""
         again = code not in NO_CRASH
-        if again:
+        # One that ends before it lives is not started again, but whoever asks for it may not ask without a limit.
+        if again or not any(watch.lived for watch in self._watches.values()):
             self._limit.crashed(self._bus.now())
         outlook = self._outlook() if again else ""
         self._report(Cause.CRASH, f"the process that its site started for it has ended with code {code}{outlook}")

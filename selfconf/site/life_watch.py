@@ -36,6 +36,8 @@ class LifeWatch:
         self._bus, self._profile, self._life = bus, profile, life
         self._state = keys.call(profile.component, "state")
         self._lives: set[str] = set()
+        self.lived = False
+        """Whether the component has had a life since the process began."""
         self._lifeless_since = bus.now()
         self._unanswered_since: float | None = None
         self._closed = False
@@ -76,6 +78,7 @@ class LifeWatch:
 
     def _life_changed(self, key: str, alive: bool) -> None:
         if alive:
+            self.lived = True
             self._lives.add(life_of(key))
         else:
             self._lives.discard(life_of(key))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from selfconf.api.arguments import Paths
 from selfconf.api.task import template
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Profile
@@ -40,10 +41,16 @@ class _Listener(Component):
 class ComponentBench:
     """Tries one component by itself: start it, send it signals, let time pass, see what it emits."""
 
-    def __init__(self, component: Component, advertisement: str | Path | None = None) -> None:
-        """The advertisement is the one of the component's class, or the one given: Turtle text or a file."""
+    def __init__(
+        self, component: Component, advertisement: str | Path | None = None, *, ontologies: Paths = ()
+    ) -> None:
+        """The advertisement is the one of the component's class, or the one given: Turtle text or a file.
+
+        What the component emits is checked against its signal type, as in a living ecology: by the ontologies of
+        selfconf and those given. A signal that is not of its type is a failure.
+        """
         self.component = component
-        self.ecology = MemoryEcology()
+        self.ecology = MemoryEcology(ontologies=ontologies)
         self.ecology.add(component, advertisement)
         (only,) = self.ecology.advertisements.values()
         self.profile: Profile = only.profile

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TypeVar
 
-from selfconf import files
+from selfconf import files, library
 from selfconf.api.answer import Method
+from selfconf.api.arguments import Paths, listed_paths
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.memory import Faults, MemoryBus, Network
@@ -111,8 +112,12 @@ class MemoryRun:
 class MemoryEcology:
     """An ecology in memory: everything happens in the thread that lets time pass."""
 
-    def __init__(self, seed: int = 0, faults: Faults | None = None) -> None:
-        """`seed` decides the delays and losses of the network; without `faults` nothing is lost."""
+    def __init__(self, seed: int = 0, faults: Faults | None = None, ontologies: Paths = ()) -> None:
+        """`seed` decides the delays and losses of the network; without `faults` nothing is lost.
+
+        By `ontologies`, files and folders of Turtle, it is checked what components emit, as by those of selfconf.
+        """
+        self._ontologies = [file for path in listed_paths(ontologies) for file in files.within(Path(path))]
         self.network = Network(seed, faults)
         self._shelf = _MemoryShelf()
         self._site = Site(self.network.node(), ECOLOGY_NAME, "site", self._shelf)
@@ -138,7 +143,11 @@ class MemoryEcology:
         self._shelf.put(found)
         bus = self.network.node()
         life = f"life{len(self.network.nodes)}"
-        self._runtimes[found.component] = ComponentRuntime(bus, Keys(ECOLOGY_NAME), found.profile, component, life), bus
+        signals = {signal for port in found.profile.outputs for signal in port.signals}
+        text = text_of(type(component).advertisement_path() if advertisement is None else advertisement)
+        fields = files.signal_fields([*self._ontologies, *library.ontologies()], signals, [text]) if signals else {}
+        runtime = ComponentRuntime(bus, Keys(ECOLOGY_NAME), found.profile, component, life, fields=fields)
+        self._runtimes[found.component] = runtime, bus
         return component
 
     def advertise(self, advertisement: str | Path) -> IRI:

@@ -148,7 +148,7 @@ def test_a_run_is_shown_while_it_lasts_and_can_be_stopped_by_another_program(
     assert (status.process, status.phase, status.template) == (program.number, "running", iri("navigate"))
     with pytest.raises(NetworkError, match="no task or configurator 'nobody' answers"):
         living.stop("nobody")
-    assert living.stop(status.configurator) == (status.configurator,)
+    assert living.stop(status.configurator) == ("navigate",)
     assert program.ended() == 0
     assert living.tasks == ()
 

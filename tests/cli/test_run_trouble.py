@@ -9,6 +9,7 @@ import pytest
 
 from selfconf.termination import alive
 from tests.cli.processes import Home, component_of, dormant
+from tests.lab import PREFIXES
 
 pytestmark = pytest.mark.process
 
@@ -36,7 +37,7 @@ def test_people_are_told_which_configurator_holds_what_they_need(inhabited: Home
     arguments = ("navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x", "--ecology", inhabited.ecology)
     refused = inhabited.selfconf("run", *arguments)
     assert refused.ended() == 1
-    assert "was lost: refused, the task navigate (priority 0, configurator c" in refused.complaints
+    assert "refused, the task navigate (priority 0, configurator c" in refused.complaints
     assert "start it again" not in refused.complaints
     assert "run again when it is free" in refused.complaints
     assert holder.end(signal.SIGINT) == 0
@@ -93,3 +94,24 @@ def test_sigterm_while_it_begins_leaves_no_site_behind(home: Home) -> None:
     assert run.end(signal.SIGTERM) == 130
     assert home.until(lambda: not alive(site))
     assert list(home.runtime.glob("*.json")) == []
+
+
+def test_a_component_that_cannot_begin_is_asked_for_a_few_times_told_of_once_and_never_out_of_control(
+    home: Home,
+) -> None:
+    """Its program ends with 2 before it lives: the site lets nobody start it without a limit."""
+    (home.folder / "ads" / "lamp.ttl").write_text(
+        f"{PREFIXES} :lamp a sc:Component, :Lamp ; sc:grounding [ sc:command \"sh -c 'echo no bulb; exit 2'\" ] ."
+    )
+    template = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Lamp ."
+    (home.folder / "t.ttl").write_text(f"{PREFIXES} {template}")
+    run = home.selfconf("run", "t.ttl", "--ads", "ads/lamp.ttl")
+    assert run.ended() == 1
+    said = run.complaints
+    assert said.count("no bulb\n") == 4
+    assert said.count("LOST   :lamp: crash, the process that its site started for it has ended with code 2") == 4
+    assert said.count("`selfconf log lamp` shows what it has printed") == 1
+    assert said.count("has ended more than 3 times within 60 s") == 1
+    assert "LOST   :lamp: refused\n" in said
+    assert "was lost" not in said
+    assert "out of control" not in said

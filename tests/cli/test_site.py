@@ -220,3 +220,26 @@ def test_a_component_that_another_program_has_started_is_not_its_site_s_to_resta
     home.components("tracker")
     refused = run(capsys, "site", "restart", "person-tracker", *home.arguments())
     assert refused.is_one_sentence("the site a did not end person-tracker: this site has not started")
+
+
+def test_components_check_what_they_emit_by_the_ontologies_of_their_site(home: Home) -> None:
+    (home.folder / "words").mkdir()
+    (home.folder / "words" / "poses.ttl").write_text(
+        PREFIXES + 'rob:PlanarPose2D rob:field ( [ rob:fieldName "colour" ; rob:datatype xsd:string ] ) .\n'
+    )
+    for name in ("sonar", "encoder", "tracker", "control", "drive"):
+        dormant(home, name)
+    home.site("a", "ads", options=("--ontology", "words"))
+    task = home.run("--wait")
+    lost = task.act("lost")
+    assert (lost["component"], lost["cause"]) == (iri("person-tracker"), "malformed")
+    assert "colour" in lost["detail"]
+    task.end()
+
+
+def test_an_ontology_that_cannot_be_read_is_one_sentence(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    words = home.folder / "words.ttl"
+    words.write_text("no Turtle")
+    given = "site", str(home.folder / "ads"), "--ecology", home.ecology, "--ontology"
+    assert run(capsys, *given, str(words)).is_one_sentence("words.ttl:1:")
+    assert run(capsys, *given, "nowhere").is_one_sentence("there is no file or folder nowhere")

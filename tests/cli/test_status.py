@@ -28,7 +28,7 @@ def test_what_is_deployed_is_shown_and_taken_down_by_stop(inhabited: Home, capsy
     assert outcome.is_one_sentence("no task or configurator 'nobody' answers")
     assert inhabited.active("drive") == {"drive"}
     outcome = run(capsys, "stop", "--configurator", status["configurator"], *where)
-    assert (outcome.code, outcome.out) == (0, f"took down {status['configurator']} in ecology {inhabited.ecology}\n")
+    assert (outcome.code, outcome.out) == (0, f"took down {status['task']} in ecology {inhabited.ecology}\n")
     assert program.ended() == 0
     assert inhabited.active(*EVERYBODY) == set()
 

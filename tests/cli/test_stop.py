@@ -15,7 +15,7 @@ def test_stop_tells_programs_what_it_took_down(inhabited: Home, capsys: pytest.C
     program = inhabited.run()
     program.act("running")
     (status,) = run(capsys, "status", "--format", "json", *where).body
-    stopped = {"ecology": inhabited.ecology, "stopped": [status["configurator"]]}
+    stopped = {"ecology": inhabited.ecology, "stopped": [status["task"]]}
     assert run(capsys, "stop", "--format", "json", *where).body == stopped
     assert program.ended() == 0
     assert run(capsys, "stop", "--format", "json", *where).body == {**stopped, "stopped": []}

@@ -166,3 +166,10 @@ def test_values_are_sorted_and_told_from_others_that_look_alike() -> None:
     assert in_words([Literal("5"), FIVE]) == '"5" or 5'
     assert in_words([BlankNode("_:b")]) == "_:b"
     assert in_words([]) == "nothing"
+
+
+def test_values_with_one_local_name_are_told_apart_by_their_whole_iris() -> None:
+    here, there = IRI("https://example.org/here#bed1"), IRI("https://example.org/there#bed1")
+    assert NotAmong(frozenset((here,)), frozenset((there,))).said("place") == f"place is {here!r}, not {there!r}"
+    text = Literal("bed1")
+    assert NotAmong(frozenset((text,)), frozenset((there,))).said("place") == 'place is "bed1", not bed1'

@@ -8,6 +8,8 @@ from dataclasses import FrozenInstanceError
 import pytest
 
 from selfconf.model import run_event
+from selfconf.model.configuration import Assignment, Configuration
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import CallAnswered, ComponentActivated, RunEvent, TaskStopped, TaskWaiting
 from selfconf.model.term import IRI
 
@@ -35,3 +37,14 @@ def test_events_are_values_with_a_time() -> None:
 def test_losses_are_not_shared_among_events() -> None:
     assert TaskWaiting(None).lost == {}
     assert TaskWaiting(None).lost is not TaskWaiting(None).lost
+
+
+def test_an_event_is_printed_in_one_line_and_what_is_large_by_its_size() -> None:
+    clock = IRI("https://example.org/my-home#clock")
+    lost = run_event.ComponentLost(clock, "crash", "its life has ended", time=3.0)
+    assert str(lost) == "lost component=clock cause=crash detail='its life has ended'"
+    assert str(TaskStopped(lost={clock: "crash"}, owed=(clock,))) == "stopped refusal=None lost=(clock) owed=(clock)"
+    assert str(TaskWaiting(Undecided(3))).startswith("waiting refusal=<undecided>")
+    configured = Configuration(clock, (Assignment(clock, (clock,)),))
+    assert str(run_event.TaskRunning(configured, 7)) == "running configuration=<1 components> epoch=7"
+    assert str(TaskWaiting(Refusal(clock, ()))).startswith("waiting refusal=<refused>")

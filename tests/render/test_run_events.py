@@ -27,7 +27,7 @@ from selfconf.model.run_event import (
     TaskWaiting,
 )
 from selfconf.render.names import short
-from selfconf.render.run_events import SENTENCES, details, event_body, lost_sentences, sentence
+from selfconf.render.run_events import SENTENCES, details, event_body, log_hint, lost_sentences, sentence
 from tests.render.answers import CLOCK, CONFIGURATION, NAMES, REFUSAL, SCREEN, TEMPLATE
 
 EVENTS = sorted(
@@ -93,7 +93,7 @@ def test_each_sentence_belongs_to_an_event() -> None:
 
 
 def test_a_sentence_speaks_of_nothing_that_its_event_does_not_have() -> None:
-    computed = {"missing", "found", "milliseconds"}
+    computed = {"missing", "found", "milliseconds", "loss"}
     for kind in EVENTS:
         named = {name for _, name, _, _ in string.Formatter().parse(SENTENCES[kind.act]) if name}
         assert named <= {one.name for one in fields(kind)} | computed
@@ -163,3 +163,10 @@ def test_the_body_of_an_event_holds_the_bodies_of_its_values() -> None:
     assert event_body(TaskWaiting(None))["refusal"] is None
     assert event_body(TaskWaiting(Undecided(7)))["refusal"]["code"] == "undecided"
     assert event_body(TaskRunning(CONFIGURATION, 3))["configuration"]["template"] == TEMPLATE
+
+
+def test_what_has_been_told_of_a_loss_is_not_told_again_and_the_log_is_named_for_what_has_ended() -> None:
+    assert list(lost_sentences({CLOCK: "fail", SCREEN: "silence"}, short, {CLOCK})) == ["  screen was lost: silence"]
+    assert log_hint(ComponentLost(CLOCK, "crash", "gone")) == "       `selfconf log clock` shows what it has printed"
+    assert log_hint(ComponentLost(CLOCK, "fail", "said so")) == ""
+    assert sentence(ComponentLost(CLOCK, "refused", ""), short) == "LOST   clock: refused"

@@ -116,7 +116,7 @@ def test_a_program_that_crashes_too_often_is_given_up(
     live(network, lambda: len(runs(tmp_path)) > 2, 1.0)
     assert len(runs(tmp_path)) == 2
     assert "for the 2. time within 60 s; it is not started again" in heard[-1].detail
-    with pytest.raises(PeerError, match="has crashed more than 1 times within 60 s; it can be started in"):
+    with pytest.raises(PeerError, match="has ended more than 1 times within 60 s; it can be started in"):
         made.start(SLEEPER)
     network.run(lambda: False, 60.0)
     made.start(SLEEPER)
@@ -324,4 +324,17 @@ def test_nothing_is_started_again_once_the_site_closes_on_another_thread(
     bus.join()
     assert len(list((tmp_path / "here").glob("run-*"))) == started
     with pytest.raises(PeerError, match="is ending"):
+        made.start(SLEEPER)
+
+
+@pytest.mark.parametrize("code", [0, 2])
+def test_a_program_that_ends_before_it_lives_is_not_started_for_others_without_a_limit(
+    network: Network, tmp_path: Path, site: Callable[..., Site], code: int
+) -> None:
+    made = site(python(f"{NUMBERED}; raise SystemExit({code})"), more="; sc:restarts 1 ")
+    heard = fails(network)
+    for number in (1, 2):
+        made.start(SLEEPER)
+        assert live(network, lambda number=number: len(heard) == number)
+    with pytest.raises(PeerError, match="has ended more than 1 times within 60 s"):
         made.start(SLEEPER)

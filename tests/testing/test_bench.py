@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -110,3 +111,21 @@ def test_ports_and_parameters_that_are_not_there_are_named() -> None:
     bench.start()
     with pytest.raises(ProgrammerError, match="no input 'pressure'"):
         bench.send("pressure", 1)
+
+
+def test_what_is_emitted_is_checked_against_its_signal_type_by_ontologies_and_the_advertisement_s_own_document(
+    tmp_path: Path,
+) -> None:
+    words = """@prefix rob: <https://w3id.org/selfconf/robotics#> . @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
+<urn:test:Switch> rob:field ( [ rob:fieldName "on" ; rob:datatype xsd:decimal ] ) .
+"""
+    (tmp_path / "words.ttl").write_text(words)
+    for bench in (
+        ComponentBench(Thermostat(), ADVERTISEMENT, ontologies=tmp_path),
+        ComponentBench(Thermostat(), f"{ADVERTISEMENT}\n{words}"),
+    ):
+        bench.start()
+        bench.send("temperature", {"celsius": 15.0})
+        assert bench.failure is not None
+        assert "what it emits on 'heating'" in bench.failure
+        assert bench.emitted["heating"] == []
