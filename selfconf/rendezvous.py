@@ -210,7 +210,7 @@ def environment(ecology: str, endpoint: str, ontologies: Sequence[Path] = ()) ->
     return {**found, ONTOLOGY_VARIABLE: os.pathsep.join(str(path.resolve()) for path in ontologies)}
 
 
-def ontologies() -> list[Path]:
+def site_ontologies() -> list[Path]:
     """The ontologies that the environment names: those of the site that has started this program."""
     return [Path(path) for path in os.environ.get(ONTOLOGY_VARIABLE, "").split(os.pathsep) if path]
 

@@ -213,3 +213,13 @@ def test_a_site_that_leaves_removes_no_file_of_another_process() -> None:
     mine = rendezvous.announce(meeting(site="bb"))
     rendezvous.leave(mine)
     assert not mine.exists()
+
+
+def test_a_program_that_is_started_hears_of_the_ontologies_of_its_site(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = rendezvous.environment("home", "tcp/127.0.0.1:1", [tmp_path / "a.ttl", tmp_path / "b"])
+    monkeypatch.setenv(rendezvous.ONTOLOGY_VARIABLE, found[rendezvous.ONTOLOGY_VARIABLE])
+    assert rendezvous.site_ontologies() == [tmp_path / "a.ttl", tmp_path / "b"]
+    monkeypatch.setenv(rendezvous.ONTOLOGY_VARIABLE, rendezvous.environment("home", "x")[rendezvous.ONTOLOGY_VARIABLE])
+    assert rendezvous.site_ontologies() == []

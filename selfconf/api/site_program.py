@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from selfconf import files, rendezvous
 from selfconf.api.joining import Joining
 from selfconf.api.reading import existing
+from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.port import Bus
 from selfconf.bus.zenoh_bus import client
@@ -99,6 +100,8 @@ def serve(
         keeper = Keeper(bus, ecology, name, records, partial(_request_of, work))
         joining.announce()
         bus.watch(site.keys.site_life(name, "*"), partial(_met, complain, site))
+    for unknown in unknown_in_ecology(site.shelf.advertisements):
+        complain(unknown)
     served = count(len(site.shelf.advertisements), "advertisement")
     how = " without keys, open to everybody who reaches it" if beyond else ""
     complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}{how}")

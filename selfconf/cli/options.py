@@ -145,6 +145,7 @@ def seconds_option(text: str) -> float:
 def task_of(given: argparse.Namespace) -> TaskSpecification:
     """The task that the arguments describe, complete and checked. Raises AuthorError."""
     from selfconf.api.task import pairs, template
+    from selfconf.api.unknown_terms import unknown_in_task
 
     one_stdin(given.template, *(given.ads or ()), *given.ontology)
     task, typed = template(given.template, given.wanted), pairs(given.bind)
@@ -152,6 +153,8 @@ def task_of(given: argparse.Namespace) -> TaskSpecification:
         task = task.bind(**_project_bindings(given.project, task, typed))
     except BindingError as error:
         raise AuthorError(f"{error} (bound in {given.project.path})") from None
+    for unknown in unknown_in_task(task):
+        complain(unknown)
     return task.bind(**typed).complete()
 
 
@@ -196,11 +199,14 @@ def one_ecology(given: argparse.Namespace) -> None:
 def read_files(paths: Iterable[Path]) -> Ecology:
     """The ecology in some files; what was left out of it is named on stderr."""
     from selfconf.api.reading import read
+    from selfconf.api.unknown_terms import unknown_in_ecology
 
     paths = list(paths)
     ecology = read(*paths)
     gc.freeze()  # it stays until the command ends, so the collector need not look at a million values again and again
     complain_of(ecology)
+    for unknown in unknown_in_ecology(ecology.advertisements()):
+        complain(unknown)
     if not len(ecology):
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")
     return ecology

@@ -179,7 +179,7 @@ def signal_fields_of(path: Path, profile: Profile) -> Mapping[IRI, SignalFields]
 
     What they are is said by its advertisement, the ontologies of selfconf, and those of the site that has started it.
     """
-    paths = [path, *rendezvous.ontologies()]
+    paths = [path, *rendezvous.site_ontologies()]
     signals = frozenset(signal for port in profile.outputs for signal in port.signals)
     return _signal_fields(tuple(file for path in paths for file in files.within(path)), signals)
 

@@ -1,0 +1,93 @@
+"""Terms of selfconf and SHACL that there are not: what `validate` calls an error, and a search takes as if it said nothing.
+
+A misspelt `sc:feeds` or `sh:minCount` has no meaning, and so a role or an advertisement says less than its author
+believes. Who reads it to act on it is told, and not kept from acting; `validate` says where, and what is probably meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+
+from selfconf import library
+from selfconf.api.task import TaskSpecification
+from selfconf.model.term import IRI, Term
+from selfconf.rdf import turtle
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.vocabulary import SC, SH, TYPE
+
+MOST_LOOKED_AT = 1000
+"""How many advertisements of an ecology are looked at: to look at a hundred thousand takes longer than to search them."""
+_USUAL = frozenset(
+    f"{SH.base}{name}"
+    for name in "class datatype hasValue in maxCount maxInclusive minCount minInclusive nodeKind not or path property"
+    " NodeShape PropertyShape defaultValue name description".split()
+)
+"""Terms of SHACL that most templates use: rdflib, which knows all of them, need not be loaded for these."""
+_PREFIXES = {SC.base: "sc:", SH.base: "sh:"}
+
+
+def undeclared_terms(triples: Iterable[tuple[Term, IRI, Term]]) -> list[str]:
+    """The predicates and types of `sc:` and `sh:` that no ontology declares, as CURIEs, sorted."""
+    found: set[str] = set()
+    for _, predicate, value in triples:
+        used = (predicate, value) if predicate == TYPE else (predicate,)
+        for term in used:
+            for base, prefix in _PREFIXES.items():
+                if isinstance(term, IRI) and term.startswith(base) and not _declared(term, base):
+                    found.add(prefix + term[len(base) :])
+    return sorted(found)
+
+
+def unknown_in_task(task: TaskSpecification) -> Iterator[str]:
+    """A sentence about the document of a template or task, if it uses terms that there are not."""
+    document = task.document.document
+    yield from _sentence(document.source, undeclared_terms(document.triples()))
+
+
+def unknown_in_ecology(advertisements: Mapping[IRI, Advertisement]) -> Iterator[str]:
+    """A sentence about each file of advertisements that uses terms that there are not; of very many files about some."""
+    found: dict[str, set[str]] = {}
+    for _, advertisement in zip(range(MOST_LOOKED_AT), advertisements.values(), strict=False):
+        terms = undeclared_terms(advertisement.triples)
+        if terms:
+            place = advertisement.profile.place
+            found.setdefault(place.source if place else advertisement.component, set()).update(terms)
+    for source, unknown in sorted(found.items()):
+        yield from _sentence(source, sorted(unknown))
+
+
+def _sentence(source: str, terms: list[str]) -> Iterator[str]:
+    if terms:
+        one = len(terms) == 1
+        what = f"the term {terms[0]}" if one else f"the terms {', '.join(terms)}"
+        yield (
+            f"{source}: no ontology has {what}, so {'it says' if one else 'they say'} nothing;"
+            f" `selfconf validate {source}` shows where"
+        )
+
+
+def _declared(term: str, base: str) -> bool:
+    if base == SC.base:
+        return term in _of_selfconf()
+    return term in _USUAL or _in_shacl(term)
+
+
+@cache
+def _of_selfconf() -> frozenset[str]:
+    """The terms of `sc:`."""
+    (core,) = (path for path in library.ontologies() if path.stem == "selfconf")
+    return frozenset(
+        subject
+        for subject, _, _ in turtle.parse(core.read_bytes(), core.name).triples()
+        if isinstance(subject, IRI) and subject.startswith(SC.base)
+    )
+
+
+@cache
+def _in_shacl(term: str) -> bool:
+    """Whether `sh:` has a term, by the list of rdflib, which takes a moment to load."""
+    from rdflib import SH as SHACL
+    from rdflib import URIRef
+
+    return URIRef(term) in SHACL
