@@ -1,7 +1,7 @@
-"""Terms of selfconf and SHACL that there are not: what `validate` calls an error, and a search takes as if it said nothing.
+"""Terms of selfconf and SHACL that there are not: `validate` calls them errors, and to a search they say nothing.
 
 A misspelt `sc:feeds` or `sh:minCount` has no meaning, and so a role or an advertisement says less than its author
-believes. Who reads it to act on it is told, and not kept from acting; `validate` says where, and what is probably meant.
+believes. Who reads it to act on it is told, and not kept from acting; `validate` says where, and what was meant.
 """
 
 from __future__ import annotations
@@ -17,11 +17,13 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 MOST_LOOKED_AT = 1000
-"""How many advertisements of an ecology are looked at: to look at a hundred thousand takes longer than to search them."""
+"""How many advertisements of an ecology are looked at: a hundred thousand take longer than a search among them."""
 _USUAL = frozenset(
     f"{SH.base}{name}"
-    for name in "class datatype hasValue in maxCount maxInclusive minCount minInclusive nodeKind not or path property"
-    " NodeShape PropertyShape defaultValue name description".split()
+    for name in (
+        *("class", "datatype", "defaultValue", "description", "hasValue", "in", "maxCount", "maxInclusive", "minCount"),
+        *("minInclusive", "name", "nodeKind", "not", "or", "path", "property", "NodeShape", "PropertyShape"),
+    )
 )
 """Terms of SHACL that most templates use: rdflib, which knows all of them, need not be loaded for these."""
 _PREFIXES = {SC.base: "sc:", SH.base: "sh:"}
@@ -46,7 +48,7 @@ def unknown_in_task(task: TaskSpecification) -> Iterator[str]:
 
 
 def unknown_in_ecology(advertisements: Mapping[IRI, Advertisement]) -> Iterator[str]:
-    """A sentence about each file of advertisements that uses terms that there are not; of very many files about some."""
+    """A sentence about each file of advertisements with terms that there are not; of very many files about some."""
     found: dict[str, set[str]] = {}
     for _, advertisement in zip(range(MOST_LOOKED_AT), advertisements.values(), strict=False):
         terms = undeclared_terms(advertisement.triples)
