@@ -45,7 +45,7 @@ def test_nothing_is_said_to_come_from_an_index_on_which_it_is_not() -> None:
 
 
 def test_the_page_has_examples() -> None:
-    assert len(EXAMPLES) == 5
+    assert len(EXAMPLES) == 6
     assert len(PATTERNS) == 2
 
 

@@ -63,7 +63,7 @@ def test_another_thread_sees_the_task_and_may_stop_it(served: Home, clock: sc.Ta
         with sc.join(served.ecology) as other:
             seen.append(tuple(f"{status.configurator} {status.phase}" for status in other.tasks))
             assert other.query("ASK { ?c a sc:Configuration }") is True
-            assert other.stop(run.name) == (run.name,)
+            assert other.stop(run.name) == ("tell-the-time",)
 
     with sc.join(served.ecology) as living, living.run(clock) as run:
         watcher = threading.Thread(target=watch, args=(run,))
