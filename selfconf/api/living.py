@@ -36,6 +36,7 @@ from selfconf.protocol.messages import Access, End, Notice, RefusedAttempt, Stat
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
+from selfconf.rdf.vocabulary import SC
 from selfconf.render.why import told_why
 
 ROLL_CALL = 3.0
@@ -203,12 +204,21 @@ class LivingEcology(Ecology):
         discovery = self.discover()
         replies = self._ask(self._view.keys.any_call("state"), seconds=STATES)
         found = []
+        silent: list[str] = []
         for one in component_states(discovery, self._view.keys, replies):
             if one.state != "alive" and self._view.life(one.component) is not None:
                 one = one._replace(state="alive")
-                self.complaints = (*self.complaints, f"{one.component} lives, but does not say how it is")
+                silent.append(f"{one.component} lives, but does not say how it is")
             found.append(one)
+        if silent and self._looks_on_only:
+            silent = ["components do not tell those who may look on only how they are; that takes keys of conf.NAME"]
+        self.complaints = (*self.complaints, *silent)
         return tuple(found)
+
+    @property
+    def _looks_on_only(self) -> bool:
+        """Whether the keys, if there are any, are those of a reader: it hears no signals, and calls nobody."""
+        return self._credentials is not None and self._credentials.name.startswith("read.")
 
     def component(self, term: str) -> FoundAdvertisement:
         """The advertised component that a term means: an IRI, with or without brackets, or its local name.
@@ -230,6 +240,8 @@ class LivingEcology(Ecology):
 
         `complain` hears of what is no signal, and of what is to be known before the first one.
         """
+        if self._looks_on_only:
+            raise NetworkError("those who may look on only hear no signals; that takes keys of conf.NAME")
         found = self.component(component)
         profile = found.advertisement.profile
         if output not in (port.name for port in profile.outputs):
@@ -246,6 +258,7 @@ class LivingEcology(Ecology):
         The other components of the process end with it, and the tasks that hold one of them repair. Raises AuthorError
         for a component that is not there, and NetworkError for what its site cannot or does not do.
         """
+        check_may_run(self._credentials)
         found = self.component(component)
         one, site, keys = found.advertisement.component, found.site, self._view.keys
         life = self._view.life(one)

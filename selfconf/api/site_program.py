@@ -62,9 +62,7 @@ def serve(
     `ontologies`, files and folders of Turtle, the components that it starts check what they emit. Raises AuthorError
     and NetworkError.
     """
-    for path in (*paths, *ontologies):
-        existing(path)
-    files.signal_fields((file for path in ontologies for file in files.within(path)), ())  # that they can be read
+    _check_readable(paths, ontologies)
     ecology, connect = rendezvous.asked_for(ecology, connect)
     if ecology is None:
         raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
@@ -114,6 +112,13 @@ def serve(
         joining.leave()
         bus.wake_up(keeper.close)
         site.close()
+
+
+def _check_readable(paths: Sequence[Path], ontologies: Sequence[Path]) -> None:
+    """Raise AuthorError for paths that are not there, and for ontologies that cannot be read."""
+    for path in (*paths, *ontologies):
+        existing(path)
+    files.signal_fields((file for path in ontologies for file in files.within(path)), ())
 
 
 def _beyond_loopback(listen: str | None) -> bool:
