@@ -7,7 +7,7 @@ a call of a configurator nor the end of its life waits for that code, and so tha
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import TypeVar
