@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from selfconf.model.configuration import Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import Candidate, Partition
-from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.profile import Input, Operation, Output, Profile
 from selfconf.model.template import Task
 from selfconf.model.term import IRI, Term
 
@@ -159,16 +159,27 @@ class _Check:
 
     def _may_feed(self, output: Output, wanted: Input, by_name: bool) -> bool:
         """Return whether types and conditions allow an output to feed an input; `by_name` where both are named."""
-        if not any(self.hierarchy.matches(one, other) for one in output.signals for other in wanted.signals) and not (
+        if not any(self._same_kind(one, other) for one in output.signals for other in wanted.signals) and not (
             by_name and () in (output.signals, wanted.signals)
         ):
             return False
-        unit, frame, shape = wanted.condition or (None, None, None)
+        unit, frame, shape, sent = wanted.condition or (None, None, None, None)
         return (
             (output.unit == unit or None in (output.unit, unit))
             and (output.frame == frame or None in (output.frame, frame))
             and (shape is None or shape in output.conforms)
+            and (sent is None or not output.signals or self._takes(output.request, sent.type))
         )
+
+    def _same_kind(self, offered: IRI, wanted: IRI) -> bool:
+        """Return whether a signal type, or the response of an operation, serves where another is wanted."""
+        if not isinstance(offered, Operation) or not isinstance(wanted, Operation):
+            return type(offered) is type(wanted) and self.hierarchy.matches(offered, wanted)
+        return self._takes(wanted.response, offered.response)
+
+    def _takes(self, taken: IRI | None, given: IRI | None) -> bool:
+        """Return whether what is given may go where a type is taken; None is nothing."""
+        return taken is given if None in (taken, given) else self.hierarchy.matches(given or IRI(""), taken or IRI(""))
 
     def _values(self, players: Players) -> Iterator[str]:
         names = {parameter.iri: parameter.name for parameter in self.template.parameters}

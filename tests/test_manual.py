@@ -46,7 +46,7 @@ def test_nothing_is_said_to_come_from_an_index_on_which_it_is_not() -> None:
 
 def test_the_page_has_examples() -> None:
     assert len(EXAMPLES) == 6
-    assert len(PATTERNS) == 2
+    assert len(PATTERNS) == 3
 
 
 def test_the_instance_on_the_page_goes_through_the_stages_as_printed() -> None:

@@ -31,7 +31,7 @@ from selfconf.configurator.effects import (
     Watch,
 )
 from selfconf.configurator.events import Answered, Call
-from selfconf.configurator.order import InputWires, parameter_values, resting_order, starting_order, wiring
+from selfconf.configurator.order import InputWires, callers, parameter_values, resting_order, starting_order, wiring
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
@@ -51,11 +51,12 @@ def deploy(state: State) -> Reaction:
     target = state.target
     assert target is not None
     epoch = state.epoch + 1
-    wires, values = wiring(target), parameter_values(target)
+    wires, values, calling = wiring(target), parameter_values(target), callers(target)
     held = dict(state.held)
     for component, inputs in wires.items():
         before = held.get(component, Held({}))
-        same = before.confirmed and before.inputs == inputs and before.values == values[component]
+        wanted = inputs, values[component], calling[component]
+        same = before.confirmed and (before.inputs, before.values, before.callers) == wanted
         held[component] = before if same else replace(before, confirmed=False)
     asleep = sorted(component for component in wires if not held[component].reserved)
     effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
@@ -107,7 +108,7 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
     """Apply to those components that may be started, or changed, by now."""
     target = state.target
     assert target is not None
-    wires, values = wiring(target), parameter_values(target)
+    wires, values, calling = wiring(target), parameter_values(target), callers(target)
     effects: list[Effect] = []
     held, pending = dict(state.held), set(state.pending)
     for component in candidates:
@@ -115,9 +116,10 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
         if before.confirmed or (component, Call.APPLY) in pending or not _may_begin(state, component, wires):
             continue
         pending.add((component, Call.APPLY))
-        held[component] = replace(before, inputs=wires[component], values=values[component], active=True)
+        inputs, set_, called_by = wires[component], values[component], calling[component]
+        held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, active=True)
         gently = state.fallback is not None
-        effects.append(ApplyTo(component, state.epoch, wires[component], values[component], gently))
+        effects.append(ApplyTo(component, state.epoch, inputs, set_, called_by, gently))
     return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
 
 

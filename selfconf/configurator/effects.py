@@ -81,6 +81,8 @@ class ApplyTo:
     epoch: int
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
+    callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
+    """The components that may call its operations, by the names of these."""
     gently: bool = False
     """Whether what an input followed before is let go of only when the new output delivers."""
 

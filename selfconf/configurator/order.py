@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Wire
 
@@ -23,6 +24,15 @@ def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]
     for connection in configuration.connections:
         wires[connection.sink].setdefault(connection.input, []).append(Wire(connection.source, connection.output))
     return {component: {port: tuple(w) for port, w in inputs.items()} for component, inputs in wires.items()}
+
+
+def callers(configuration: Configuration) -> dict[IRI, dict[str, tuple[IRI, ...]]]:
+    """For each component of a configuration, which components may call each of its operations."""
+    found: dict[IRI, dict[str, list[IRI]]] = {component: {} for component in configuration.components}
+    for connection in configuration.connections:
+        if connection.output.endswith(CALL_MARK):
+            found[connection.source].setdefault(connection.output, []).append(connection.sink)
+    return {component: {name: tuple(some) for name, some in calls.items()} for component, calls in found.items()}
 
 
 def parameter_values(configuration: Configuration) -> dict[IRI, dict[str, Term]]:

@@ -42,6 +42,7 @@ class Held:
 
     inputs: InputWires
     values: Mapping[str, Term] = field(default_factory=dict)
+    callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
     life: str = ""
     reserved: bool = False
     """Whether it has said that it is held for this task."""
@@ -50,7 +51,7 @@ class Held:
     acts: bool = False
     """Whether it has said that it acts, if with other inputs."""
     confirmed: bool = False
-    """Whether it has said that it acts with these inputs and values."""
+    """Whether it has said that it acts with these inputs and values, for these callers."""
 
 
 @dataclass(frozen=True, slots=True)

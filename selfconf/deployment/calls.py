@@ -15,7 +15,7 @@ from typing import TypedDict
 from selfconf.bus.port import Replies, Undo
 from selfconf.configurator.effects import ApplyTo, AwaitRelease, Decline, QueueFor, ReleaseFrom, ReserveOf, WakeUp
 from selfconf.configurator.events import Answered, Call, Event, WaitedLong
-from selfconf.configurator.order import parameter_values, wiring
+from selfconf.configurator.order import callers, parameter_values, wiring
 from selfconf.configurator.state import State
 from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.run_request import EventListener, Standby
@@ -208,7 +208,9 @@ class Calls:
             return
         inputs = self._with_promises(effect.inputs)
         claim = self._claim(effect.component, effect.epoch)
-        message = Apply(**claim, inputs=inputs, values=dict(effect.values), gently=effect.gently)
+        message = Apply(
+            **claim, inputs=inputs, values=dict(effect.values), callers=dict(effect.callers), gently=effect.gently
+        )
         self._call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         known, before = self._connections.get(effect.component, (life, frozenset()))
@@ -223,11 +225,11 @@ class Calls:
 
     def stand_by(self, configuration: Configuration, standby: Standby) -> None:
         """Let the inputs listen to what may come next, now that there is time; the answers are not waited for."""
-        wires, values = wiring(configuration), parameter_values(configuration)
+        wires, values, calling = wiring(configuration), parameter_values(configuration), callers(configuration)
         for component, outputs in standby.items():
             claim = self._claim(component, self._state().epoch)
             inputs, spare = self._with_promises(wires[component]), self._with_promises(outputs)
-            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component])
+            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component], callers=calling[component])
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
 
     # Turning off.

@@ -15,6 +15,7 @@ from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import NumberedNames, absolute, stem
 from selfconf.importing.rdf_documents import read_rdf
 from selfconf.importing.sources import SourceDocument
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import RDFS, TYPE, Namespace
@@ -130,12 +131,12 @@ class _ServiceReader:
         """The name and the type of each parameter; a name that is taken gets a number."""
         names = NumberedNames()
         for parameter in parameters:
-            name = parameter.short if isinstance(parameter, IRI) else "parameter"
+            name = parameter.short.rstrip(CALL_MARK) if isinstance(parameter, IRI) else ""
             said = self.document.value(parameter, self.process.parameterType)
             kind = absolute(said.lexical.strip()) if isinstance(said, Literal) else said
             if said is not None and not isinstance(kind, IRI):
                 self.ledger.leave_out("types that are no IRIs", "the parameter is kept without one", self.source)
-            yield names.free(name), kind if isinstance(kind, IRI) else None
+            yield names.free(name or "parameter"), kind if isinstance(kind, IRI) else None
 
     def _ports(self, parameters: Iterable[Term]) -> Iterator[ImportedPort]:
         for name, kind in self._typed(parameters):

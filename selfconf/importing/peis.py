@@ -16,6 +16,7 @@ from selfconf.importing.imported import ImportedComponent, ImportedDocument, Imp
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import absolute, stem
 from selfconf.importing.sources import SourceDocument
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.vocabulary import RDFS
 
@@ -175,8 +176,8 @@ def _ports(part: Part, source: SourceDocument, ledger: ImportLedger) -> Iterator
     seen: set[str] = set()
     for name, kind in _pairs(part, source, ledger):
         iri = absolute(kind)
-        if name in seen:
-            ledger.leave_out("ports", "another port of the component has their name", source)
+        if name in seen or name.endswith(CALL_MARK):
+            ledger.leave_out("ports", "another port of the component has their name, or it ends in ()", source)
             continue
         seen.add(name)
         if iri is None:

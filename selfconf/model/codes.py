@@ -286,12 +286,13 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-T06", "An interaction has one role that feeds and one that is fed, and names at most one port of each.",
-        "For more than one pair of ports write more than one interaction.",
+        "For more than one pair of ports write more than one interaction. Operations go with operations; their names "
+        'are written with (), as in "takePhoto()".',
         f"{_PAIR}\n[] a sc:Interaction ; sc:from :source .",
         f'{_PAIR}\n[] a sc:Interaction ; sc:from :source ; sc:output "sound" ; sc:to :sink ; sc:input "audio" .',
         (
             "InteractionTyped", "InteractionFromOnce", "InteractionToOnce", "InteractionRole", "InteractionOutput",
-            "InteractionInput",
+            "InteractionInput", "InteractionOfOneKind",
         ),
     ),
     Code(

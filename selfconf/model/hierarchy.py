@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from enum import Enum
 
-from selfconf.model.profile import Input, Output
+from selfconf.model.profile import Input, Operation, Output
 from selfconf.model.term import IRI
 
 
@@ -70,8 +70,11 @@ class Hierarchy:
         return not self._classes
 
     def superclasses(self, offered: IRI) -> frozenset[IRI]:
-        """`offered` and every class above it."""
-        return self._classes.above(offered)
+        """`offered` and every class above it; of the type of an operation, every one where it serves."""
+        if not isinstance(offered, Operation):
+            return self._classes.above(offered)
+        response = offered.response
+        return frozenset((offered,) if response is None else map(Operation.of, self._classes.above(response)))
 
     def superproperties(self, offered: IRI) -> frozenset[IRI]:
         """`offered` and every property above it."""
@@ -79,15 +82,15 @@ class Hierarchy:
 
     def matches(self, offered: IRI, wanted: IRI) -> bool:
         """Whether a class (of components, signals or parameters) that is offered serves where another is wanted."""
-        return offered == wanted or (not self.flat and wanted in self._classes.above(offered))
+        return offered == wanted or (not self.flat and wanted in self.superclasses(offered))
 
     def served(self, offered: Sequence[IRI]) -> Iterable[IRI]:
         """The classes that something serves which is of all of some classes: these, and every class above them."""
         if self.flat:
             return offered
         if len(offered) == 1:
-            return self._classes.above(offered[0])
-        return frozenset().union(*map(self._classes.above, offered))
+            return self.superclasses(offered[0])
+        return frozenset().union(*map(self.superclasses, offered))
 
     def pairs(self, output: Output, wanted: Input) -> bool:
         """Whether an output may feed an input: one of its types serves, and the condition of the input is met."""

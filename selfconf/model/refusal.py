@@ -12,7 +12,7 @@ from typing import ClassVar
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.partition import NearMiss
-from selfconf.model.profile import Place, WantedSignal
+from selfconf.model.profile import CALL_MARK, Place, WantedSignal, port_in_words
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.term import IRI
@@ -105,12 +105,16 @@ class DerivationStep:
 
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
-        none_issues = f"nobody left in {{}} issues a {self.wanted}"
-        no_role = (
-            f"no recruit issues a {self.wanted}" if self.recruits else f"no interaction feeds its input {self.input!r}"
-        )
+        issues = _issues(self.input, self.wanted)
+        none_issues, port = f"nobody left in {{}} {issues}", port_in_words(self.input).removeprefix("the ")
+        no_role = f"no recruit {issues}" if self.recruits else f"no interaction feeds its {port}"
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
+
+
+def _issues(port: str, wanted: WantedSignal) -> str:
+    """What an output does that feeds an input, or an operation that is needed."""
+    return "offers an operation of that name" if port.endswith(CALL_MARK) and not wanted.signals else wanted.issued
 
 
 def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str, no_role: str, recruits: bool) -> str:
@@ -142,13 +146,16 @@ class InputUnfed:
     """Where the role or component that it speaks of is described, if that is known."""
 
     def __str__(self) -> str:
-        name = f"the input {self.input!r} ({self.wanted}) of {self.component.short}"
-        none_issues = f"no candidate of {{}} issues a {self.wanted} for it"
+        issues, called = _issues(self.input, self.wanted), self.input.endswith(CALL_MARK)
+        types = f" ({str(self.wanted).removeprefix('operation ')})" if self.wanted.signals or not called else ""
+        name = f"{port_in_words(self.input)}{types} {'that' if called else 'of'} {self.component.short}"
+        none_issues = f"no candidate of {{}} {issues} for it"
         no_role = f"no interaction feeds it in the role {self.role.short}"
         if self.recruits:
-            no_role = f"no recruit that can be fed itself issues a {self.wanted}"
+            no_role = f"no recruit that can be fed itself {issues}"
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
-        return "; so ".join([f"{name} cannot be fed: {lack}", *map(str, self.consequences)])
+        verdict = "needs cannot be called" if called else "cannot be fed"
+        return "; so ".join([f"{name} {verdict}: {lack}", *map(str, self.consequences)])
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,13 @@ A relaxation is a fact; it words itself as a request. `code` is stable, for prog
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 from selfconf.model.obstacle import in_words
 from selfconf.model.partition import Candidate, NearMiss
-from selfconf.model.profile import Output, Place, signal_in_words
+from selfconf.model.profile import CALL_MARK, Operation, Output, Place
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import listed
 
@@ -29,19 +30,34 @@ class Addition:
 
     def __str__(self) -> str:
         number = "one more component" if self.count == 1 else f"{self.count} more components"
-        signals = listed(dict.fromkeys(_signal(output) for output in self.outputs if output.name not in self.named))
-        by_name = [
-            f"{_signal(output)} by the output {output.name!r}" for output in self.outputs if output.name in self.named
+        one = self.count == 1
+        clauses = [
+            f"{verb}{'s' if one else ''} {self._ports([o for o in self.outputs if _is_operation(o) is called])}"
+            for verb, called in (("issue", False), ("offer", True))
+            if any(_is_operation(output) is called for output in self.outputs)
         ]
-        issued = listed([*([signals] if signals else []), *by_name])
-        issuing = f" that issue{'s' if self.count == 1 else ''} {issued}" if issued else ""
+        issuing = f" that {listed(clauses)}" if clauses else ""
         values = "".join(f", with {name} {in_words((value,))}" for name, value in self.values)
         return f"{number} for the role {self.role.short}{issuing}{values}"
+
+    def _ports(self, outputs: Sequence[Output]) -> str:
+        signals = listed(dict.fromkeys(_signal(output) for output in outputs if output.name not in self.named))
+        by_name = [
+            f"{_signal(one)} by the {'name' if one.is_operation else 'output'} {one.name.removesuffix(CALL_MARK)!r}"
+            for one in outputs
+            if one.name in self.named
+        ]
+        return listed([*([signals] if signals else []), *by_name])
+
+
+def _is_operation(output: Output) -> bool:
+    # Only where an interaction names it has one that is to be added a name that tells.
+    return output.is_operation or any(isinstance(one, Operation) for one in output.signals)
 
 
 def _signal(output: Output) -> str:
     shape = " as the sc:accepts of its input asks" if output.conforms else ""
-    return signal_in_words(output.signals, output.unit, output.frame) + shape
+    return f"{output}{shape}"
 
 
 @dataclass(frozen=True, slots=True)

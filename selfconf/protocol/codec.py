@@ -260,6 +260,10 @@ def _inputs(value: object) -> dict[str, tuple[Wire, ...]]:
     return {port: tuple(map(_wire, wires)) for port, wires in inputs.items()}
 
 
+def _callers(value: object) -> dict[str, tuple[IRI, ...]]:
+    return {_name(operation): _iris(some) for operation, some in _object(value).items()}
+
+
 def _values(value: object) -> dict[str, Term]:
     return {_name(name): decode_term(item) for name, item in _object(value).items()}
 
@@ -311,6 +315,7 @@ _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "inputs"): _inputs for kind in (Reserve, Apply)},
     **{(kind, "values"): _values for kind in (Reserve, Apply)},
     (Apply, "standby"): _inputs,
+    (Apply, "callers"): _callers,
     (Reserve, "waits"): _truth,
     (Apply, "gently"): _truth,
     (CallAnswer, "place"): _remark,

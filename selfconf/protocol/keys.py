@@ -14,6 +14,7 @@
     selfconf/{ecology}/c/{shard}/{component}/out/{port}     what an output issues (put)
     selfconf/{ecology}/c/{shard}/{component}/fail           FAIL (put)
     selfconf/{ecology}/c/{shard}/{component}/free           it is free, and for whom (put)
+    selfconf/{ecology}/c/{shard}/{component}/@op/{name}     an operation that it offers (call)
     selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    reserve, apply, release, state (call)
     selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
     selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (queryable)
@@ -33,7 +34,7 @@ import hashlib
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
@@ -143,7 +144,13 @@ class Keys:
     def all_of_component(self, chunk: str) -> tuple[str, ...]:
         """What a component says, given by its chunk, under whatever key."""
         place = f"selfconf/{self.ecology}/c/{base64.b32decode(chunk.upper())[0]:02x}/{chunk}"
-        return f"{place}/**", f"{place}/@ctl/*"
+        return f"{place}/**", f"{place}/@ctl/*", f"{place}/@op/*"
+
+    def operation(self, component: IRI, name: str) -> str:
+        return self._component(component, f"@op/{quote(name, safe='')}")
+
+    def operations(self, component: IRI) -> str:
+        return self._component(component, "@op/*")
 
     def fail(self, component: IRI) -> str:
         return self._component(component, "fail")
@@ -262,6 +269,11 @@ def site_of(key: str) -> str:
     if len(chunks) < 5 or chunks[2] != "site":
         raise PeerError(f"{key!r} is no key of a site")
     return chunks[3]
+
+
+def operation_of(key: str) -> str:
+    """The name of the operation at the end of the key by which it is called."""
+    return unquote(key.rsplit("/", 1)[-1])
 
 
 def call_of(key: str) -> str:

@@ -83,6 +83,8 @@ class Apply(Claim):
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     standby: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
+    callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
+    """For each operation of the component, by the name of its output, the components that may call it."""
     gently: bool = False
     """Whether an input is to follow the output before until the new one has issued a signal: make before break."""
 

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from selfconf.model.number import number_of
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.turtle import SKOLEM
 from selfconf.rdf.vocabulary import RDF, SC, SH, TYPE, UNIT, XSD
@@ -60,10 +61,10 @@ class ValueKind:
 
 # A literal with a language has the datatype rdf:langString, so a test for xsd:string refuses it.
 RESOURCE = ValueKind("an IRI", rf"<((?!{SKOLEM})[^<>]*)>", iri=_always)
-TEXT = ValueKind(
-    "a string that is not empty",
-    r'"([^"\\]+)"',
-    literal=lambda lexical, datatype: datatype == STRING and lexical != "",
+NAME = ValueKind(
+    "a string that is not empty and does not end in ()",
+    r'"([^"\\]*[^"\\)])"',
+    literal=lambda lexical, datatype: datatype == STRING and lexical != "" and not lexical.endswith(CALL_MARK),
 )
 COMMAND_LINE = ValueKind(
     "a string that is not blank, without a language",
@@ -185,7 +186,7 @@ PERMITTED_IN_SHAPES = frozenset((TYPE, RDF.first, RDF.rest)).union(
 )  # fmt: skip
 """What may be said in the shape of `sc:accepts`: SHACL Core, without targets."""
 
-PORT_NAME = Field(SC.name, TEXT, least=1, distinct=True)
+PORT_NAME = Field(SC.name, NAME, least=1, distinct=True)
 SIGNAL_TYPE = Field(SC.signalType, RESOURCE, most=None)
 PARAMETER_TYPE = Field(SC.parameterType, RESOURCE, least=1)
 PORT = (PORT_NAME, SIGNAL_TYPE, Field(SC.unit, RESOURCE), Field(SC.frame, NAMED_OR_TEXT))

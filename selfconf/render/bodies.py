@@ -15,6 +15,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.number import plain_number
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
+from selfconf.model.profile import Operation, Output
 from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import AddComponents, Relaxation
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal, Term
@@ -136,7 +137,7 @@ def _additions(repair: Relaxation) -> dict[str, Any]:
                 "outputs": [
                     {
                         **({"name": o.name} if o.name in one.named else {}),
-                        **({"signal": o.signals[0]} if o.signals else {}),
+                        **_carried(o),
                         **({"unit": o.unit} if o.unit else {}),
                         **({"frame": value_body(o.frame)} if o.frame else {}),
                     }
@@ -147,6 +148,16 @@ def _additions(repair: Relaxation) -> dict[str, Any]:
             for one in repair.additions
         ]
     }
+
+
+def _carried(output: Output) -> dict[str, Any]:
+    """The signal type of an output, or the types of request and response of an operation; empty if it has none."""
+    if not output.signals:
+        return {}
+    kind = output.signals[0]
+    if not isinstance(kind, Operation):
+        return {"signal": kind}
+    return {name: one for name, one in (("request", output.request), ("response", output.response)) if one is not None}
 
 
 def _place(fact: Reason | Relaxation | NearMiss) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What a component is written with: an advertisement, a class, `emit`, `fail`, and what arrives on an input.
+"""What a component is written with: an advertisement, a class, `emit`, `call`, `fail`, and what arrives.
 
     from selfconf.sdk import Component, main
 
@@ -11,15 +11,25 @@
     if __name__ == "__main__":
         main(Thermostat)
 
-Threads. All methods of a component that selfconf calls (`started`, `stopped`, `received`, `parameter_set`, timers) are
-called on one thread, one after the other, and have to return: one that outlasts its deadline (`sc:deadline`; 2 seconds,
-8 for `started`) counts as hung, and the component as failed. `emit` and `fail` may be called from any thread. Work that
-takes long belongs on a thread of its own, which emits when it is done.
+Threads. All methods of a component that selfconf calls (`started`, `stopped`, `received`, `called`, `parameter_set`,
+timers) are called on one thread, one after the other, and have to return: one that outlasts its deadline
+(`sc:deadline`; 2 seconds, 8 for `started`) counts as hung, and the component as failed. `emit`, `call` and `fail` may
+be called from any thread. Work that takes long belongs on a thread of its own, which emits when it is done.
 """
 
-from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.component import CallStatus, Component, Refused, Response, Signal
 from selfconf.sdk.host import Host
 from selfconf.sdk.program import main
 from selfconf.termination import Termination, parent_environment
 
-__all__ = ["Component", "Host", "Refused", "Signal", "Termination", "main", "parent_environment"]
+__all__ = [
+    "CallStatus",
+    "Component",
+    "Host",
+    "Refused",
+    "Response",
+    "Signal",
+    "Termination",
+    "main",
+    "parent_environment",
+]

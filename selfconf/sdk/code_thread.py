@@ -15,9 +15,10 @@ import queue
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 Action = Callable[[], None]
+_Result = TypeVar("_Result")
 RUSH = 0.0002
 """Seconds between actions below which the thread lets some come together before it goes on.
 
@@ -68,11 +69,11 @@ class CodeThread:
         """Let the thread that polls look whether to go on. May be called from any thread."""
         self._more.put(None)
 
-    def limited(self, owner: object, what: str, limit: float, action: Callable[[], object]) -> None:
-        """Run code of a component that may take so many seconds; `watch` sees it meanwhile."""
+    def limited(self, owner: object, what: str, limit: float, action: Callable[[], _Result]) -> _Result:
+        """Return what code of a component returns that may take so many seconds; `watch` sees it meanwhile."""
         before, self.running = self.running, RunningCode(owner, what, time.monotonic(), limit)
         try:
-            action()
+            return action()
         finally:
             self.running = before
 

@@ -1,10 +1,11 @@
-"""The class that an author derives from, and what arrives on its inputs."""
+"""The class that an author derives from, what arrives on its inputs, and the answers to its calls."""
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
 
 
 class Refused(Exception):
-    """Raised in `started` by a component that cannot act now; the configurator looks for another one."""
+    """Raised in `started` by a component that cannot act now; the configurator looks for another one.
+
+    Raised in `called`, it tells the caller why there is no answer.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +40,39 @@ class Signal:
     sequence: int
     media: str = ""
     """The media type of bytes, if the source has said one."""
+
+    def __getitem__(self, field: str) -> Any:
+        return self.value[field]
+
+
+class CallStatus(str, Enum):
+    """What has become of a call of an operation."""
+
+    ANSWERED = "answered"
+    REFUSED = "refused"
+    """The component that was called does not do it, or cannot; `detail` of the answer says why."""
+    LATE = "late"
+    """There was no answer in time; what was asked for may have been done, or be done yet."""
+    GONE = "gone"
+    """The component that was called does not live, or has ended before it answered."""
+    NOT_CONNECTED = "not connected"
+    """The configuration connects no component to the operation, which is optional then."""
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """The answer to a call of an operation; true if there is one, else it says why not."""
+
+    status: CallStatus
+    value: Any = None
+    """What was answered, as values of signals are."""
+    source: IRI | None = None
+    """The component that was called."""
+    detail: str = ""
+    """Why there is no answer."""
+
+    def __bool__(self) -> bool:
+        return self.status is CallStatus.ANSWERED
 
     def __getitem__(self, field: str) -> Any:
         return self.value[field]
@@ -73,6 +110,13 @@ class Component:
     def received(self, port: str, signal: Signal) -> None:
         """A signal has arrived on an input."""
 
+    def called(self, operation: str, request: Signal) -> Any:
+        """An operation has been called by a component that may do so; what is returned is the answer.
+
+        Raise Refused to say why there is none. An answer is what JSON has, bytes, or an array, of 1 MiB at most.
+        """
+        raise Refused(f"{operation!r} is advertised, and not written yet")
+
     def unfed(self, port: str) -> None:
         """An input has lost its last source: what was received on it last is not true any more.
 
@@ -97,6 +141,17 @@ class Component:
         afterwards. Raises ProgrammerError for an output that is not advertised, and for what no signal can carry.
         """
         self._attached().outputs.emit(port, value, time, media)
+
+    def call(
+        self, operation: str, request: Any = None, *, answered: Callable[[Response], None], seconds: float = 2.0
+    ) -> None:
+        """Call an operation that this component needs: whoever the configuration has connected to it is asked, once.
+
+        `request` is what is sent along, of what signals can carry, and of 1 MiB at most. `answered` is called with what
+        has come of it within that many seconds, unless the component was stopped meanwhile. Nothing happens while not
+        active. Raises ProgrammerError for an operation that is not advertised, and for what no request can carry.
+        """
+        self._attached().operations.call(operation, request, seconds, answered)
 
     def fail(self, reason: str) -> None:
         """Raise FAIL: the component cannot act in its role any more. The configurator will turn it off."""

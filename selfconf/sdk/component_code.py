@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 from selfconf.bus.port import Bus
 from selfconf.model.profile import Profile
@@ -54,7 +55,7 @@ class ComponentCode:
         self._rests = 0
         self._on = self._resting = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
-        required = frozenset(port.name for port in profile.required)
+        required = frozenset(port.name for port in profile.required if not port.is_operation)
         self._blindness = Blindness(bus, required, None if profile.outputs else tolerates, self._rest)
         self._values: dict[str, Term] = {}
 
@@ -145,6 +146,29 @@ class ComponentCode:
             self._guarded("fed", lambda: self._component.fed(port))
         if not self._resting:
             self._guarded("received", partial(self._component.received, port, signal))
+
+    def serve(self, operation: str, request: Signal) -> Any:
+        """Return what the component answers to a call; raises Refused if it does not. On the thread of its code.
+
+        What breaks there is a failure of the component.
+        """
+        if not self.active or self._resting:
+            raise Refused(f"{self._name} {'is at rest' if self.active else 'does not act'}")
+        try:
+            return self._thread.limited(
+                self, "called", self._deadline, partial(self._component.called, operation, request)
+            )
+        except Refused:
+            raise
+        except Exception as error:
+            log.exception("%s broke when %r was called", self._name, operation)
+            self._fail(f"{type(error).__name__}: {error}")
+            raise Refused(f"{self._name} broke: {type(error).__name__}: {error}") from None
+
+    def answered(self, turn: int, action: Callable[[], None]) -> None:
+        """Hand the answer to a call to the component, unless it was stopped since; on the thread of its code."""
+        if turn == self.turn and not self._resting:
+            self._guarded("answered", action)
 
     def _rest(self) -> None:
         """Be stopped until all inputs are fed again: the component is blind for longer than it tolerates."""

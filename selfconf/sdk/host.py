@@ -175,13 +175,16 @@ class Host:
 
 
 def signal_fields_of(path: Path, profile: Profile) -> Mapping[IRI, SignalFields]:
-    """The fields of the signals that a component emits.
+    """The fields of what a component emits, sends along and answers.
 
     What they are is said by its advertisement, the ontologies of selfconf, and those of the site that has started it.
     """
     paths = [path, *rendezvous.site_ontologies()]
-    signals = frozenset(signal for port in profile.outputs for signal in port.signals)
-    return _signal_fields(tuple(file for path in paths for file in files.within(path)), signals)
+    carried = {signal for port in profile.signal_outputs for signal in port.signals}
+    calls = [(port.request, port.response) for port in profile.operations]
+    calls += [(port.request, port.response) for port in profile.needed_operations]
+    carried.update(one for call in calls for one in call if one is not None)
+    return _signal_fields(tuple(file for path in paths for file in files.within(path)), frozenset(carried))
 
 
 @cache

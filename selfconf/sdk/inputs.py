@@ -17,7 +17,7 @@ the first signal that comes.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -25,7 +25,7 @@ from typing import Any
 from selfconf import ros_messages
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError
-from selfconf.model.profile import Profile
+from selfconf.model.profile import CALL_MARK, Profile
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Apply, Cause, Fail, Wire
@@ -86,7 +86,7 @@ class Inputs:
     ) -> None:
         """`read` makes of a value and its media type what the component receives; it may raise ValueError."""
         self._bus, self._keys, self._code, self._events, self._read_value = bus, keys, code, events, read
-        self._depths = {port.name: port.depth for port in profile.inputs}
+        self._depths = {port.name: port.depth for port in profile.signal_inputs}
         self._subscriptions: dict[tuple[str, Wire], InputSubscription] = {}
         self._wanted: frozenset[tuple[str, Wire]] = frozenset()
         self._spare: frozenset[tuple[str, Wire]] = frozenset()
@@ -103,8 +103,7 @@ class Inputs:
         New connections are made first, because others wait for what flows over them; the old ones end when the call
         has been answered.
         """
-        wanted = dict.fromkeys((port, wire) for port, wires in message.inputs.items() for wire in wires)
-        spare = dict.fromkeys((port, wire) for port, wires in message.standby.items() for wire in wires)
+        wanted, spare = dict.fromkeys(_signals(message.inputs)), dict.fromkeys(_signals(message.standby))
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
                 self._subscriptions[port, wire] = self._subscription(port, wire)
@@ -185,6 +184,11 @@ class Inputs:
         for port, wire in self.followed:
             ports.setdefault(port, set()).add(wire)
         return ports
+
+
+def _signals(inputs: Mapping[str, tuple[Wire, ...]]) -> Iterator[tuple[str, Wire]]:
+    """Yield which inputs are to follow which outputs, operations left out."""
+    return ((port, wire) for port, wires in inputs.items() if not port.endswith(CALL_MARK) for wire in wires)
 
 
 class InputSubscription:

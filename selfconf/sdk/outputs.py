@@ -48,9 +48,10 @@ class Outputs:
         """
         self._profile, self._active, self._malformed = profile, active, malformed
         self._fields = {
-            port.name: [fields[signal] for signal in port.signals if signal in fields] for port in profile.outputs
+            port.name: [fields[signal] for signal in port.signals if signal in fields]
+            for port in profile.signal_outputs
         }
-        self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.outputs}
+        self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.signal_outputs}
         self._sequence = itertools.count(1)
         self.issued = {port.name: 0 for port in profile.outputs}
         """How many signals each output has issued in this life."""
@@ -60,9 +61,9 @@ class Outputs:
             port.name: bus.publisher(
                 keys.output(profile.component, port.name), Urgency.SIGNAL, self._matched(port.name)
             )
-            for port in profile.outputs
+            for port in profile.signal_outputs
         }
-        self._names = {keys.output(profile.component, port.name): port.name for port in profile.outputs}
+        self._names = {keys.output(profile.component, port.name): port.name for port in profile.signal_outputs}
         self._served: Undo = bus.serve(keys.outputs(profile.component), self._answer) if self._names else lambda: None
 
     def emit(self, port: str, value: Any, moment: float | None, media: str = "") -> None:

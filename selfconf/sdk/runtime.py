@@ -3,7 +3,7 @@
 It holds the liveliness token, answers control calls by the table in `selfconf.protocol.activation`, and has the
 component's code run what they ask for, on the thread of that code. Everything else, supervision and the watch over the
 code included, happens on the thread of the bus, so that it never waits for the code. `ComponentCode` calls the code;
-outputs, inputs, supervision and blindness have modules of their own.
+outputs, inputs, operations, supervision and blindness have modules of their own.
 """
 
 from __future__ import annotations
@@ -43,6 +43,7 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputEvents, Inputs
+from selfconf.sdk.operations import Operations
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
 from selfconf.sdk.supervision import Supervision
 from selfconf.termination import resident_memory
@@ -115,6 +116,17 @@ class ComponentRuntime:
         )
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
         self.inputs = Inputs(bus, keys, thread, profile, heard, component.signal_value)
+        self.operations = Operations(
+            bus,
+            keys,
+            thread,
+            profile,
+            self.life,
+            self.code,
+            fields or {},
+            self._callers,
+            partial(self.fail, cause=Cause.MALFORMED),
+        )
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
         self._served = bus.serve(keys.call(profile.component), self._call)
@@ -142,6 +154,7 @@ class ComponentRuntime:
         self._served()
         self._token()
         self.outputs.close()
+        self.operations.close()
         self._fail.undeclare()
         self._when_at_rest(closed)
 
@@ -309,6 +322,7 @@ class ComponentRuntime:
             if self.activation.waiting:
                 self._tell_waiting("")
         self.inputs.follow(message)
+        self.operations.follow(message)
 
     def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
         if self._after_start is waiting:
@@ -406,6 +420,7 @@ class ComponentRuntime:
             undo()
         self._timers.clear()
         self.inputs.end()
+        self.operations.end()
         self.code.stop(self._at_rest)
 
     def _when_at_rest(self, action: Callable[[], None]) -> None:
@@ -446,7 +461,14 @@ class ComponentRuntime:
         if not self._closed:
             self.bus.roll_call(self.keys.lives(self.profile.component), LIVES_CALL, called)
 
-    # What is noticed of the inputs.
+    # What is noticed of the inputs, and asked for the operations.
+
+    def _callers(self, operation: str) -> frozenset[IRI]:
+        """The components that may call an operation, for the tasks that this one acts for."""
+        claims = [hold.claim for hold in self.activation.holds if hold.active]
+        return frozenset(
+            caller for claim in claims if isinstance(claim, Apply) for caller in claim.callers.get(operation, ())
+        )
 
     def _report_silence(self, wire: Wire, seconds: float) -> None:
         """Raise FAIL for a component whose output has stopped: on the own key, as a report."""

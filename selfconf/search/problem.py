@@ -174,7 +174,7 @@ class Problem:
         served = self.hierarchy.served
         for source, output, only in self.links[role]:
             for candidate in playing[source]:
-                for name, offered, _, _, _, _ in candidate.profile.outputs:
+                for name, offered, *_ in candidate.profile.outputs:
                     if output is None or output == name:
                         # Without a type an output feeds the input that is named beside it, whatever that wants.
                         for signal in served(offered) if offered else tuple(lacking) if output and only else ():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.discovery import FoundAdvertisement
-from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.model.term import Literal
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.vocabulary import LABEL, ROB, SC
@@ -30,12 +30,20 @@ def component_body(found: FoundAdvertisement, state: str) -> Body:
         "source": found.source,
         "places": [short(place) for place in profile.values(ROB.place)],
         "state": state,
-        "inputs": [_port(port) for port in profile.inputs],
-        "outputs": [_port(port) for port in profile.outputs],
+        "inputs": [_port(port) for port in profile.signal_inputs],
+        "outputs": [_port(port) for port in profile.signal_outputs],
+        "operations": [_operation(port) for port in profile.operations],
+        "needed_operations": [_operation(port) for port in profile.needed_operations],
         "parameters": [{"name": one.name, "type": KNOWN_NAMES(one.type)} for one in profile.parameters],
         "preference": float(profile.preference),
         "shareable": profile.is_shareable,
     }
+
+
+def _operation(port: Input | Output) -> Body:
+    types = {name: KNOWN_NAMES(one) for name, one in (("request", port.request), ("response", port.response)) if one}
+    body: Body = {"name": port.name.removesuffix(CALL_MARK), **types}
+    return {**body, "optional": True} if isinstance(port, Input) and port.optional else body
 
 
 def _port(port: Input | Output) -> Body:

@@ -1,7 +1,8 @@
 """A component as a W3C Thing Description 1.1: its outputs are properties that can be observed, FAIL is an event.
 
-What a consumer cannot do over the forms is stated in the terms of selfconf: inputs, which follow outputs, and
-operational parameters, which a configurator sets for the task that holds the component.
+What a consumer cannot do over the forms is stated in the terms of selfconf: inputs, which follow outputs, operations,
+which answer those whom a configuration connects, and operational parameters, which a configurator sets for the task
+that holds the component.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from selfconf.model.profile import Profile
+from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.component_bodies import KNOWN_NAMES, label_of
@@ -42,7 +43,7 @@ def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
                     _form(keys.output(profile.component, port.name), ["readproperty"]),
                 ],
             }
-            for port in profile.outputs
+            for port in profile.signal_outputs
         },
         "events": {
             "fail": {
@@ -52,16 +53,28 @@ def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
             }
         },
     }
-    if profile.inputs:
-        description["sc:hasInput"] = [
+    return {**description, **{member: said for member, said in _own_terms(profile).items() if said}}
+
+
+def _own_terms(profile: Profile) -> dict[str, list[dict[str, Any]]]:
+    """What is said in the terms of selfconf."""
+    return {
+        "sc:hasInput": [
             {"sc:name": port.name, "sc:signalType": [{"@id": str(signal)} for signal in port.signals]}
-            for port in profile.inputs
-        ]
-    if profile.parameters:
-        description["sc:hasParameter"] = [
+            for port in profile.signal_inputs
+        ],
+        "sc:hasOperation": [*map(_operation, profile.operations)],
+        "sc:needsOperation": [*map(_operation, profile.needed_operations)],
+        "sc:hasParameter": [
             {"sc:name": one.name, "sc:parameterType": {"@id": str(one.type)}} for one in profile.parameters
-        ]
-    return description
+        ],
+    }
+
+
+def _operation(port: Input | Output) -> dict[str, Any]:
+    types = ("sc:request", port.request), ("sc:response", port.response)
+    said = {member: {"@id": str(kind)} for member, kind in types if kind is not None}
+    return {"sc:name": port.name.removesuffix(CALL_MARK), **said}
 
 
 def _form(key: str, operations: list[str]) -> Mapping[str, Any]:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from selfconf.api.arguments import Paths
 from selfconf.api.task import template
 from selfconf.errors import ProgrammerError
-from selfconf.model.profile import Profile
+from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.model.run_event import CallDeclined, ComponentLost
-from selfconf.model.term import IRI, Literal
-from selfconf.sdk import Component, Signal
+from selfconf.model.term import Literal
+from selfconf.rdf.vocabulary import SC
+from selfconf.sdk import Component, Refused, Response, Signal
 from selfconf.testing.memory_ecology import MemoryEcology, MemoryRun
 
 BASE = "urn:selfconf:bench:"
@@ -38,8 +39,24 @@ class _Listener(Component):
         self.heard.append(signal.value)
 
 
+class _Server(Component):
+    """Offers one operation that the component on the bench needs."""
+
+    def __init__(self) -> None:
+        self.answer: Callable[[Any], Any] | None = None
+
+    def called(self, operation: str, request: Signal) -> Any:
+        if self.answer is None:
+            raise Refused("the bench does not answer")
+        return self.answer(request.value)
+
+
+class _Caller(Component):
+    """Calls one operation of the component on the bench."""
+
+
 class ComponentBench:
-    """Tries one component by itself: start it, send it signals, let time pass, see what it emits."""
+    """Tries one component by itself: start it, send it signals, call it, let time pass, see what it emits."""
 
     def __init__(
         self, component: Component, advertisement: str | Path | None = None, *, ontologies: Paths = ()
@@ -55,12 +72,20 @@ class ComponentBench:
         (only,) = self.ecology.advertisements.values()
         self.profile: Profile = only.profile
         self._feeders = {
-            port.name: self.ecology.add(_Feeder(), _probe(f"in{number}", "hasOutput", port.signals))
-            for number, port in enumerate(self.profile.inputs)
+            port.name: self.ecology.add(_Feeder(), _probe(f"in{number}", "hasOutput", port))
+            for number, port in enumerate(self.profile.signal_inputs)
         }
         self._listeners = {
-            port.name: self.ecology.add(_Listener(), _probe(f"out{number}", "hasInput", port.signals))
-            for number, port in enumerate(self.profile.outputs)
+            port.name: self.ecology.add(_Listener(), _probe(f"out{number}", "hasInput", port))
+            for number, port in enumerate(self.profile.signal_outputs)
+        }
+        self._servers = {
+            port.name: self.ecology.add(_Server(), _probe(f"op{number}", "hasOperation", port))
+            for number, port in enumerate(self.profile.needed_operations)
+        }
+        self._callers = {
+            port.name: self.ecology.add(_Caller(), _probe(f"call{number}", "needsOperation", port))
+            for number, port in enumerate(self.profile.operations)
         }
         self._run: MemoryRun | None = None
 
@@ -85,6 +110,26 @@ class ComponentBench:
             raise ProgrammerError(f"{self.profile.component.short} advertises no input {port!r}")
         self._feeders[port].emit("signal", value)
         self.advance(DELIVERY)
+
+    def answer(self, operation: str, answer: Callable[[Any], Any]) -> None:
+        """Say what an operation that the component needs is answered with, given what is sent along.
+
+        Until then, and if `answer` raises Refused, there is no answer.
+        """
+        if operation + CALL_MARK not in self._servers:
+            raise ProgrammerError(f"{self.profile.component.short} advertises no need of an operation {operation!r}")
+        self._servers[operation + CALL_MARK].answer = answer
+
+    def call(self, operation: str, request: Any = None, seconds: float = 2.0) -> Response:
+        """Call an operation of the component, and let the time pass until there is an answer, or none in time."""
+        caller = self._callers.get(operation + CALL_MARK)
+        if caller is None:
+            raise ProgrammerError(f"{self.profile.component.short} advertises no operation {operation!r}")
+        answers: list[Response] = []
+        caller.call("call", request, answered=answers.append, seconds=seconds)
+        if not self.ecology.until(lambda: bool(answers), seconds + DELIVERY):
+            raise ProgrammerError(f"{self.profile.component.short} cannot be called now; start it first")
+        return answers[0]
 
     def advance(self, seconds: float) -> None:
         """Let simulated time pass: timers of the component go off."""
@@ -115,22 +160,18 @@ class ComponentBench:
 
     def _template(self, parameters: dict[str, str | int | float | bool]) -> str:
         """A template in which the component plays, fed by a probe for each input and heard by one for each output."""
-        feeders = [f":in{number}" for number in range(len(self._feeders))]
-        listeners = [f":out{number}" for number in range(len(self._listeners))]
+        profile = self.profile
+        feeding = [(f":in{number}", "signal", port.name) for number, port in enumerate(profile.signal_inputs)]
+        feeding += [(f":op{number}", "call()", port.name) for number, port in enumerate(profile.needed_operations)]
+        hearing = [(f":out{number}", port.name, "signal") for number, port in enumerate(profile.signal_outputs)]
+        hearing += [(f":call{number}", port.name, "call()") for number, port in enumerate(profile.operations)]
+        feeders, listeners = [one for one, _, _ in feeding], [one for one, _, _ in hearing]
         roles = [f":{name}-role" for name in (one[1:] for one in (*feeders, *listeners))]
         lines = [f":bench a sc:Template ; sc:roles ( {' '.join([*roles, ':tested'])} ) ."]
         lines.append(f":tested a sc:Role ; sh:in ( <{self.profile.component}> ) {self._settings(parameters)} .")
         lines += [f"{one}-role a sc:Role ; sh:in ( {one} ) ." for one in (*feeders, *listeners)]
-        for one, port in zip(feeders, self.profile.inputs, strict=True):
-            lines.append(
-                f'[] a sc:Interaction ; sc:from {one}-role ; sc:output "signal" ; sc:to :tested ; '
-                f"sc:input {Literal(port.name).turtle(str)} ."
-            )
-        for one, output in zip(listeners, self.profile.outputs, strict=True):
-            lines.append(
-                f"[] a sc:Interaction ; sc:from :tested ; sc:output {Literal(output.name).turtle(str)} ; "
-                f'sc:to {one}-role ; sc:input "signal" .'
-            )
+        lines += [_interaction(f"{one}-role", output, ":tested", port) for one, output, port in feeding]
+        lines += [_interaction(":tested", output, f"{one}-role", port) for one, output, port in hearing]
         return "\n".join(lines)
 
     def _settings(self, parameters: dict[str, str | int | float | bool]) -> str:
@@ -149,6 +190,17 @@ def _turtle(value: str | int | float | bool) -> str:
     return Literal(value).turtle(str) if isinstance(value, str) else f"{value!r}{'e0' * isinstance(value, float)}"
 
 
-def _probe(name: str, link: str, signals: Sequence[IRI]) -> str:
-    types = "".join(f" ; sc:signalType <{signal}>" for signal in signals)
-    return PREFIXES + f':{name} a sc:Component, :Probe ; sc:{link} [ sc:name "signal"{types} ] .\n'
+def _interaction(source: str, output: str, sink: str, port: str) -> str:
+    names = f"sc:output {Literal(output).turtle(str)} ; sc:input {Literal(port).turtle(str)}"
+    return f"[] a sc:Interaction ; sc:from {source} ; sc:to {sink} ; {names} ."
+
+
+def _probe(name: str, link: str, port: Input | Output) -> str:
+    """The advertisement of a probe with one port, `signal`, or one operation, `call`, that goes with another one."""
+    if port.is_operation:
+        types = [(SC.request, port.request), (SC.response, port.response)]
+    else:
+        types = [(SC.signalType, one) for one in port.signals]
+    said = "".join(f" ; <{predicate}> <{kind}>" for predicate, kind in types if kind is not None)
+    called = "call" if port.is_operation else "signal"
+    return PREFIXES + f':{name} a sc:Component, :Probe ; sc:{link} [ sc:name "{called}"{said} ] .\n'

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.configurator.order import (
+    callers,
     parameter_values,
     resting_next,
     resting_order,
@@ -58,6 +60,14 @@ def test_the_wiring_names_all_the_outputs_that_an_input_follows() -> None:
         CONTROL: {"position": (Wire(TRACKER, "pose"), Wire(TRACKER, "quality"))},
         DRIVE: {"velocity": (Wire(CONTROL, "set"),)},
     }
+
+
+def test_who_may_call_an_operation_is_whom_it_is_connected_to() -> None:
+    calls = [Connection(name("a"), "look()", name(one), "see()") for one in "bc"]
+    plain = configuration("abc", "ab")
+    whole = replace(plain, connections=(*plain.connections, *calls))
+    assert callers(whole) == {name("a"): {"look()": (name("b"), name("c"))}, name("b"): {}, name("c"): {}}
+    assert wiring(whole)[name("c")] == {"see()": (Wire(name("a"), "look()"),)}
 
 
 def test_every_component_has_its_values_perhaps_none() -> None:

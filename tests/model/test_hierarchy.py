@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.profile import Operation
 from selfconf.model.term import IRI
 
 
@@ -22,6 +23,18 @@ def test_what_lies_above_is_followed_to_its_end_and_a_circle_is_an_equivalence()
     assert above.superclasses(d) == {d}
     assert above.superproperties(a) == {a, c}
     assert above.superproperties(b) == {b}
+
+
+def test_an_operation_serves_where_what_it_answers_is_wanted() -> None:
+    low, high = IRI("urn:low"), IRI("urn:high")
+    above = Hierarchy([(low, high)])
+    assert above.superclasses(Operation.of(low)) == {Operation.of(low), Operation.of(high)}
+    assert above.matches(Operation.of(low), Operation.of(high))
+    assert not above.matches(Operation.of(high), Operation.of(low))
+    assert not above.matches(Operation.of(low), high)
+    assert not above.matches(low, Operation.of(high))
+    assert not NOTHING_ABOVE.matches(Operation.of(low), Operation.of(high))
+    assert above.superclasses(Operation.of(None)) == {Operation.of(None)}
 
 
 def test_a_hierarchy_of_properties_alone_is_flat() -> None:

@@ -6,7 +6,7 @@ from typing import get_args
 
 import pytest
 
-from selfconf.model.profile import WantedSignal
+from selfconf.model.profile import WantedSignal, needed_operation
 from selfconf.model.refusal import (
     Conflict,
     Contradiction,
@@ -51,6 +51,27 @@ WORDED: list[tuple[Reason, str]] = [
     (
         InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,), optional=(EYE,)),
         "the input 'picture' (Image) of cap cannot be fed: the role eye asks for nobody (sc:minCount 0)",
+    ),
+    (
+        InputUnfed(MIND, CAP, "photo()", needed_operation("photo", None, IMAGE).wanted, (EYE,)),
+        (
+            "the operation 'photo' (-> Image) that cap needs cannot be called: "
+            "no candidate of eye offers an operation -> Image for it"
+        ),
+    ),
+    (
+        InputUnfed(MIND, CAP, "photo()", needed_operation("photo", IMAGE, None).wanted, ()),
+        (
+            "the operation 'photo' (Image -> nothing) that cap needs cannot be called: "
+            "no interaction feeds it in the role mind"
+        ),
+    ),
+    (
+        InputUnfed(MIND, CAP, "reset()", WantedSignal(()), (EYE,)),
+        (
+            "the operation 'reset' that cap needs cannot be called: "
+            "no candidate of eye offers an operation of that name for it"
+        ),
     ),
     (Conflict((EYE,), ("room",)), "the role eye cannot be played with one room for all"),
     (

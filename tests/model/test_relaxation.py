@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.model.obstacle import WrongType
 from selfconf.model.partition import Candidate, NearMiss
-from selfconf.model.profile import Output, Profile
+from selfconf.model.profile import Operation, Output, Profile
 from selfconf.model.relaxation import (
     AcceptNearMiss,
     AddComponents,
@@ -35,6 +35,14 @@ WORDED: list[tuple[Relaxation, str]] = [
             "add 2 more components for the role eye that issue Image and one more component for the role mind"
             " that issues Image"
         ),
+    ),
+    (
+        AddComponents((Addition(EYE, 1, (IMAGE, Output("x", (Operation.of(iri("Image")),)))),)),
+        "add one more component for the role eye that issues Image and offers an operation -> Image",
+    ),
+    (
+        AddComponents((Addition(EYE, 2, (Output("reset()", ()),), frozenset(("reset()",))),)),
+        "add 2 more components for the role eye that offer an operation by the name 'reset'",
     ),
     (AskForFewer(EYE, 0), "let the role eye be optional (sc:minCount 0)"),
     (AskForFewer(EYE, 2), "let the role eye ask for 2 (sc:minCount 2)"),

@@ -29,6 +29,7 @@ from selfconf.rdf.permitted_fields import (
     HERTZ,
     INPUT,
     MOST,
+    NAME,
     NAMED_OR_TEXT,
     NEEDED_OPERATION,
     NODE,
@@ -42,7 +43,6 @@ from selfconf.rdf.permitted_fields import (
     RESOURCE,
     SECOND,
     SETTINGS,
-    TEXT,
     TRUE_OR_FALSE,
     Field,
     Subject,
@@ -72,7 +72,7 @@ TARGETS: dict[Node, tuple[Subject, ...]] = {
 """What the node shapes of the file speak of, by the class or the property that makes it their target."""
 ASKED: dict[int, set[tuple[str, object]]] = {
     id(RESOURCE): {("nodeKind", SH.IRI)},
-    id(TEXT): {("datatype", XSD.string), ("minLength", 1)},
+    id(NAME): {("datatype", XSD.string), ("minLength", 1), ("pattern", "([^)]|(^|[^(])[)])$")},
     id(COMMAND_LINE): {("datatype", XSD.string), ("pattern", r"\S")},
     id(NUMBER): {("node", URIRef(SHAPES.Number))},
     id(POSITIVE): {("node", URIRef(SHAPES.Number)), ("minExclusive", 0)},
@@ -211,7 +211,7 @@ def test_shape_reader_and_table_agree_on_every_form_of_number() -> None:
 
 VALUES = st.sampled_from(
     (
-        '"words"', '" "', '""', '"mot"@fr', "7", "-2.5", "0", "1e3", "true",
+        '"words"', '"call()"', '"()"', '")"', '"a)"', '" "', '""', '"mot"@fr', "7", "-2.5", "0", "1e3", "true",
         '"7"^^xsd:unsignedByte', '"INF"^^xsd:double',
         '"x"^^xsd:integer', "rob:Audio", "unit:HZ", "[]", "[ sc:value 5 ; sc:unit unit:HZ ]",
         "unit:SEC", "[ sc:value 5 ; sc:unit unit:SEC ]", "false", '"1"^^xsd:boolean', "1000000", "1000001", "+3", "-3",
@@ -246,13 +246,14 @@ def test_shape_and_careful_reader_agree_on_any_value_anywhere(place: tuple[Field
 
 @pytest.mark.parametrize(
     "kind",
-    [RESOURCE, TEXT, COMMAND_LINE, NUMBER, POSITIVE, HERTZ, SECOND, COUNT, COUNT_FROM_ONE, TRUE_OR_FALSE],
+    [RESOURCE, NAME, COMMAND_LINE, NUMBER, POSITIVE, HERTZ, SECOND, COUNT, COUNT_FROM_ONE, TRUE_OR_FALSE],
     ids=lambda kind: str(kind.words),
 )
 def test_what_the_fast_loader_recognises_is_of_the_kind(kind: ValueKind) -> None:
     pattern = re.compile(kind.turtle)
     samples = [
-        "<urn:a>", f"<{UNIT.HZ}>", f"<{UNIT.SEC}>", "<urn:selfconf:blank:x>", '"a"', '" "', '""', '"\\n"',
+        "<urn:a>", f"<{UNIT.HZ}>", f"<{UNIT.SEC}>", "<urn:selfconf:blank:x>", '"a"', '" "', '"a()"', '"a)"',
+        '""', '"\\n"',
         "0", "0.0", "00", "7",
         "-7", "+7",
         "2.5", "1e3", "1234567890", ".5", '"a"@en', "true",

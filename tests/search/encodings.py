@@ -26,6 +26,7 @@ both_typed(D,O,C,I) :- of(D,O,_), takes(C,I,_).
 issues(Q,C,O,U) :- plays(Q,N), candidate(Q,N,C), of(C,O,T), at_or_below(T,U).
 unfit(D,O,C,I) :- stated(D,O,K,V), asked(C,I,K,W), V != W.
 unfit(D,O,C,I) :- accepts(C,I,S), output(D,O), not conforms(D,O,S).
+unfit(D,O,C,I) :- sends(C,I,S), receives(D,O,T), not at_or_below(S,T).
 feeds(Q,O,R,I) :- link(Q,R), output(_,O), input(_,I).
 feeds(Q,O,R,I) :- link_from(Q,O,R), input(_,I).
 feeds(Q,O,R,I) :- link_to(Q,R,I), output(_,O).
@@ -36,6 +37,8 @@ feeds(Q,O,R,I) :- link_between(Q,O,R,I).
 #maximize { 1@L : plays(R,N), level(R,N,L) }.
 #show plays/2.
 """
+NOTHING = "nothing"
+"""What is sent along where nothing is."""
 
 
 def first(problem: Problem) -> list[tuple[int, int]] | None:
@@ -74,6 +77,8 @@ def _facts(problem: Problem) -> Iterator[str]:
                 yield f"component({name})."
                 yield from _port_facts(profile)
                 signals |= {signal for port in profile.outputs for signal in port.signals}
+                signals |= {port.request for port in profile.inputs if port.request is not None}
+    yield f'at_or_below("{NOTHING}","{NOTHING}").'
     for signal in signals:
         yield from (f'at_or_below("{signal}","{above}").' for above in hierarchy.superclasses(signal))
     for interaction in task.template.interactions:
@@ -107,7 +112,9 @@ def _port_facts(profile: Profile) -> Iterator[str]:
         yield from (f'takes({name},"{signal}").' for signal in port.signals)
         if port.optional:
             yield f"optional({name})."
-        unit, frame, shape = port.condition or (None, None, None)
+        unit, frame, shape, sent = port.condition or (None, None, None, None)
+        if sent is not None:
+            yield f'sends({name},"{sent.type or NOTHING}").'
         yield from (f'asked({name},{kind},"{value}").' for kind, value in (("unit", unit), ("frame", frame)) if value)
         if shape:
             yield f'accepts({name},"{shape}").'
@@ -115,6 +122,8 @@ def _port_facts(profile: Profile) -> Iterator[str]:
         name = f'"{profile.component}","{output.name}"'
         yield f"output({name})."
         yield from (f'of({name},"{signal}").' for signal in output.signals)
+        if output.signals:
+            yield f'receives({name},"{output.request or NOTHING}").'
         stated = (("unit", output.unit), ("frame", output.frame))
         yield from (f'stated({name},{kind},"{value}").' for kind, value in stated if value)
         yield from (f'conforms({name},"{shape}").' for shape in output.conforms)

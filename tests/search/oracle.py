@@ -8,7 +8,7 @@ from itertools import combinations, product
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.partition import Candidate, Partition, Variable
-from selfconf.model.profile import Input, Output
+from selfconf.model.profile import Input, Operation, Output
 from selfconf.model.template import Role, Task
 from selfconf.model.term import IRI
 
@@ -52,15 +52,28 @@ class World:
 
     def feeds(self, output: Output, wanted: Input, named: bool) -> bool:
         """Return whether types, unit, frame and shape let an output feed an input; `named` if both names are given."""
-        served = set[IRI]().union(*[self.hierarchy.superclasses(signal) for signal in output.signals])
-        if not served & set(wanted.signals) and not (named and (not output.signals or not wanted.signals)):
+        typed = any(self.serves(one, other) for one in output.signals for other in wanted.signals)
+        if not typed and not (named and (not output.signals or not wanted.signals)):
             return False
         if wanted.condition is None:
             return True
         agree = [(wanted.condition.unit, output.unit), (wanted.condition.frame, output.frame)]
         if any(asked is not None and stated is not None and asked != stated for asked, stated in agree):
             return False
+        sent = wanted.condition.sent
+        if sent is not None and output.signals and not self.serves(sent.type, output.request):
+            return False
         return wanted.condition.accepts is None or wanted.condition.accepts in output.conforms
+
+    def serves(self, offered: IRI | None, wanted: IRI | None) -> bool:
+        """Return whether a type serves where another is wanted; of operations that is the response."""
+        if offered is None or wanted is None:
+            return offered is wanted
+        if isinstance(offered, Operation) and isinstance(wanted, Operation):
+            return self.serves(offered.response, wanted.response)
+        if isinstance(offered, Operation) or isinstance(wanted, Operation):
+            return False
+        return wanted in self.hierarchy.superclasses(offered)
 
     def unfed(self, players: Sequence[Sequence[Candidate]]) -> list[tuple[IRI, str]]:
         """The inputs of players that nothing is connected to."""

@@ -119,7 +119,7 @@ def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
     """For each answer without a proof whether there is a nearer one."""
 
     @given(problems(), st.data())
-    @agreement(0.3)
+    @agreement(0.8)
     def search(drawn: Problem, data: st.DataObject) -> None:
         whole = _fixed(drawn) if aided else drawn
         running = first.search(whole)

@@ -12,7 +12,16 @@ from hypothesis import strategies as st
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
-from selfconf.model.profile import Condition, Input, OperationalParameter, Output, Ports, Profile
+from selfconf.model.profile import (
+    Condition,
+    Input,
+    Operation,
+    OperationalParameter,
+    Output,
+    Ports,
+    Profile,
+    SentRequest,
+)
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
@@ -159,13 +168,16 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool =
         players = dict(zip([role.iri for role in parts], cast, strict=True))
         inputs, outputs = [one[0] for one in made], [one[1] for one in made]
         _feed(draw, players, interactions, inputs, outputs, hierarchy)
+    sent, taken = ({}, {}) if plain else _requests(draw, solvable, hierarchy)
     profiles = [
         Profile(
             iri(f"c{k}"),
             ports=_once(
                 Ports(
-                    tuple(_input(draw, *one, kinds_of_port) for one in sorted(wanted.items())),
-                    tuple(_output(draw, *one, kinds_of_port) for one in sorted(issued.items())),
+                    tuple(
+                        _needing(_input(draw, *one, kinds_of_port), sent, hierarchy) for one in sorted(wanted.items())
+                    ),
+                    tuple(_offering(_output(draw, *one, kinds_of_port), taken) for one in sorted(issued.items())),
                 ),
                 shared,
             ),
@@ -208,6 +220,46 @@ def _output(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Ou
     conforms = frozenset((SHAPE,) if "other" not in kinds or draw(st.booleans()) else ())
     signals = {signal, draw(st.sampled_from(SIGNALS))} if kind == "more" else {signal}
     return Output(name, () if kind == "untyped" else tuple(sorted(signals)), None, unit, frame, conforms)
+
+
+Requests = Mapping[IRI, IRI | None]
+"""The signals that are answers to calls in a problem, each with what is sent along."""
+
+
+def _requests(draw: st.DrawFn, solvable: bool, hierarchy: Hierarchy) -> tuple[Requests, Requests]:
+    """Return which signals are answers to calls, with what is sent along, and with what is taken.
+
+    In a problem that is to have a solution, all operations take one request, and what is sent is that or below it; and
+    where there is a hierarchy, either all signals are answers or none.
+    """
+    some = draw(st.sampled_from([[], [], SIGNALS, SIGNALS[:2]]))
+    if solvable and hierarchy is not NOTHING_ABOVE and some:
+        some = SIGNALS
+    requests: list[IRI | None] = [None, *CLASSES]
+    if not solvable:
+        any_ = st.sampled_from(requests)
+        return {signal: draw(any_) for signal in some}, {signal: draw(any_) for signal in some}
+    taken = draw(st.sampled_from(requests))
+    sent = [None] if taken is None else [one for one in CLASSES if hierarchy.matches(one, taken)]
+    return {signal: draw(st.sampled_from(sent)) for signal in some}, dict.fromkeys(some, taken)
+
+
+def _needing(port: Input, requests: Requests, hierarchy: Hierarchy) -> Input:
+    """Return an input as an operation that is needed, if its first signal is the answer to a call."""
+    if not port.signals or port.signals[0] not in requests:
+        return port
+    request = requests[port.signals[0]]
+    sent = SentRequest(request, frozenset(() if request is None else hierarchy.superclasses(request)))
+    answers = tuple(sorted(Operation.of(one) for one in port.signals if one in requests))
+    return port._replace(signals=answers, condition=(port.condition or Condition())._replace(sent=sent))
+
+
+def _offering(port: Output, requests: Requests) -> Output:
+    """Return an output as an operation that is offered, if its first signal is the answer to a call."""
+    if not port.signals or port.signals[0] not in requests:
+        return port
+    answers = tuple(sorted(Operation.of(one) for one in port.signals if one in requests))
+    return port._replace(signals=answers, request=requests[port.signals[0]])
 
 
 def _stated(draw: st.DrawFn, kind: str) -> tuple[IRI | None, Term | None]:

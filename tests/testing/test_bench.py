@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from selfconf.errors import ProgrammerError
-from selfconf.sdk import Component, Refused, Signal
+from selfconf.sdk import Component, Refused, Response, Signal
 from selfconf.testing import ComponentBench
 
 ADVERTISEMENT = """@prefix sc: <https://w3id.org/selfconf#> .
@@ -104,7 +104,58 @@ def test_a_component_that_declines_says_why() -> None:
         ComponentBench(thermostat, ADVERTISEMENT).start()
 
 
+GUIDE = """@prefix sc: <https://w3id.org/selfconf#> .
+@prefix : <urn:test:> .
+:guide a sc:Component, :Guide ;
+    sc:hasInput [ sc:name "place" ; sc:signalType :Place ] ;
+    sc:hasOutput [ sc:name "map" ; sc:signalType :Map ] ;
+    sc:hasOperation [ sc:name "map" ; sc:request :Place ; sc:response :Map ] , [ sc:name "reset" ] ;
+    sc:needsOperation [ sc:name "draw" ; sc:request :Place ; sc:response :Map ] .
+"""
+
+
+class Guide(Component):
+    """Has a map drawn of each place that it hears of, and answers with the last one."""
+
+    last: Any = None
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.call("draw", signal.value, answered=self.drawn)
+
+    def drawn(self, answer: Response) -> None:
+        self.last = answer.value if answer else answer.detail
+        self.emit("map", self.last)
+
+    def called(self, operation: str, request: Signal) -> Any:
+        if operation == "reset":
+            self.last = None
+            return True
+        if self.last is None:
+            raise Refused(f"there is no map of {request.value} yet")
+        return self.last
+
+
+def test_operations_are_called_and_answered() -> None:
+    bench = ComponentBench(Guide(), GUIDE)
+    bench.start()
+    assert bench.call("map", "kitchen").detail == "there is no map of kitchen yet"
+    bench.send("place", "kitchen")
+    assert bench.emitted["map"] == ["the bench does not answer"]
+    bench.answer("draw", lambda place: f"a plan of the {place}")
+    bench.send("place", "kitchen")
+    assert bench.call("map", "kitchen").value == bench.emitted["map"][-1] == "a plan of the kitchen"
+    assert bench.call("reset").value is True
+    assert not bench.call("map", "kitchen")
+
+
 def test_ports_and_parameters_that_are_not_there_are_named() -> None:
+    guide = ComponentBench(Guide(), GUIDE)
+    with pytest.raises(ProgrammerError, match="guide cannot be called now; start it first"):
+        guide.call("map")
+    with pytest.raises(ProgrammerError, match="no operation 'draw'"):
+        guide.call("draw")
+    with pytest.raises(ProgrammerError, match="no need of an operation 'map'"):
+        guide.answer("map", str)
     bench = ComponentBench(Thermostat(), ADVERTISEMENT)
     with pytest.raises(ProgrammerError, match="no parameter 'colour'"):
         bench.start(colour="red")

@@ -12,6 +12,7 @@ from selfconf.importing.imported import ImportedComponent, ImportedOperation, Im
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.ros2.interfaces import ACTIONS, PARAMETER_TYPES, ROS2, InterfaceKind, NodeInterface, node_class
 from selfconf.importing.sources import SourceDocument
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal, Term
 
 Wired = Callable[[NodeInterface], bool]
@@ -101,8 +102,8 @@ class NodeReader:
         found: dict[tuple[object, str], NodeInterface] = {}
         for each in interfaces:
             group = (each.kind.is_source, each.kind in (InterfaceKind.PUBLISHER, InterfaceKind.SUBSCRIBER))
-            if not each.name or (group, each.name) in found:
-                reason = "two interfaces of one node that do the same have one name, or one has none"
+            if not each.name or each.name.endswith(CALL_MARK) or (group, each.name) in found:
+                reason = "two interfaces of one node that do the same have one name, or one has none, or ends in ()"
                 self.ledger.leave_out("interfaces", reason, self.source)
             else:
                 found[group, each.name] = each

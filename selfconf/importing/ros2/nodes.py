@@ -10,7 +10,7 @@ from selfconf.importing.imported import Description, ImportedDocument
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import slug, stem
 from selfconf.importing.ros2.components import NodeReader
-from selfconf.importing.ros2.interfaces import TOPICS, TYPE_BASE, NodeInterface
+from selfconf.importing.ros2.interfaces import TYPE_BASE, NodeInterface
 from selfconf.importing.ros2.model_text import parse_model
 from selfconf.importing.ros2.node_models import NodeModel, node_models
 from selfconf.importing.ros2.nodl import NodlReader
@@ -71,11 +71,7 @@ def _systems(
             ledger.leave_out("templates of systems without nodes", "a template has at least one role", source)
             continue
         template = ledger.minted(system.name)
-        pairs = [pair for pair in wiring.pairs[system.name] if pair.output.kind in TOPICS]
-        if called := len(wiring.pairs[system.name]) - len(pairs):
-            reason = "operations are advertised, and not connected by a configuration"
-            ledger.leave_out("connections of services and actions", reason, source, called)
-        described = system_template(template, system.name, wiring.members(system), pairs)
+        described = system_template(template, system.name, wiring.members(system), wiring.pairs[system.name])
         prefixes = {"": f"{template}/", "role": f"{template}/role/"}
         path = f"{folder}/{slug(system.name)}" if folder else slug(system.name)
         yield ImportedDocument(f"{path}.template", source.name, tuple(described), prefixes)

@@ -10,8 +10,9 @@ from collections.abc import Iterable
 
 from selfconf.importing.imported import DescribedStatement, Description, NestedNode, TermList
 from selfconf.importing.naming import slug
-from selfconf.importing.ros2.interfaces import ROS2, node_class
+from selfconf.importing.ros2.interfaces import ROS2, TOPICS, node_class
 from selfconf.importing.ros2.wiring import NodeInstance, WiredPair
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE, XSD
 
@@ -44,12 +45,13 @@ def system_template(
         role = ((TYPE, (SC.Role,)), (SH["class"], (node_class(package, kind) or ROS2.Node,)), (SH.property, facts))
         found.append(Description(roles[instance.key], role))
     for number, pair in enumerate(pairs, 1):
+        called = "" if pair.output.kind in TOPICS else CALL_MARK
         interaction: tuple[DescribedStatement, ...] = (
             (TYPE, (SC.Interaction,)),
             (SC["from"], (roles[pair.source.key],)),
-            (SC.output, (Literal(pair.output.name),)),
+            (SC.output, (Literal(pair.output.name + called),)),
             (SC.to, (roles[pair.sink.key],)),
-            (SC.input, (Literal(pair.input.name),)),
+            (SC.input, (Literal(pair.input.name + called),)),
         )
         found.append(Description(IRI(f"{template}/connection/{number}"), interaction))
     return found

@@ -15,6 +15,7 @@ from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.sources import SourceDocument
 from selfconf.importing.units import unit_of
 from selfconf.importing.wot.contexts import TermMeanings
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 
 W3C = "https://www.w3.org/2019/wot/"
@@ -101,8 +102,9 @@ class AffordanceReader:
             self._leave_out(f"{kind} that are no object", "a description has them by their names")
             return
         for name, affordance in found.items():
-            if not name or not isinstance(affordance, dict):
-                self._leave_out(f"{kind} without a name, or that are no object", "a port or operation has a name")
+            if not name or name.endswith(CALL_MARK) or not isinstance(affordance, dict):
+                reason = "a port or operation has a name, which does not end in ()"
+                self._leave_out(f"{kind} without a name, or that are no object", reason)
                 continue
             for member, (what, why) in _UNUSED.items():
                 if member in affordance:

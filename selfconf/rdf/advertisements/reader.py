@@ -15,11 +15,12 @@ from selfconf.model.profile import (
     NO_PREFERENCE,
     Condition,
     Input,
-    Operation,
     OperationalParameter,
     Output,
     Place,
     Profile,
+    needed_operation,
+    offered_operation,
     shared_ports,
 )
 from selfconf.model.term import IRI, Literal, Term
@@ -35,6 +36,7 @@ from selfconf.rdf.advertisements.advertisement import (
 from selfconf.rdf.permitted_fields import (
     COMPONENT,
     INPUT,
+    NEEDED_OPERATION,
     OUTPUT,
     PARAMETER_TYPE,
     PORT_NAME,
@@ -92,6 +94,11 @@ class _Reader:
         types = self._types()
         inputs = [self._input(name, node) for name, node in self._named(COMPONENT[SC.hasInput])]
         outputs = [self._output(name, node) for name, node in self._named(COMPONENT[SC.hasOutput])]
+        inputs += [self._needed(name, node) for name, node in self._named(COMPONENT[SC.needsOperation])]
+        outputs += [
+            offered_operation(name, *self._types_of_call(name, node))
+            for name, node in self._named(COMPONENT[SC.hasOperation])
+        ]
         parameters = [
             OperationalParameter(name, kind)
             for name, node in self._named(COMPONENT[SC.hasParameter])
@@ -108,8 +115,6 @@ class _Reader:
                 tuple(sorted(outputs, key=lambda port: port.name)),
             ),
             parameters=tuple(sorted(parameters, key=lambda parameter: parameter.name)),
-            operations=self._operations(COMPONENT[SC.hasOperation]),
-            needed_operations=self._operations(COMPONENT[SC.needsOperation]),
             preference=self._preference(),
             shareable=self._shareable(),
             tolerates=self._quantity(self.component, COMPONENT[SC.tolerates], "what a component sc:tolerates"),
@@ -155,20 +160,15 @@ class _Reader:
         self._problem(f"{_word(SC.hasParameter)} {name!r} needs {_one_of(PARAMETER_TYPE)}")
         return None
 
-    def _operations(self, link: Field) -> tuple[Operation, ...]:
-        found = []
-        for name, node in self._named(link):
-            request, response = (self._field_of_port(node, name, field) for field in (REQUEST, RESPONSE))
-            optional = self._field_of_port(node, name, link.into[SC.optional])
-            found.append(
-                Operation(
-                    name,
-                    request if isinstance(request, IRI) else None,
-                    response if isinstance(response, IRI) else None,
-                    isinstance(optional, Literal) and optional.lexical == "true",
-                )
-            )
-        return tuple(sorted(found, key=lambda operation: operation.name))
+    def _types_of_call(self, name: str, node: Term) -> tuple[IRI | None, IRI | None]:
+        """What is sent along with an operation, and what is answered, as far as that is said."""
+        request, response = (self._field_of_port(node, name, field) for field in (REQUEST, RESPONSE))
+        return request if isinstance(request, IRI) else None, response if isinstance(response, IRI) else None
+
+    def _needed(self, name: str, node: Term) -> Input:
+        optional = self._field_of_port(node, name, NEEDED_OPERATION[SC.optional])
+        truth = isinstance(optional, Literal) and optional.lexical == "true"
+        return needed_operation(name, *self._types_of_call(name, node), truth)
 
     def _input(self, name: str, node: Term) -> Input:
         unit, frame = self._unit(node, name), self._field_of_port(node, name, INPUT[SC.frame])

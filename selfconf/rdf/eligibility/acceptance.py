@@ -197,7 +197,7 @@ class Acceptance:
                 texts.setdefault(port.signals, {})[text] = None
             for signals, some in texts.items():
                 lists.append(
-                    [(p.component, o.name) for p in profiles for o in p.outputs if self._could_feed(o, signals)]
+                    [(p.component, o.name) for p in profiles for o in p.signal_outputs if self._could_feed(o, signals)]
                 )
                 for text in some if lists[-1] else ():
                     in_time = time.process_time() - began < SECONDS

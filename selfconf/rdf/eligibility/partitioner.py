@@ -32,6 +32,7 @@ from selfconf.rdf.eligibility.advertisement_index import (
 )
 from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
 from selfconf.rdf.eligibility.role_tests import CompiledRole
+from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Triple
@@ -124,7 +125,7 @@ class Partitioner:
             self.task.template, found, lambda component: tuple(self.visible([ecology[component]]))
         )
         self.not_judged |= self._acceptance.not_judged
-        return judged
+        return with_sent_requests(judged, self.hierarchy)
 
     def _recruits(self, ecology: AdvertisementIndex) -> tuple[Recruit, ...]:
         """The components that may supply the players of each role that recruits, in the order of preference."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
@@ -46,7 +47,7 @@ class _InteractionReader(DocumentReader):
             if unknown or not isinstance(source, IRI) or not isinstance(sink, IRI):
                 problem = f"an interaction speaks of {worded(unknown[0][0])}, which is no role of the template"
                 raise self.mistake(problem, node, unknown[0][1], unknown[0][0])
-            yield Interaction(source, sink, self._port(node, SC.output), self._port(node, SC.input))
+            yield Interaction(source, sink, *self._ports(node))
 
     def _nodes(self) -> list[Node]:
         """The interactions of the document."""
@@ -56,6 +57,14 @@ class _InteractionReader(DocumentReader):
             if speaks and node not in interactions and (TYPE, SC.Connection) not in statements:
                 raise self.mistake("what has sc:from and sc:to is a sc:Interaction; say so with its type", node)
         return interactions
+
+    def _ports(self, node: Node) -> tuple[str | None, str | None]:
+        """The output and the input that an interaction names, as far as it does."""
+        output, wanted = self._port(node, SC.output), self._port(node, SC.input)
+        if output is not None and wanted is not None and output.endswith(CALL_MARK) is not wanted.endswith(CALL_MARK):
+            problem = "an interaction joins an output with an input, or an operation with an operation"
+            raise self.mistake(f"{problem}; the names of operations end in ()", node, SC.input, Literal(wanted))
+        return output, wanted
 
     def _port(self, node: Node, predicate: IRI) -> str | None:
         values = self.document.values(node, predicate)

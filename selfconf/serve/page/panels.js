@@ -167,11 +167,13 @@ export function showDetail(model, iri, select, chooseTask) {
   const state = loss ? "lost" : model.statesThen().get(iri) ?? one?.state ?? "not advertised";
   const dt = (name, ...values) => (values.flat().filter(Boolean).length ? [h("dt", { text: name }), h("dd", {}, ...values.flat())] : []);
   const ports = (list) => list.map((port) => h("div", {}, h("b", { text: port.name }), h("span", { class: "soft", text: ` ${[port.signals.join(", "), port.unit, port.rate && `${port.rate} Hz`, port.optional && "optional"].filter(Boolean).join(" · ")}` })));
+  const calls = (list) => list.map((each) => h("div", {}, h("b", { text: `${each.name}()` }), h("span", { class: "soft", text: ` ${[each.request, each.response && `→ ${each.response}`, each.optional && "optional"].filter(Boolean).join(" · ")}` })));
   const facts = one ? [
     ...dt("state", h("span", { class: "with-state" }, h("span", { class: `state ${state.replaceAll(" ", "-")}` }), loss ? `lost: ${why(loss)}` : state)),
     ...dt("held by", holders.map((task) => h("button", { type: "button", class: "link", text: task.name, onclick: () => chooseTask(task.id) }))),
     ...dt("site", `${one.site}`), ...dt("place", one.places.join(", ")),
     ...dt("inputs", ports(one.inputs)), ...dt("outputs", ports(one.outputs)),
+    ...dt("operations", calls(one.operations)), ...dt("needs", calls(one.needed_operations)),
     ...dt("parameters", one.parameters.map((each) => h("div", {}, h("b", { text: each.name }), h("span", { class: "soft", text: ` ${each.type}` })))),
     ...dt("preference", one.preference ? String(one.preference) : ""),
   ] : [h("dd", { text: "No site advertises it now." })];

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.candidate_order import candidate_order
-from selfconf.model.profile import Condition, Input, Operation, OperationalParameter, Output
+from selfconf.model.profile import Condition, Input, Operation, OperationalParameter, Output, offered_operation
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.advertisements import loader
 from selfconf.rdf.advertisements import reader as advertisements
@@ -103,8 +103,13 @@ def test_operations_are_read_with_their_types() -> None:
         ':x a sc:Component, :L ; sc:hasOperation [ sc:name "photo" ; sc:response :Image ] , [ sc:name "move" ;'
         ' sc:request :Pose ] ; sc:needsOperation [ sc:name "light" ; sc:optional true ] .'
     ).profile
-    assert profile.operations == (Operation("move", request=iri("Pose")), Operation("photo", response=iri("Image")))
-    assert profile.needed_operations == (Operation("light", optional=True),)
+    move, photo = (
+        Output("move()", (Operation.of(None),), request=iri("Pose")),
+        offered_operation("photo", None, iri("Image")),
+    )
+    assert profile.operations == profile.outputs == (move, photo)
+    assert photo == Output("photo()", (Operation.of(iri("Image")),))
+    assert profile.needed_operations == profile.inputs == (Input("light()", (), optional=True),)
 
 
 def test_units_frames_and_several_types_are_read() -> None:

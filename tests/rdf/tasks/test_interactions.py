@@ -63,6 +63,7 @@ def test_an_interaction_between_the_roles_of_another_template_is_passed_over() -
         ("[] sc:from :eye ; sc:to :mind .", "is a sc:Interaction; say so with its type"),
         (f"{LONG} ; sc:output :image .", "sc:output of an interaction is the name of one port"),
         (f'{LONG} ; sc:input "" .', "sc:input of an interaction is the name of one port"),
+        (f'{LONG} ; sc:output "look()" ; sc:input "view" .', r"or an operation with an operation; .* end in \(\)"),
         (f'{LONG} ; sc:input "left" , "right" .', "sc:input of an interaction is the name of one port"),
     ],
 )
