@@ -103,10 +103,17 @@ def _site_itself(keys: Keys, site: str) -> Access:
 def _component(keys: Keys, principal: Principal, process: Iterable[Principal]) -> Access:
     mine = tuple(sorted(one.name for one in process if one.kind is PrincipalKind.COMPONENT))
     own = tuple(key for chunk in mine for key in keys.all_of_component(chunk))
-    heard = (keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_life(), keys.any_configurator_life())
+    heard = (
+        keys.any_output(),
+        keys.any_operation(),
+        keys.any_fail(),
+        keys.any_free(),
+        keys.any_life(),
+        keys.any_configurator_life(),
+    )
     return Access(
         principal.common_name,
-        "speaks on its own outputs, FAIL and calls; hears the signals and FAIL of all, and who lives",
+        "speaks on its own outputs, FAIL and calls; hears signals, FAIL and who lives, and asks for operations",
         says=own,
         asked=(keys.any_output(), keys.any_fail(), keys.any_free()),
         hears=(*own, *heard),
@@ -142,7 +149,7 @@ def _reader(keys: Keys, principal: Principal) -> Access:
 def _configurator(keys: Keys, principal: Principal) -> Access:
     mine = keys.all_of_configurators(principal.name)
     called = (keys.any_call(), keys.wake("*"), keys.end("*"), keys.keep("*"), keys.configurator_call("*"))
-    heard = (keys.any_output(), keys.any_fail(), keys.any_free())
+    heard = (keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_moved())
     return Access(
         principal.common_name,
         f"may run and stop tasks, as configurators {principal.name}-*: calls components and sites; hears all signals",

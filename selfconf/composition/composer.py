@@ -11,6 +11,7 @@ from dataclasses import replace
 from enum import Enum
 
 from selfconf import certificate
+from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
@@ -87,12 +88,19 @@ class Composer:
         hierarchy: Hierarchy = NOTHING_ABOVE,
         strategy: Strategy = Strategy.FIRST,
         steps: int | None = None,
+        outside: IRI | None = None,
     ) -> None:
-        """`steps` limits each search. Where no cost is stated, every answer is `best`: the first is taken."""
+        """`steps` limits each search; `outside` is the composite of which the task is the inside.
+
+        Where no cost is stated, every answer is `best`: the first is taken.
+        """
         if strategy is Strategy.BEST and not task.task.template.cost:
             strategy = Strategy.FIRST
         self.task, self.hierarchy, self.strategy, self.steps = task, hierarchy, strategy, steps
         self.partitioner = Partitioner(task, hierarchy)
+        self.outside = outside
+        self._task = task.task if outside is None else with_outside(task.task, outside)
+        """The task as it is searched for: with what is outside, if it is the inside of a composite."""
         self._given: Mapping[IRI, Advertisement] | None = None
         self._ecology = AdvertisementIndex({})
         self._partition = Partition(())
@@ -108,6 +116,8 @@ class Composer:
             self._ecology = AdvertisementIndex.of(ecology)
             self._given = ecology if self._ecology is ecology else dict(ecology)
             self._partition = self.partitioner.partition(self._ecology)
+            if self.outside is not None:
+                self._partition = with_outside_candidate(self._partition, self._task, self.outside)
         return self._ecology
 
     def compose(
@@ -131,19 +141,22 @@ class Composer:
         out, by rules that share nothing with the search.
         """
         partition = self.partition(ecology)
+        lost -= {self.outside}  # the task that holds the composite is the one that its inside is for
+        if running is not None and self.outside is not None:
+            running = with_outside_player(running, self.outside)
         partition = partition.without(lost) if lost else partition
         if played is not None:
-            number = next(n for n, role in enumerate(self.task.task.template.roles) if role.iri == played[0])
+            number = next(n for n, role in enumerate(self._task.template.roles) if role.iri == played[0])
             partition = partition.with_only(number, played[1])
-        problem = Problem(self.task.task, partition, self.hierarchy)
+        problem = Problem(self._task, partition, self.hierarchy)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
         for answer in self._with_recruits(problem, self._with_additions(self._search, problem, running), running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
             if isinstance(outcome, Configuration):
-                wrong = certificate.broken_conditions(self.task.task, problem.partition, outcome, self.hierarchy)
+                wrong = certificate.broken_conditions(self._task, problem.partition, outcome, self.hierarchy)
                 if wrong:
                     raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
-                yield answer
+                yield answer if self.outside is None else inside_alone(outcome, self.outside)
             elif isinstance(outcome, Refusal) and outcome.reasons:
                 short = frozenset(reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible))
                 if short not in misses:
@@ -237,7 +250,10 @@ class Composer:
     def passed_over(self, configuration: Configuration) -> dict[IRI, list[IRI]]:
         """For each role of a configuration, the eligible components that come before the last one it chose."""
         passed: dict[IRI, list[IRI]] = {}
-        for assignment, candidates in zip(configuration.assignments, self._partition.candidates, strict=True):
+        # Without the last of the partition, which is what is outside of a composite.
+        for assignment, candidates in zip(
+            configuration.assignments, self._partition.candidates, strict=self.outside is None
+        ):
             order = [candidate.profile.component for candidate in candidates]
             chosen = [order.index(component) for component in assignment.components if component in order]
             passed[assignment.role] = [c for c in order[: max(chosen, default=0)] if c not in assignment.components]
@@ -263,8 +279,8 @@ class Composer:
 
         At most `STANDBY` candidates for each role that feeds, none of them lost.
         """
-        problem = Problem(self.task.task, self._partition.without(lost), self.hierarchy)
-        playing = set(configuration.components)
+        problem = Problem(self._task, self._partition.without(lost), self.hierarchy)
+        playing = {*configuration.components, self.outside}
         found: dict[IRI, dict[str, tuple[Wire, ...]]] = {}
         spare = [
             [candidate for candidate in candidates if candidate.profile.component not in playing][:STANDBY]

@@ -174,8 +174,22 @@ def end_deployment(state: State) -> Reaction:
         held={component: held for component, held in state.held.items() if component in wanted},
         owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},
         watched=state.watched & wanted,
+        rewired=frozenset(),
     )
-    return running, tuple(effects)
+    return then(effects, rewire(running, state.rewired)) if state.rewired else (running, tuple(effects))
+
+
+def rewire(state: State, components: frozenset[IRI]) -> Reaction:
+    """Apply once more to those that follow some components, behind whose outputs others stand now."""
+    held = {
+        one: replace(held, confirmed=held.confirmed and not _follows(held.inputs, components))
+        for one, held in state.held.items()
+    }
+    return deploy(replace(state, held=held))
+
+
+def _follows(inputs: InputWires, components: frozenset[IRI]) -> bool:
+    return any(wire.component in components for wires in inputs.values() for wire in wires)
 
 
 def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:

@@ -108,6 +108,13 @@ class Appeared:
 
 
 @dataclass(frozen=True, slots=True)
+class Rewired:
+    """Other outputs than before stand behind those of a component: who follows them has to be told."""
+
+    component: IRI
+
+
+@dataclass(frozen=True, slots=True)
 class Improvable:
     """What the task needs may be had from components that the strategy would rather have."""
 
@@ -133,6 +140,7 @@ Event = (
     | Freed
     | WaitedLong
     | Appeared
+    | Rewired
     | Improvable
     | Reconnected
     | Stopped

@@ -61,6 +61,7 @@ from selfconf.configurator.events import (
     HandedOver,
     Improvable,
     Reconnected,
+    Rewired,
     Stopped,
     WaitedLong,
 )
@@ -102,6 +103,8 @@ def step(state: State, event: Event) -> Reaction:
             return deploying.ask_again(state, event.component) if event.epoch == state.epoch else (state, ())
         case Appeared():
             return _appeared(state, event)
+        case Rewired():
+            return _rewired(state, event.component)
         case Improvable():
             return _improve(state)
         case Reconnected():
@@ -411,6 +414,13 @@ def _improved(state: State, event: Composed) -> Reaction:
     if not isinstance(better, Configuration) or better.assignments == state.target.assignments:
         return state, ()
     return deploying.deploy(replace(state, target=better, fallback=state.target))
+
+
+def _rewired(state: State, component: IRI) -> Reaction:
+    """Tell those that follow a component what stands behind its outputs now, once they are told what to follow."""
+    if state.phase is Phase.RUNNING:
+        return deploying.rewire(state, frozenset((component,)))
+    return (replace(state, rewired=state.rewired | {component}), ()) if state.phase in DEPLOYING else (state, ())
 
 
 def _reconnected(state: State) -> Reaction:

@@ -6,7 +6,7 @@ feed nothing, come last, when everything else acts. Coming to rest goes the othe
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 
 from selfconf.model.configuration import Configuration
@@ -19,9 +19,14 @@ InputWires = Mapping[str, tuple[Wire, ...]]
 
 
 def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
-    """For each component of a configuration, which outputs each of its inputs follows."""
+    """For each component of a configuration, which outputs each of its inputs follows.
+
+    Those of a composite that the configuration is the inside of are what is outside.
+    """
     wires: dict[IRI, dict[str, list[Wire]]] = {component: {} for component in configuration.components}
     for connection in configuration.connections:
+        if connection.sink not in wires:
+            continue  # a port of the whole: what follows it is outside
         wires[connection.sink].setdefault(connection.input, []).append(Wire(connection.source, connection.output))
     return {component: {port: tuple(w) for port, w in inputs.items()} for component, inputs in wires.items()}
 
@@ -30,7 +35,7 @@ def callers(configuration: Configuration) -> dict[IRI, dict[str, tuple[IRI, ...]
     """For each component of a configuration, which components may call each of its operations."""
     found: dict[IRI, dict[str, list[IRI]]] = {component: {} for component in configuration.components}
     for connection in configuration.connections:
-        if connection.output.endswith(CALL_MARK):
+        if connection.output.endswith(CALL_MARK) and connection.source in found:
             found[connection.source].setdefault(connection.output, []).append(connection.sink)
     return {component: {name: tuple(some) for name, some in calls.items()} for component, calls in found.items()}
 
@@ -60,14 +65,19 @@ def starting_order(configuration: Configuration) -> StartingOrder:
     rank = {component: number for number, component in enumerate(configuration.components)}
     feeders: dict[IRI, set[IRI]] = {component: set() for component in rank}
     fed: dict[IRI, list[IRI]] = {component: [] for component in rank}
-    for connection in configuration.connections:
-        if connection.source != connection.sink and connection.source not in feeders[connection.sink]:
-            feeders[connection.sink].add(connection.source)
-            fed[connection.source].append(connection.sink)
+    for source, sink in _joined(configuration, rank):
+        feeders[sink].add(source)
+        fed[source].append(sink)
     place = _placed(rank, feeders, fed)
     before = {c: frozenset(one for one in sources if place[one] < place[c]) for c, sources in feeders.items()}
     after = {c: tuple(one for one in sinks if c in before[one]) for c, sinks in fed.items()}
     return StartingOrder(before, after, frozenset(c for c, sinks in fed.items() if not sinks))
+
+
+def _joined(configuration: Configuration, known: Container[IRI]) -> Iterable[tuple[IRI, IRI]]:
+    """Which components are connected, each pair once; what is connected to itself, or to what is outside, left out."""
+    pairs = dict.fromkeys((one.source, one.sink) for one in configuration.connections)
+    return (pair for pair in pairs if pair[0] != pair[1] and pair[0] in known and pair[1] in known)
 
 
 def _placed(

@@ -104,6 +104,8 @@ class State:
     afterwards: Phase = Phase.STOPPED
     """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""
     refusal: Refusal | Undecided | None = None
+    rewired: frozenset[IRI] = frozenset()
+    """The components whose outputs are issued by others than before, since the deployment that goes on began."""
     news: bool = False
     """Whether something has appeared since the ecology was last asked."""
 

@@ -55,6 +55,8 @@ CALL = 2.0
 """Seconds that a component may take to answer a call before it is asked for its state."""
 STARTING = 8.0
 """Seconds that a component that lives, but does not answer, may take to obey a call: it may be in `started`."""
+MOST_PATIENCE = 60.0
+"""Seconds that a composite may ask for at most, until its inside runs."""
 PAUSE = 0.1
 """Seconds after which a component that has not answered a question for its state is asked again."""
 CALL_ATTEMPTS = 3
@@ -91,7 +93,13 @@ class Calls:
         state: Callable[[], State],
         step: Callable[[Event], None],
         report: EventListener,
+        outside: IRI | None = None,
+        received: Callable[[], Mapping[str, tuple[Wire, ...]]] = dict,
     ) -> None:
+        """`outside` is the composite of which the task is the inside, `received` what feeds its inputs now."""
+        self._outside, self._received = outside, received
+        self.issuing: dict[IRI, Mapping[str, tuple[Wire, ...]]] = {}
+        """For each composite that acts for the task, what stands behind its outputs."""
         self.bus, self.ecology, self.keys, self.identity = ecology.bus, ecology, ecology.keys, identity
         self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
         self._waking: dict[IRI, tuple[WakeUp, Undo]] = {}
@@ -315,6 +323,8 @@ class Calls:
             silent = not replies.samples and not replies.errors
             if answer is not None and self._obeyed(answer, call, message):
                 self._answered(component, call, message, answer)
+            elif answer is not None and current and self.bus.now() - began < min(answer.patience, MOST_PATIENCE):
+                self.bus.later(PAUSE, inspect)  # its inside is being started
             elif attempts > 1 and answer is not None and current and not hasty:
                 self._call(component, call, message, attempts - 1)
             elif silent and current and not hasty and self.bus.now() - began < STARTING:
@@ -345,6 +355,8 @@ class Calls:
             self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
             self._lives[component] = answer.life
+        if answer.verdict is Verdict.DONE and call is Call.APPLY:
+            self.issuing[component] = answer.outputs
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
@@ -377,7 +389,30 @@ class Calls:
         return self.ecology.life(component) is not None if held is None else self.ecology.lives_on(component, held)
 
     def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
-        return {port: tuple(map(self._promised, outputs)) for port, outputs in wires.items()}
+        """Wires with what stands behind them: outputs inside of a composite, or outside of this one."""
+        found = {port: tuple(one for wire in some for one in self._behind(wire)) for port, some in wires.items()}
+        return {port: some for port, some in found.items() if some}
+
+    def _behind(self, wire: Wire) -> tuple[Wire, ...]:
+        if wire.component == self._outside:
+            return self._received().get(wire.output, ())
+        inside = self.issuing.get(wire.component, {}).get(wire.output)
+        return (self._promised(wire),) if inside is None else inside
+
+    def issued_outside(self, configuration: Configuration) -> dict[str, tuple[Wire, ...]]:
+        """Which outputs stand behind those of the composite of which a configuration is the inside."""
+        ends: dict[str, tuple[Wire, ...]] = {}
+        for one in configuration.connections:
+            if one.sink == self._outside:
+                ends[one.input] = (*ends.get(one.input, ()), Wire(one.source, one.output))
+        return self._with_promises(ends)
+
+    def composite_around(self, component: IRI) -> IRI | None:
+        """The composite behind whose outputs a component stands, if it does."""
+        for composite, outputs in self.issuing.items():
+            if any(wire.component == component for wires in outputs.values() for wire in wires):
+                return composite
+        return None
 
     def _promised(self, wire: Wire) -> Wire:
         """A wire with the longest pause that the output's advertisement promises."""

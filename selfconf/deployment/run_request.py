@@ -38,6 +38,10 @@ class RunRequest:
     """The name of the task in the ecology; by default that of its template."""
     priority: int = 0
     """Of several tasks that want one component, the one of the highest priority has it."""
+    outside: IRI | None = None
+    """The composite of which the task is the inside, if it is one."""
+    received: Callable[[], Mapping[str, tuple[Wire, ...]]] = dict
+    """By which outputs outside each input of that composite is fed now."""
     upgrade: float | None = None
     """After how many seconds a component that the strategy would rather have is changed to; None: never."""
     patient: bool = False

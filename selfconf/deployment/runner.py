@@ -41,6 +41,7 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
+    Rewired,
     Stopped,
     WaitedLong,
 )
@@ -79,7 +80,9 @@ from selfconf.protocol.messages import (
     Cause,
     Fail,
     Free,
+    Moved,
     Status,
+    Wire,
 )
 
 log = logging.getLogger(__name__)
@@ -122,7 +125,16 @@ class TaskRunner:
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
-        self._calls = Calls(self.ecology, self.identity, self.supervisor, self._now, self._step, self._report)
+        self._calls = Calls(
+            self.ecology,
+            self.identity,
+            self.supervisor,
+            self._now,
+            self._step,
+            self._report,
+            request.outside,
+            request.received,
+        )
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
         self._record = DeploymentRecord(bus, self.keys, self.name, request, self.status, self.stop)
         self._notices = RunNotices(bus, self.keys, self.name, task)
@@ -140,6 +152,7 @@ class TaskRunner:
         self._subscriptions = [
             bus.subscribe(self.keys.any_fail(), self._received_fail, Urgency.EVENT),
             bus.subscribe(self.keys.any_free(), self._received_free, Urgency.EVENT),
+            bus.subscribe(self.keys.any_moved(), self._received_moved, Urgency.EVENT),
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
         ]
 
@@ -167,6 +180,15 @@ class TaskRunner:
     def configuration(self) -> Configuration | None:
         """What is deployed, or being deployed."""
         return self.state.target
+
+    def rewire(self) -> None:
+        """Tell those inside that follow what is outside that it has changed."""
+        if self.request.outside is not None:
+            self._step(Rewired(self.request.outside))
+
+    def issued_outside(self) -> dict[str, tuple[Wire, ...]]:
+        """Which outputs stand behind those of the composite of which the task is the inside."""
+        return {} if self.state.target is None else self._calls.issued_outside(self.state.target)
 
     def _step(self, event: Event) -> None:
         """Feed the machine; an event that an effect brings about comes after the other effects."""
@@ -430,8 +452,22 @@ class TaskRunner:
             return  # an older component names no task, and this one may be the one that asks
         if fail.cause is Cause.LET_GO and held is not None:
             log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
+        around = self._calls.composite_around(fail.component) if reported else None
         if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
+        elif around is not None and around in self._watched:
+            self._step(Failed(around, "", fail.cause, f"{fail.component.short} inside of it: {fail.detail}"))
+
+    def _received_moved(self, sample: Sample) -> None:
+        try:
+            moved = decode(sample.payload, Moved)
+        except PeerError as error:
+            log.warning("passed over a notice on %s: %s", sample.key, error)
+            return
+        mine = sample.key == self.keys.moved(moved.component) and moved.component in self.state.held
+        if mine and self.state.held[moved.component].life in ("", moved.life):
+            self._calls.issuing[moved.component] = moved.outputs
+            self._step(Rewired(moved.component))
 
     def _received_free(self, sample: Sample) -> None:
         try:

@@ -109,7 +109,7 @@ CODES: tuple[Code, ...] = (
         "Discovery looks for sc:Component; without the type the advertisement would be overlooked in silence.",
         ':tuner a rob:Tuner ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
-        ("ComponentTyped",),
+        ("ComponentTyped", "PortsTyped"),
     ),
     Code(
         "SC-A03", "A component says what kind of component it is.",
@@ -124,11 +124,15 @@ CODES: tuple[Code, ...] = (
         ("PreferenceOnce", "PreferenceNumber"),
     ),
     Code(
-        "SC-A05", "A component has at most one grounding, with at most one command.",
-        "The command is the command line with which the component's own site starts its process.",
+        "SC-A05", "A component has at most one grounding, with one command, or with one template.",
+        "The command is the command line with which the component's own site starts its process; the template is the "
+        "one of the task that a composite is inside.",
         f'{_TUNER} ; sc:grounding "radio-tuner --band fm" .',
         f'{_TUNER} ; sc:grounding [ a sc:Grounding ; sc:command "radio-tuner --band fm" ] .',
-        ("GroundingOnce", "GroundingNode", "CommandOnce", "CommandText"),
+        (
+            "GroundingOnce", "GroundingNode", "CommandOnce", "CommandText", "GroundingOfOneKind", "InsideOnce",
+            "InsideIri",
+        ),
     ),
     Code(
         "SC-A06", "A port or parameter is a node with properties.",
@@ -301,6 +305,17 @@ CODES: tuple[Code, ...] = (
         f"{_PAIR}\n:third a sc:Role ; sh:class rob:Display .\n[] a sc:Interaction ; sc:from :source ; sc:to :third .",
         f"{_PAIR}\n[] a sc:Interaction ; sc:from :source ; sc:to :sink .",
         ("InteractionListed",),
+    ),
+    Code(
+        "SC-T18", "A port of a template is that of one of its roles, with a name of its own and a signal type.",
+        "A composite whose inside is a task of the template has these ports; a port is joined to those of the players "
+        "of its role by type.",
+        f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :source ] .',
+        (
+            "TemplatePortOf", "TemplatePortRole", "TemplatePortSignal", "TemplatePortListed",
+            "TemplatePortNamesDistinct",
+        ),
     ),
     Code(
         "SC-T08", "A parameter of a template has an IRI and is a sc:Parameter.",

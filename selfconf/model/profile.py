@@ -278,6 +278,8 @@ class Profile:
     restarts: int | None = None
     """How often a minute its site starts it again after a crash, if it says so."""
     command: str | None = None
+    inside: IRI | None = None
+    """The template of the task that it is inside, if it is a composite."""
     place: Place | None = field(default=None, compare=False)
 
     @property

@@ -48,6 +48,17 @@ class Interaction:
 
 
 @dataclass(frozen=True, slots=True)
+class TemplatePort:
+    """A port that a template has itself: one that the players of a role have, for those outside of the template."""
+
+    name: str
+    signals: tuple[IRI, ...]
+    """The signal types, sorted."""
+    role: IRI
+    is_input: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """A parameter of a template; `in_shape` tells that some role's shape mentions it, so that it may stay free."""
 
@@ -71,6 +82,8 @@ class Template:
     """What the strategy `best` minimises, the most important level first; nothing if the template states none."""
     priority: int = 0
     """The priority of its tasks that state none of their own."""
+    ports: tuple[TemplatePort, ...] = ()
+    """What a task of it receives from outside, and gives: the ports of a component that is such a task."""
 
     def role(self, iri: IRI) -> Role:
         """The role of that IRI; KeyError if the template has none."""

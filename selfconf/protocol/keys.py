@@ -14,6 +14,7 @@
     selfconf/{ecology}/c/{shard}/{component}/out/{port}     what an output issues (put)
     selfconf/{ecology}/c/{shard}/{component}/fail           FAIL (put)
     selfconf/{ecology}/c/{shard}/{component}/free           it is free, and for whom (put)
+    selfconf/{ecology}/c/{shard}/{component}/moved          what issues the outputs of a composite (put)
     selfconf/{ecology}/c/{shard}/{component}/@op/{name}     an operation that it offers (call)
     selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    reserve, apply, release, state (call)
     selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
@@ -152,6 +153,9 @@ class Keys:
     def operations(self, component: IRI) -> str:
         return self._component(component, "@op/*")
 
+    def any_operation(self) -> str:
+        return f"selfconf/{self.ecology}/c/*/*/@op/*"
+
     def fail(self, component: IRI) -> str:
         return self._component(component, "fail")
 
@@ -164,6 +168,12 @@ class Keys:
     def any_free(self) -> str:
         return f"selfconf/{self.ecology}/c/*/*/free"
 
+    def moved(self, component: IRI) -> str:
+        return self._component(component, "moved")
+
+    def any_moved(self) -> str:
+        return f"selfconf/{self.ecology}/c/*/*/moved"
+
     def call(self, component: IRI, call: str = "*") -> str:
         return self._component(component, f"@ctl/{call}")
 
@@ -172,7 +182,8 @@ class Keys:
 
     def everything(self) -> tuple[str, ...]:
         """Every key of the ecology."""
-        return f"selfconf/{self.ecology}/**", f"selfconf/{self.ecology}/**/@ctl/**"
+        whole = f"selfconf/{self.ecology}/**"
+        return whole, f"{whole}/@ctl/**", f"{whole}/@op/**"
 
     def _configurator(self, name: str, rest: str) -> str:
         return f"selfconf/{self.ecology}/conf/{name}/{rest}"

@@ -143,6 +143,19 @@ class CallAnswer:
     """The resident memory of its process in bytes; zero where the system does not say."""
     issued: Mapping[str, int] = field(default_factory=dict)
     """How many signals each output has issued since the component lives."""
+    outputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    """Of a composite that acts: by which outputs inside of it each of its own is issued."""
+    patience: float = 0.0
+    """Of a composite whose inside is being started: for how many seconds the caller may wait for it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """The outputs of a composite are issued by others inside of it than before."""
+
+    component: IRI
+    life: str
+    outputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -352,6 +365,7 @@ Message = (
     | CallAnswer
     | Fail
     | Free
+    | Moved
     | Wake
     | Introduction
     | Access

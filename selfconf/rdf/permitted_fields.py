@@ -217,7 +217,9 @@ PARAMETER = Subject((PORT_NAME, PARAMETER_TYPE), SC.OperationalParameter)
 REQUEST, RESPONSE = Field(SC.request, RESOURCE), Field(SC.response, RESOURCE)
 OPERATION = Subject((PORT_NAME, REQUEST, RESPONSE, Field(SC.optional, TRUE_OR_FALSE, most=0)), SC.Operation)
 NEEDED_OPERATION = Subject((PORT_NAME, REQUEST, RESPONSE, Field(SC.optional, TRUE_OR_FALSE)), SC.Operation)
-GROUNDING = Subject((Field(SC.command, COMMAND_LINE),), SC.Grounding)
+GROUNDING = Subject(
+    (Field(SC.command, COMMAND_LINE), Field(SC.template, RESOURCE), Field(SC.binding, NODE, most=None)), SC.Grounding
+)
 COMPONENT = Subject(
     (
         Field(TYPE, RESOURCE, least=2, most=None),  # sc:Component, and what kind of component it is

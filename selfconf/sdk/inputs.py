@@ -20,7 +20,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 from selfconf import ros_messages
 from selfconf.bus.port import Bus, Replies, Sample, Undo
@@ -72,8 +72,51 @@ class InputEvents:
     """An input has lost its last source."""
 
 
+class InputFollower(Protocol):
+    """What does as the calls of a configurator say about inputs: the inputs of code, or the inside of a composite."""
+
+    ending: bool
+    """Whether what it did for the last activation has not come to rest yet."""
+
+    @property
+    def settled(self) -> bool:
+        """Whether it does what it was told."""
+        ...
+
+    @property
+    def patience(self) -> float:
+        """For how many seconds its caller may wait until it is settled; zero: as long as for any component."""
+        ...
+
+    @property
+    def issued(self) -> Mapping[str, tuple[Wire, ...]]:
+        """Which outputs stand behind those of the component, if they are others."""
+        ...
+
+    @property
+    def dropped(self) -> int:
+        """How many signals were dropped."""
+        ...
+
+    def follow(self, message: Apply) -> None:
+        """Do as a call says."""
+        ...
+
+    def when_settled(self, action: Callable[[], None]) -> None:
+        """Do something once what the call has said is done."""
+        ...
+
+    def end(self) -> None:
+        """Follow nothing."""
+        ...
+
+
 class Inputs:
     """The subscriptions of one component, by input and output."""
+
+    ending = False
+    settled = True
+    patience = 0.0
 
     def __init__(
         self,
@@ -162,6 +205,11 @@ class Inputs:
     def dropped(self) -> int:
         """How many signals were dropped because the component's code was too slow."""
         return self._dropped + sum(subscription.dropped for subscription in self._subscriptions.values())
+
+    @property
+    def issued(self) -> Mapping[str, tuple[Wire, ...]]:
+        """Nothing: the component issues its own outputs."""
+        return {}
 
     @property
     def followed(self) -> set[tuple[str, Wire]]:

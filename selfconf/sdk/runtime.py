@@ -42,7 +42,7 @@ from selfconf.protocol.messages import (
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
-from selfconf.sdk.inputs import InputEvents, Inputs
+from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
 from selfconf.sdk.operations import Operations
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
 from selfconf.sdk.supervision import Supervision
@@ -82,10 +82,12 @@ class ComponentRuntime:
         code_thread: CodeThread | None = None,
         superseded: Callable[[str], None] = lambda reason: None,
         fields: Mapping[IRI, SignalFields] | None = None,
+        inputs: InputFollower | None = None,
     ) -> None:
         """`superseded` is called when another process is the same component, and this one has to go.
 
-        `fields` are those of the kinds of signals that the component emits, as far as they are known.
+        `fields` are those of the kinds of signals that the component emits, as far as they are known. `inputs` does as
+        the calls of configurators say, in the place of inputs that the code reads.
         """
         self.bus, self.keys, self.profile, self.component = bus, keys, profile, component
         self.life = life or secrets.token_hex(4)
@@ -115,7 +117,7 @@ class ComponentRuntime:
             partial(self.fail, cause=Cause.MALFORMED),
         )
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
-        self.inputs = Inputs(bus, keys, thread, profile, heard, component.signal_value)
+        self.inputs: InputFollower = inputs or Inputs(bus, keys, thread, profile, heard, component.signal_value)
         self.operations = Operations(
             bus,
             keys,
@@ -340,7 +342,7 @@ class ComponentRuntime:
             self.profile.component,
             self.life,
             self.activation.epoch_of(task),
-            self.code.started and hold is not None and hold.active,
+            self.code.started and self.inputs.settled and hold is not None and hold.active,
             detail,
             claim.supervisor,
             claim.task,
@@ -348,6 +350,8 @@ class ComponentRuntime:
             claim.beginning,
             f"process {os.getpid()} on {socket.gethostname()}",
             self.inputs.dropped,
+            self.inputs.issued,
+            self.inputs.patience,
         )
 
     def _busy(self, task: str) -> CallAnswer:
@@ -421,16 +425,17 @@ class ComponentRuntime:
         self._timers.clear()
         self.inputs.end()
         self.operations.end()
-        self.code.stop(self._at_rest)
+        self.code.stop(self.at_rest)
 
     def _when_at_rest(self, action: Callable[[], None]) -> None:
         """Do something once the code that was stopped is at rest; at once if it is."""
-        if self.code.stopping:
+        if self.code.stopping or self.inputs.ending:
             self._after_stop.append(action)
         else:
             action()
 
-    def _at_rest(self) -> None:
+    def at_rest(self) -> None:
+        """Go on with what waits for the component to be at rest, if it is."""
         waiting, self._after_stop = self._after_stop, []
         for action in waiting:
             self._when_at_rest(action)

@@ -56,12 +56,13 @@ class Site:
         life: str = "",
         keys_of: Callable[[IRI], Path] | None = None,
         insecure: bool = False,
+        changed: Callable[[Mapping[IRI, Advertisement]], None] = lambda advertisements: None,
     ) -> None:
         """`environment` is what a started component finds its ecology by; None: this site starts none.
 
         `log_path` is the file that keeps what components print; None: it is only shown. `keys_of` makes the folder of
         keys of the process of a component; None: there are no keys. `insecure` is told to whoever asks: the site
-        listens beyond its host without keys.
+        listens beyond its host without keys. `changed` hears what is on the shelf, now and each time that it has changed.
         """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
         self.processes = ComponentProcesses(bus, self.keys, environment, log_path, keys_of)
@@ -71,6 +72,7 @@ class Site:
         self.programs: dict[IRI, IRI] = {}
         """The components of this site, each with the one that stands for its process, which has the certificate."""
         self._revision = 1
+        self._changed = changed
         shelf.refresh()
         self._served: list[_ServedAdvertisement] = []
         self._served = self._read_shelf()
@@ -79,6 +81,7 @@ class Site:
         bus.serve(self.keys.wake(name), self._wake)
         bus.serve(self.keys.end(name), self._end)
         bus.announce(self.keys.site_life(name, self.life))  # last: from now on it is asked
+        self._changed(shelf.advertisements)
         self._look()
 
     def close(self) -> None:
@@ -128,6 +131,7 @@ class Site:
             self._revision += 1
             self._served = self._read_shelf()
             self._notify.put(encode(Page(0, len(self._served), self._revision)))
+            self._changed(self.shelf.advertisements)
             log.info("%d advertisements", len(self._served))
 
     def _answer(self, request: Request) -> None:

@@ -9,6 +9,7 @@ from typing import TypeVar
 from selfconf import files, library
 from selfconf.api.answer import Method
 from selfconf.api.arguments import Paths, listed_paths
+from selfconf.api.composites import Composites
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.memory import Faults, MemoryBus, Network
@@ -21,6 +22,7 @@ from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.turtle import Document, parse
 from selfconf.sdk import Component
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Shelf, Site
@@ -120,7 +122,14 @@ class MemoryEcology:
         self._ontologies = [file for path in listed_paths(ontologies) for file in files.within(Path(path))]
         self.network = Network(seed, faults)
         self._shelf = _MemoryShelf()
-        self._site = Site(self.network.node(), ECOLOGY_NAME, "site", self._shelf)
+        node = self.network.node()
+        self._documents: dict[IRI, Document] = {}
+        self.complaints: list[str] = []
+        """Why composites do not live."""
+        self._composites = Composites(
+            node, ECOLOGY_NAME, lambda one: self._documents[one.component], self.complaints.append
+        )
+        self._site = Site(node, ECOLOGY_NAME, "site", self._shelf, changed=self._composites.refresh)
         self._runtimes: dict[IRI, tuple[ComponentRuntime, MemoryBus]] = {}
 
     @property
@@ -153,6 +162,9 @@ class MemoryEcology:
     def advertise(self, advertisement: str | Path) -> IRI:
         """Advertise a component that no process runs; returns its IRI."""
         found = _advertisement(None, advertisement)
+        if found.profile.inside is not None:
+            text, source, base = text_of(advertisement)
+            self._documents[found.component] = parse(text, source, base)
         self._shelf.put(found)
         return found.component
 

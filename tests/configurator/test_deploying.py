@@ -30,6 +30,7 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
+    Rewired,
     WaitedLong,
 )
 from selfconf.configurator.order import wiring
@@ -224,6 +225,25 @@ def test_a_change_for_the_better_is_made_before_the_old_source_is_let_go() -> No
     effects = history.answer(CONTROL, Call.APPLY)
     assert effects == [Running(navigation()), ReleaseFrom(ODOMETRY, history.state.epoch), Unwatch(ODOMETRY)]
     assert history.state.owed.keys() == {ODOMETRY}
+
+
+def test_who_follows_a_component_behind_which_others_stand_now_is_applied_to_again_and_nobody_else() -> None:
+    history = History(TASK).running(navigation())
+    effects = history.hear(Rewired(TRACKER))
+    assert applied(effects) == [CONTROL]
+    assert history.answer(CONTROL, Call.APPLY) == [Running(navigation())]
+    assert applied(history.hear(Rewired(IRI("urn:c:stranger")))) == []
+
+
+def test_what_moves_while_a_configuration_is_deployed_is_told_at_its_end() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    history.hear(Improvable())
+    history.composed(navigation())
+    assert history.hear(Rewired(TRACKER)) == []
+    assert applied(history.answer(TRACKER, Call.WAKE)) == [TRACKER]
+    assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
+    assert applied(history.answer(CONTROL, Call.APPLY)) == [CONTROL]  # once more, with what stands behind now
+    assert history.answer(CONTROL, Call.APPLY) == [Running(navigation())]
 
 
 def test_what_gets_another_input_waits_for_its_source() -> None:

@@ -35,6 +35,7 @@ from selfconf.configurator.events import (
     HandedOver,
     Improvable,
     Reconnected,
+    Rewired,
     Stopped,
     WaitedLong,
 )
@@ -87,6 +88,7 @@ ONE_OF_EACH: list[Event] = [
     Appeared({TRACKER: "1"}),
     Appeared({TRACKER: "2", ODOMETRY: "1"}),
     Improvable(),
+    *(Rewired(component) for component in EVERYBODY),
     Reconnected(),
     Stopped(),
 ]
@@ -300,6 +302,7 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
             Freed(component),
             WaitedLong(component, state.epoch - how % 2),
             Improvable(),
+            Rewired(component),
             Adopted(when, navigation()),
             *([HandedOver()] if how == when else []),
         ]

@@ -104,7 +104,7 @@ MUTATIONS = {
         {"selfconf.sdk.component_code.TOLERATES": 1e9}, (Action(2.0, "mute", "control", "drive"), LATER)
     ),
     "who hangs has failed": Mutation({f"{RUNTIME}.hung": nothing}, (Action(0.0, "slow", "drive", "", 12.0),)),
-    "what waits is bounded": Mutation({f"{LIVENESS}.AUDIT": 0.05, f"{CALLS}.CALL_MARK": 100.0}),
+    "what waits is bounded": Mutation({f"{LIVENESS}.AUDIT": 0.05, f"{CALLS}.CALL": 100.0}),
     "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
     "nobody waits in vain": Mutation(
         {

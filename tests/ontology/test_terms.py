@@ -44,7 +44,7 @@ NAMED_IN_THE_MANUAL = re.findall(
     input sets value minCount maxCount Port OperationalParameter Setting Grounding Binding Assignment rate unit
     command template binding task assignment connection setting role component epoch cause detail replaces passedOver
     cost term property weight otherwise ofRole shareable tolerates deadline restarts depth priority
-    optional accepts frame Operation hasOperation needsOperation request response recruits recruited
+    optional accepts frame Operation hasOperation needsOperation request response recruits recruited of
     """,
 )
 

@@ -17,6 +17,7 @@ from selfconf.protocol.messages import (
     Free,
     Introduction,
     Known,
+    Moved,
     Notice,
     Page,
     RefusedAttempt,
@@ -57,6 +58,7 @@ literals = st.one_of(
 terms = st.one_of(iris, st.builds(lambda label: BlankNode(f"_:{label}"), texts), literals)
 wires = st.builds(Wire, iris, names, st.none() | st.floats(min_value=1e-3, max_value=1e6))
 inputs = st.dictionaries(names, st.lists(wires, max_size=3).map(tuple), max_size=3)
+callers = st.dictionaries(names, st.lists(iris, max_size=3).map(tuple), max_size=3)
 plain: st.SearchStrategy[Any] = st.recursive(
     st.none() | st.booleans() | numbers | texts,
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(texts, inner, max_size=3),
@@ -74,7 +76,7 @@ claim: dict[str, st.SearchStrategy[Any]] = {
 """What every call says."""
 by_kind: dict[type, st.SearchStrategy[Any]] = {
     Reserve: st.builds(Reserve, **claim, inputs=inputs, values=values, waits=st.booleans()),
-    Apply: st.builds(Apply, **claim, inputs=inputs, standby=inputs, values=values),
+    Apply: st.builds(Apply, **claim, inputs=inputs, standby=inputs, values=values, callers=callers),
     Release: st.builds(Release, **claim),
     StateOf: st.builds(StateOf, texts),
     Notice: st.builds(Notice, names, numbers, texts, st.dictionaries(texts, plain, max_size=3)),
@@ -95,12 +97,15 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
         seconds,
         numbers,
         st.dictionaries(texts, numbers, max_size=3),
+        inputs,
+        seconds,
     ),
     Fail: st.builds(Fail, iris, texts, numbers, st.sampled_from(Cause), texts),
     Free: st.builds(Free, iris, texts, texts),
     Introduction: st.builds(Introduction, texts, st.booleans()),
     Access: st.builds(Access, texts, texts, *[st.lists(names, max_size=2).map(tuple)] * 4),
     RefusedAttempt: st.builds(RefusedAttempt, texts, texts, texts, numbers, seconds),
+    Moved: st.builds(Moved, iris, texts, inputs),
     Known: st.builds(Known, st.dictionaries(names, numbers, max_size=3)),
     Wake: st.builds(Wake, iris),
     End: st.builds(End, iris, texts),

@@ -154,6 +154,8 @@ def _merged(component: IRI, types: frozenset[IRI], statements: tuple[Statement, 
         elif statement.predicate in _SETTINGS:
             member = _SETTINGS[statement.predicate]
             settings[member] = getattr(part, member)
+            if part.inside is not None:
+                settings["inside"] = part.inside
     properties.sort()
     return Profile(
         component,

@@ -121,6 +121,7 @@ class _Reader:
             deadline=self._quantity(self.component, COMPONENT[SC.deadline], "the sc:deadline of a component"),
             restarts=self._restarts(),
             command=self._command(),
+            inside=self._inside(),
             place=Place(self.document.source),
         )
 
@@ -264,6 +265,17 @@ class _Reader:
             self._problem(f"{what} is [ sc:value NUMBER ; sc:unit {unit} ], above zero")
             return None
         return float(number(self.document.values(quantity, SC.value)[0]) or 0)
+
+    def _inside(self) -> IRI | None:
+        """The template of a composite, if it is one."""
+        field = COMPONENT[SC.grounding]
+        template = self.document.value(self.component, SC.grounding)
+        if template is None or not self.document.values(template, SC.template):
+            return None
+        value = self._required(template, field.into[SC.template])
+        if value is None or self.document.values(template, SC.command):
+            self._problem("a grounding has a sc:command or one sc:template, an IRI")
+        return value if isinstance(value, IRI) else None
 
     def _command(self) -> str | None:
         field = COMPONENT[SC.grounding]

@@ -1,7 +1,7 @@
 """Templates and tasks: read from RDF, with values bound to their parameters.
 
-`TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one, and `placed` finds the line
-and column of an error that it raises. `bind`, `complete` and
+`TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one, `read_inside` the one that
+a composite is inside, and `placed` finds the line and column of an error that they raise. `bind`, `complete` and
 `read_term` give parameters their values, `suitable` and `misfits` tell which values a parameter can and cannot have,
 and `free_parameters` which ones are left. `mentions`, `shape_statements` and `ROLE_STRUCTURE` are for readers
 of the roles' shapes.
@@ -11,7 +11,7 @@ from selfconf.rdf.tasks.bindings import bind, complete, free_parameters, read_te
 from selfconf.rdf.tasks.mistakes import placed
 from selfconf.rdf.tasks.parameter_values import misfits, suitable
 from selfconf.rdf.tasks.role_shapes import ROLE_STRUCTURE, mentions, shape_statements
-from selfconf.rdf.tasks.templates import TaskDocument, read_task
+from selfconf.rdf.tasks.templates import TaskDocument, read_inside, read_task
 
 __all__ = [
     "ROLE_STRUCTURE",
@@ -22,6 +22,7 @@ __all__ = [
     "mentions",
     "misfits",
     "placed",
+    "read_inside",
     "read_task",
     "read_term",
     "shape_statements",

@@ -21,6 +21,7 @@ from selfconf.rdf.tasks.interactions import interactions_of
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.tasks.parameters import parameters_of
 from selfconf.rdf.tasks.role_shapes import shape_triples
+from selfconf.rdf.tasks.template_ports import ports_of
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, SH, TYPE, XSD
 
@@ -61,6 +62,16 @@ def read_task(document: Document, wanted: IRI | None = None) -> TaskDocument:
     if chosen in tasks:
         return TaskDocument(_Reader(document).task(chosen), document)
     return TaskDocument(Task(_Reader(document).template(chosen)), document)
+
+
+def read_inside(document: Document, component: IRI) -> TaskDocument:
+    """The task that a composite is inside, from the document that advertises it. Raises TemplateError."""
+    grounding = document.value(component, SC.grounding)
+    if grounding is None or isinstance(grounding, Literal) or not document.values(grounding, SC.template):
+        raise TemplateError(
+            f"{worded(component)} is no composite: its grounding has no sc:template", file=document.source
+        )
+    return TaskDocument(_Reader(document).task(grounding), document)
 
 
 class _Reader(DocumentReader):
@@ -105,6 +116,7 @@ class _Reader(DocumentReader):
             label=self._label(template),
             cost=cost_of(self.document, template, frozenset(role.iri for role in roles)),
             priority=self._priority(template) or 0,
+            ports=ports_of(self.document, template, roles),
         )
 
     def _priority(self, subject: Node) -> int | None:

@@ -110,6 +110,7 @@ def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.
     advertisements = _Advertisements(statements)
     found.clear = (
         found.clear
+        and SC.template not in found.used  # a composite has that or a command
         and all(_harmless(properties) and advertisements.rated(properties) for properties in statements.values())
         and all(advertisements.clear(component) for component in found.components)
         and _owned(statements)

@@ -20,7 +20,7 @@ from selfconf.rdf.vocabulary import RDFS, ROB, SC, UNIT
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 BAD = Path(__file__).resolve().parents[2] / "bad"
-UNDECLARED = {"component-untyped", "run-untyped"}
+UNDECLARED = {"component-untyped", "ports-of-neither", "run-untyped"}
 """Files about something that says nowhere that it is a component."""
 PORT = '[ sc:name "a" ; sc:signalType :S'
 Read = tuple[list[Advertisement], list[MalformedAdvertisement]]

@@ -1,0 +1,44 @@
+"""The ports that a template has itself: each is a port of the players of one of its roles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from selfconf.model.profile import CALL_MARK
+from selfconf.model.template import Role, TemplatePort
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.tasks.mistakes import DocumentReader, worded
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import SC
+
+
+def ports_of(document: Document, template: IRI, roles: tuple[Role, ...]) -> tuple[TemplatePort, ...]:
+    """The ports of a template with some roles, inputs first, by name. Raises TemplateError."""
+    found = [*_PortReader(document).ports(template, frozenset(role.iri for role in roles))]
+    return tuple(sorted(found, key=lambda port: (not port.is_input, port.name)))
+
+
+class _PortReader(DocumentReader):
+    """Reads the ports of a template; every method raises TemplateError with a sentence for the author."""
+
+    def ports(self, template: IRI, roles: frozenset[IRI]) -> Iterator[TemplatePort]:
+        for link in (SC.hasInput, SC.hasOutput):
+            names: set[str] = set()
+            for node in self.document.values(template, link):
+                what = f"a sc:{link.short} of the template {worded(template)}"
+                name = self.only(node, SC.name, f"{what} has exactly one sc:name, a string")
+                if not isinstance(name, Literal) or not name.lexical or name.lexical.endswith(CALL_MARK):
+                    raise self.mistake(f"{what} has exactly one sc:name, a string", node, SC.name, name)
+                if name.lexical in names:
+                    problem = f"{what} is called {name.lexical!r}, and another one as well"
+                    raise self.mistake(problem, template, link, node)
+                names.add(name.lexical)
+                role = self.only(node, SC.of, f"{what} is that of exactly one role, sc:of")
+                if role not in roles or not isinstance(role, IRI):
+                    problem = f"{what} is that of {worded(role)}, which is no role of the template"
+                    raise self.mistake(problem, node, SC.of, role)
+                signals = self.document.values(node, SC.signalType)
+                if not signals or not all(isinstance(one, IRI) for one in signals):
+                    raise self.mistake(f"{what} has signal types, which are IRIs", node, SC.signalType, *signals)
+                types = tuple(sorted(one for one in signals if isinstance(one, IRI)))
+                yield TemplatePort(name.lexical, types, role, link == SC.hasInput)

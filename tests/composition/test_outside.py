@@ -1,0 +1,66 @@
+"""What is outside of a composite plays in its inside: it issues what the template receives, and needs what it gives."""
+
+from __future__ import annotations
+
+from selfconf.composition import Composer
+from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
+from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.partition import Partition
+from selfconf.model.refusal import InputUnfed, Refusal
+from selfconf.model.template import Interaction, Role
+from selfconf.rdf import tasks
+from selfconf.rdf.advertisements import read_advertisements
+from selfconf.rdf.turtle import parse
+from tests.lab import PREFIXES, iri
+
+TEXT = f"""{PREFIXES}
+:whole a sc:Component, :Whole ; sc:grounding [ sc:template :localise ] ;
+    sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ] ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] .
+:localise a sc:Template ; sc:roles ( :tracker ) ;
+    sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ; sc:of :tracker ] ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker ] .
+:tracker a sc:Role ; sh:class :Tracker .
+"""
+TRACKER = """:t a sc:Component, :Tracker ; sc:hasInput [ sc:name "help" ; sc:signalType :Hint ] ;
+    sc:hasOutput [ sc:name "where" ; sc:signalType :Pose ] ."""
+WHOLE, TRACKER_ROLE = iri("whole"), iri("tracker")
+
+
+def answered(tracker: str) -> object:
+    """The inside of the composite with one tracker."""
+    composer = Composer(tasks.read_inside(parse(TEXT, "t.ttl"), WHOLE), outside=WHOLE)
+    found, _ = read_advertisements((PREFIXES + tracker).encode(), "ads.ttl")
+    return composer.compose({one.component: one for one in found}, frozenset((WHOLE,)), None)
+
+
+def test_ports_are_joined_by_type_to_those_of_the_players_of_their_roles() -> None:
+    found = answered(TRACKER)
+    assert isinstance(found, Configuration)
+    assert found.components == (iri("t"),)
+    assert set(found.connections) == {
+        Connection(WHOLE, "hint", iri("t"), "help"),
+        Connection(iri("t"), "where", WHOLE, "pose"),
+    }
+
+
+def test_an_inside_that_does_not_give_what_the_template_promises_is_refused() -> None:
+    found = answered(TRACKER.replace(":Pose", ":Guess"))
+    assert isinstance(found, Refusal)
+    (reason,) = found.reasons
+    assert isinstance(reason, InputUnfed)
+    assert (reason.role, reason.input, reason.sources) == (WHOLE, "pose", (TRACKER_ROLE,))
+
+
+def test_what_is_outside_is_a_role_of_its_own_that_is_left_out_in_the_end() -> None:
+    task = tasks.read_inside(parse(TEXT, "t.ttl"), WHOLE).task
+    whole = with_outside(task, WHOLE)
+    assert whole.template.roles == (*task.template.roles, Role(WHOLE))
+    assert whole.template.interactions == (
+        Interaction(WHOLE, TRACKER_ROLE, "hint"),
+        Interaction(TRACKER_ROLE, WHOLE, None, "pose"),
+    )
+    ((outside,),) = with_outside_candidate(Partition(()), whole, WHOLE).candidates
+    assert [port.name for port in outside.profile.inputs] == ["pose"]
+    assert [port.name for port in outside.profile.outputs] == ["hint"]
+    inside = Configuration(task.template.iri, ())
+    assert inside_alone(with_outside_player(inside, WHOLE), WHOLE) == inside
