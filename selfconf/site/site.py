@@ -62,7 +62,7 @@ class Site:
 
         `log_path` is the file that keeps what components print; None: it is only shown. `keys_of` makes the folder of
         keys of the process of a component; None: there are no keys. `insecure` is told to whoever asks: the site
-        listens beyond its host without keys. `changed` hears what is on the shelf, now and each time that it has changed.
+        listens beyond its host without keys. `changed` hears what is on the shelf, now and when that is another.
         """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
         self.processes = ComponentProcesses(bus, self.keys, environment, log_path, keys_of)
