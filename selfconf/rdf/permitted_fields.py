@@ -61,7 +61,7 @@ class ValueKind:
 
 # A literal with a language has the datatype rdf:langString, so a test for xsd:string refuses it.
 RESOURCE = ValueKind("an IRI", rf"<((?!{SKOLEM})[^<>]*)>", iri=_always)
-NAME = ValueKind(
+NAME_TEXT = ValueKind(
     "a string that is not empty and does not end in ()",
     r'"([^"\\]*[^"\\)])"',
     literal=lambda lexical, datatype: datatype == STRING and lexical != "" and not lexical.endswith(CALL_MARK),
@@ -186,7 +186,7 @@ PERMITTED_IN_SHAPES = frozenset((TYPE, RDF.first, RDF.rest)).union(
 )  # fmt: skip
 """What may be said in the shape of `sc:accepts`: SHACL Core, without targets."""
 
-PORT_NAME = Field(SC.name, NAME, least=1, distinct=True)
+PORT_NAME = Field(SC.name, NAME_TEXT, least=1, distinct=True)
 SIGNAL_TYPE = Field(SC.signalType, RESOURCE, most=None)
 PARAMETER_TYPE = Field(SC.parameterType, RESOURCE, least=1)
 PORT = (PORT_NAME, SIGNAL_TYPE, Field(SC.unit, RESOURCE), Field(SC.frame, NAMED_OR_TEXT))

@@ -29,7 +29,7 @@ from selfconf.rdf.permitted_fields import (
     HERTZ,
     INPUT,
     MOST,
-    NAME,
+    NAME_TEXT,
     NAMED_OR_TEXT,
     NEEDED_OPERATION,
     NODE,
@@ -72,7 +72,7 @@ TARGETS: dict[Node, tuple[Subject, ...]] = {
 """What the node shapes of the file speak of, by the class or the property that makes it their target."""
 ASKED: dict[int, set[tuple[str, object]]] = {
     id(RESOURCE): {("nodeKind", SH.IRI)},
-    id(NAME): {("datatype", XSD.string), ("minLength", 1), ("pattern", "([^)]|(^|[^(])[)])$")},
+    id(NAME_TEXT): {("datatype", XSD.string), ("minLength", 1), ("pattern", "([^)]|(^|[^(])[)])$")},
     id(COMMAND_LINE): {("datatype", XSD.string), ("pattern", r"\S")},
     id(NUMBER): {("node", URIRef(SHAPES.Number))},
     id(POSITIVE): {("node", URIRef(SHAPES.Number)), ("minExclusive", 0)},
@@ -246,7 +246,7 @@ def test_shape_and_careful_reader_agree_on_any_value_anywhere(place: tuple[Field
 
 @pytest.mark.parametrize(
     "kind",
-    [RESOURCE, NAME, COMMAND_LINE, NUMBER, POSITIVE, HERTZ, SECOND, COUNT, COUNT_FROM_ONE, TRUE_OR_FALSE],
+    [RESOURCE, NAME_TEXT, COMMAND_LINE, NUMBER, POSITIVE, HERTZ, SECOND, COUNT, COUNT_FROM_ONE, TRUE_OR_FALSE],
     ids=lambda kind: str(kind.words),
 )
 def test_what_the_fast_loader_recognises_is_of_the_kind(kind: ValueKind) -> None:

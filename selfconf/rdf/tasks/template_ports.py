@@ -12,7 +12,7 @@ from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
 
 
-def ports_of(document: Document, template: IRI, roles: tuple[Role, ...]) -> tuple[TemplatePort, ...]:
+def template_ports(document: Document, template: IRI, roles: tuple[Role, ...]) -> tuple[TemplatePort, ...]:
     """The ports of a template with some roles, inputs first, by name. Raises TemplateError."""
     found = [*_PortReader(document).ports(template, frozenset(role.iri for role in roles))]
     return tuple(sorted(found, key=lambda port: (not port.is_input, port.name)))

@@ -21,7 +21,7 @@ from selfconf.rdf.tasks.interactions import interactions_of
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.tasks.parameters import parameters_of
 from selfconf.rdf.tasks.role_shapes import shape_triples
-from selfconf.rdf.tasks.template_ports import ports_of
+from selfconf.rdf.tasks.template_ports import template_ports
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, SH, TYPE, XSD
 
@@ -116,7 +116,7 @@ class _Reader(DocumentReader):
             label=self._label(template),
             cost=cost_of(self.document, template, frozenset(role.iri for role in roles)),
             priority=self._priority(template) or 0,
-            ports=ports_of(self.document, template, roles),
+            ports=template_ports(self.document, template, roles),
         )
 
     def _priority(self, subject: Node) -> int | None:
