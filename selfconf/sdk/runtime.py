@@ -350,8 +350,8 @@ class ComponentRuntime:
             claim.beginning,
             f"process {os.getpid()} on {socket.gethostname()}",
             self.inputs.dropped,
-            self.inputs.issued,
-            self.inputs.patience,
+            outputs=self.inputs.issued,
+            patience=self.inputs.patience,
         )
 
     def _busy(self, task: str) -> CallAnswer:
