@@ -79,7 +79,7 @@ class _Check:
         return players
 
     def _connections(self, players: Players) -> Iterator[str]:
-        possible = self._possible_connections(players)
+        possible = set(self._possible_connections(players))
         actual = Counter(self.configuration.connections)
         extra = sorted(set(actual) - possible)
         if self.configuration.recruits:
@@ -141,41 +141,43 @@ class _Check:
             return False
         output = profiles[connection.source].output(connection.output)
         wanted = next((port for port in profiles[connection.sink].inputs if port.name == connection.input), None)
-        return output is not None and wanted is not None and self._may_feed(output, wanted, by_name=False)
-
-    def _possible_connections(self, players: Players) -> set[Connection]:
-        """Return every pair of an output and an input that match along an interaction."""
-        return {
-            Connection(source.profile.component, output.name, sink.profile.component, wanted.name)
-            for interaction in self.template.interactions
-            for source in players[interaction.source]
-            for sink in players[interaction.sink]
-            for output in source.profile.outputs
-            if interaction.output is None or interaction.output == output.name
-            for wanted in sink.profile.inputs
-            if interaction.input is None or interaction.input == wanted.name
-            if self._may_feed(output, wanted, by_name=None not in (interaction.output, interaction.input))
-        }
-
-    def _may_feed(self, output: Output, wanted: Input, by_name: bool) -> bool:
-        """Return whether types and conditions allow an output to feed an input; `by_name` where both are named."""
-        if not any(self._same_kind(one, other) for one in output.signals for other in wanted.signals) and not (
-            by_name and () in (output.signals, wanted.signals)
-        ):
+        if output is None or wanted is None:
             return False
-        unit, frame, shape, sent = wanted.condition or (None, None, None, None)
-        return (
-            (output.unit == unit or None in (output.unit, unit))
-            and (output.frame == frame or None in (output.frame, frame))
-            and (shape is None or shape in output.conforms)
-            and (sent is None or not output.signals or self._takes(output.request, sent.type))
-        )
+        return any(True for _ in self._fed_by(output, [(connection.sink, wanted)], by_name=False))
 
-    def _same_kind(self, offered: IRI, wanted: IRI) -> bool:
-        """Return whether a signal type, or the response of an operation, serves where another is wanted."""
-        if not isinstance(offered, Operation) or not isinstance(wanted, Operation):
-            return type(offered) is type(wanted) and self.hierarchy.matches(offered, wanted)
-        return self._takes(wanted.response, offered.response)
+    def _possible_connections(self, players: Players) -> Iterator[Connection]:
+        """Yield every pair of an output and an input that match along an interaction."""
+        for interaction in self.template.interactions:
+            by_name = None not in (interaction.output, interaction.input)
+            inputs = [
+                (candidate.profile.component, wanted)
+                for candidate in players[interaction.sink]
+                for wanted in candidate.profile.inputs
+                if interaction.input is None or interaction.input == wanted.name
+            ]
+            for source in players[interaction.source]:
+                for output in source.profile.outputs:
+                    if interaction.output is None or interaction.output == output.name:
+                        for sink, wanted in self._fed_by(output, inputs, by_name):
+                            yield Connection(source.profile.component, output.name, sink, wanted.name)
+
+    def _fed_by(
+        self, output: Output, inputs: Sequence[tuple[IRI, Input]], by_name: bool
+    ) -> Iterator[tuple[IRI, Input]]:
+        """Yield the inputs that types and conditions allow an output to feed; `by_name` where both ports are named."""
+        served = frozenset[IRI]().union(*map(self.hierarchy.superclasses, output.signals))
+        for one in inputs:
+            wanted = one[1]
+            if served.isdisjoint(wanted.signals) and not (by_name and () in (output.signals, wanted.signals)):
+                continue
+            unit, frame, shape, sent = wanted.condition or (None, None, None, None)
+            if (
+                (output.unit == unit or None in (output.unit, unit))
+                and (output.frame == frame or None in (output.frame, frame))
+                and (shape is None or shape in output.conforms)
+                and (sent is None or not output.signals or self._takes(output.request, sent.type))
+            ):
+                yield one
 
     def _takes(self, taken: IRI | None, given: IRI | None) -> bool:
         """Return whether what is given may go where a type is taken; None is nothing."""

@@ -87,7 +87,7 @@ def main(arguments: list[str] | None = None) -> int:
     parts = tuple(given.only or PARTS)
     rows: list[Row] = []
     with both(given.revision) as trees, tempfile.TemporaryDirectory(prefix="selfconf-compare-") as name:
-        for measure in measures(Path(name), given.smoke):
+        for measure in measures(Path(name), trees[0].path / "examples", given.smoke):
             if measure.part.startswith(parts):
                 rows += measured(measure, trees, Path(name))
                 print(rows[-1], file=sys.stderr)

@@ -5,14 +5,12 @@ Nothing is asked of a tree but its command line, so that it does not matter what
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from benchmarks import validate
-from benchmarks.compare.trees import ROOT
 from benchmarks.scale import worlds
 from benchmarks.search import families as f
 from selfconf.search.problem import Problem
@@ -40,16 +38,18 @@ class Measure:
     """The exit codes that it may have."""
 
 
-def measures(folder: Path, smoke: bool) -> Iterator[Measure]:
-    """Everything but failover, which is a program of its own."""
-    yield from _start(15 if not smoke else 2)
+def measures(folder: Path, examples: Path, smoke: bool) -> Iterator[Measure]:
+    """Everything but failover, which is a program of its own.
+
+    The examples are those of the earlier tree: a tree knows what an earlier one wrote, and not what a later one did.
+    """
+    yield from _start(examples, 15 if not smoke else 2)
     yield from _search(folder, smoke)
     yield from _scale(folder, 200 if smoke else 10_000, 1 if smoke else 5)
-    yield from _validate(folder, 20 if smoke else 2_000, 1 if smoke else 4)
+    yield from _validate(folder, examples, 20 if smoke else 2_000, 1 if smoke else 4)
 
 
-def _start(trials: int) -> Iterator[Measure]:
-    examples = ROOT / "examples"
+def _start(examples: Path, trials: int) -> Iterator[Measure]:
     navigate = ("configure", str(examples / "navigate.ttl"), "--ads", str(examples / "peis-home"))
     bound = ("--bind", "robot=:Astrid", "--bind", "goal=(AT BEDROOM)")
     query = ("query", "SELECT ?c WHERE { ?c a rob:PositionSensor }", "--ads", str(examples / "peis-home"))
@@ -155,13 +155,12 @@ def _scale(folder: Path, size: int, trials: int) -> Iterator[Measure]:
         yield Measure("scale", f"{size:,} advertisements, {style}", arguments, quantities, trials, (0, 1))
 
 
-def _validate(folder: Path, size: int, trials: int) -> Iterator[Measure]:
+def _validate(folder: Path, examples: Path, size: int, trials: int) -> Iterator[Measure]:
     files = folder / "validate"
     files.mkdir()
     for each in range(size):
         (files / f"{each:05}.ttl").write_text(validate.HEAD + validate.advertisement(each))
-    shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("__pycache__"))
     form = ("--format", "json")
-    yield Measure("validate", "the examples", ("validate", str(folder / "examples"), *form), trials=max(trials, 5))
+    yield Measure("validate", "the examples", ("validate", str(examples), *form), trials=max(trials, 5))
     name = f"{size:,} files, one in ten with a mistake"
     yield Measure("validate", name, ("validate", str(files), *form), trials=trials, codes=(0, 1))

@@ -58,16 +58,13 @@ class Upward:
 class Hierarchy:
     """What lies above a class or a property; with no edges, each term lies below itself only."""
 
-    __slots__ = ("_classes", "_properties")
+    __slots__ = ("_classes", "_properties", "flat")
 
     def __init__(self, classes: Iterable[tuple[IRI, IRI]] = (), properties: Iterable[tuple[IRI, IRI]] = ()) -> None:
         """Edges run from the lower term to the higher one, in any order, cycles allowed."""
         self._classes, self._properties = Upward(classes), Upward(properties)
-
-    @property
-    def flat(self) -> bool:
+        self.flat = not self._classes
         """Whether no class lies below another."""
-        return not self._classes
 
     def superclasses(self, offered: IRI) -> frozenset[IRI]:
         """`offered` and every class above it; of the type of an operation, every one where it serves."""
@@ -94,7 +91,8 @@ class Hierarchy:
 
     def pairs(self, output: Output, wanted: Input) -> bool:
         """Whether an output may feed an input: one of its types serves, and the condition of the input is met."""
-        return any(signal in wanted.signals for signal in self.served(output.signals)) and (
+        served = self.served(output.signals)
+        return not frozenset(wanted.signals).isdisjoint(served) and (
             wanted.condition is None or wanted.condition.met_by(output)
         )
 

@@ -171,15 +171,17 @@ class Problem:
 
     def _fed(self, role: int, lacking: dict[IRI, list[str]], playing: Playing) -> bool:
         """Return whether inputs of one type each, by signal and name, are all fed; those that are get lost."""
-        served = self.hierarchy.served
+        flat, served = self.hierarchy.flat, self.hierarchy.served
         for source, output, only in self.links[role]:
             for candidate in playing[source]:
                 for name, offered, *_ in candidate.profile.outputs:
-                    if output is None or output == name:
-                        # Without a type an output feeds the input that is named beside it, whatever that wants.
-                        for signal in served(offered) if offered else tuple(lacking) if output and only else ():
-                            if signal in lacking:
-                                _strike_out(lacking, signal, only)
+                    if output is not None and output != name:
+                        continue
+                    if not offered and only and output:
+                        offered = tuple(lacking)  # beside an input that is named it feeds this, whatever that wants
+                    for signal in offered if flat else served(offered):
+                        if signal in lacking:
+                            _strike_out(lacking, signal, only)
                 if not lacking:
                     return True
         return False
@@ -275,13 +277,25 @@ class Problem:
 
     def _connections(self, playing: Playing) -> tuple[Connection, ...]:
         connections = {
-            Connection(source.component, output.name, candidate.profile.component, wanted.name)
-            for position, role in enumerate(playing)
-            for candidate in role
-            for wanted in candidate.profile.inputs
-            for source, output in self.feeders(position, wanted, playing)
+            connection for role, sinks in enumerate(playing) for connection in self._feeding(role, sinks, playing)
         }
         return ordered_connections(connections, (c.profile.component for role in playing for c in role))
+
+    def _feeding(self, role: int, sinks: Sequence[Candidate], playing: Playing) -> Iterator[Connection]:
+        """Yield what feeds the players of a role; inputs are found by their signals, so that few pairs are compared."""
+        inputs = [(candidate.profile.component, wanted) for candidate in sinks for wanted in candidate.profile.inputs]
+        taking: dict[IRI, list[tuple[IRI, Input]]] = {}
+        for one in inputs:
+            for signal in one[1].signals:
+                taking.setdefault(signal, []).append(one)
+        for link in self.links[role] if inputs else ():
+            by_name = link.output is not None and link.input is not None
+            for source in playing[link.source]:
+                for output in source.profile.outputs:
+                    served = self.hierarchy.served(output.signals)
+                    for sink, wanted in inputs if by_name else (one for s in served for one in taking.get(s, ())):
+                        if self.matches(output, link, wanted):
+                            yield Connection(source.profile.component, output.name, sink, wanted.name)
 
     def _settings(self, playing: Playing, bindings: Mapping[str, Term]) -> Iterator[ParameterSetting]:
         names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}

@@ -5,10 +5,8 @@ Each pattern accepts less than the table allows, never more; what is not recogni
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -20,7 +18,6 @@ from selfconf.rdf.permitted_fields import (
     GROUNDING,
     NEXT,
     PARAMETER_TYPE,
-    PORT_NAME,
     PORTS,
     SIGNAL_TYPE,
     Field,
@@ -37,7 +34,7 @@ _SIMPLE = re.compile(
     r"|(?P<decimal>[+-]?[0-9]*\.[0-9]+)"
     r")"
 )
-_RARE = frozenset((SC.frame, SC.optional, SC.accepts))
+_RARE = frozenset((SC.unit, SC.frame, SC.optional, SC.accepts))
 """What few ports say of themselves: it is read carefully."""
 _KINDS = r"a <[^<>]*>(?: , <[^<>]*>)*"
 _VALUE = r'(?:<[^<>]*>|"[^"\\]*"(?:\^\^<[^<>]*>|@[A-Za-z0-9]+(?:-[A-Za-z0-9]+)*)?|[+-]?[0-9]+|[+-]?[0-9]*\.[0-9]+)'
@@ -48,46 +45,32 @@ class _PortPattern(NamedTuple):
 
     once: tuple[str, ...]
     """How the fields begin in Turtle that have exactly one value."""
-    bounded: tuple[tuple[str, int, float], ...]
-    """How the other fields begin, and how often they may be there."""
+    at_most_once: tuple[str, ...]
+    """How the other fields begin that are recognised."""
     pattern: re.Pattern[str]
     groups: tuple[int, int, int, int]
     """Which groups of the pattern are the name, the type, the number of the rate, and the depth."""
 
     @classmethod
     def of(cls, link: Field) -> _PortPattern:
-        """The pattern from the table."""
-        fields = _recognised(link)
-        allowed = [field.turtle for field in fields if field.most != 0]
-        (kind,) = (field.predicate for field in fields if field.least and field is not PORT_NAME)
+        """The pattern from the table: with one type, and none of the fields that few ports have."""
+        fields = [field for field in link.into.fields if field.most != 0 and field.predicate not in _RARE]
+        (kind,) = (field.predicate for field in fields if field in (SIGNAL_TYPE, PARAMETER_TYPE))
+        allowed = [field.turtle for field in fields]
         groups = SC.name.short, kind.short, SC.value.short, SC.depth.short
         there = "".join(allowed)  # where there is no rate or no depth, a group for it matches nothing
         allowed += [f"(?P<{group}>(?!))" for group in groups if f"(?P<{group}>" not in there]
-        statement = f"(?:{_KINDS}|{'|'.join(allowed)}|<[^<>]*> {_VALUE})"
+        others = f"<(?!(?:{'|'.join(link.into.predicates)})>)[^<>]*> {_VALUE}"
+        statement = f"(?:{_KINDS}|{'|'.join(allowed)}|{others})"
         pattern = re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]")
         name, type_, rate, depth = (pattern.groupindex[group] for group in groups)
-        counts = [(f"<{f.predicate}> ", f.least, math.inf if f.most is None else f.most) for f in fields]
+        once = [f"<{predicate}> " for predicate in (SC.name, kind)]
+        begin = [f"<{field.predicate}> " for field in fields]
         return cls(
-            tuple([mark for mark, *count in counts if count == [1, 1]]),
-            tuple([each for each in counts if each[1:] != (1, 1)]),
-            pattern,
-            (name, type_, rate, depth),
+            tuple(once), tuple([mark for mark in begin if mark not in once]), pattern, (name, type_, rate, depth)
         )
 
 
-def _recognised(link: Field) -> list[Field]:
-    """The fields of a port, or of an operational parameter, as far as they are recognised: with exactly one type."""
-    found = []
-    for field in link.into.fields:
-        if field in (SIGNAL_TYPE, PARAMETER_TYPE):
-            found.append(replace(field, least=1, most=1))
-        elif field.predicate != SC.unit:  # a rate has one too: `port_of` counts them
-            found.append(replace(field, most=0) if field.predicate in _RARE else field)
-    return found
-
-
-_UNIT = f"<{SC.unit}> "
-_RATED, _DEEP = f"<{SC.rate}> ", f"<{SC.depth}> "
 _PORTS = {f"<{link.predicate}>": _PortPattern.of(link) for link in PORTS}
 _SETTINGS: dict[str, tuple[re.Pattern[str], Callable[[str], Profile]]] = {
     f"<{predicate}>": (re.compile(COMPONENT[predicate].turtle), part)
@@ -121,19 +104,19 @@ def port_of(link: str, text: str) -> PortText | None:
     known = _PORTS.get(link)
     if known is None:
         return None
-    once, bounded, pattern, groups = known
+    once, at_most_once, pattern, groups = known
     # Loops, since this runs for each statement of each file that is not known yet.
     for mark in once:
         if text.count(mark) != 1:
             return None
-    for mark, least, most in bounded:
-        if not least <= text.count(mark) <= most:
+    for mark in at_most_once:
+        if text.count(mark) > 1:
             return None
-    found = pattern.fullmatch(text) if text.count(_UNIT) == text.count(_RATED) else None
+    found = pattern.fullmatch(text)
     if found is None:
         return None
     name, type_, rate, depth = found.group(*groups)
-    if name is None or type_ is None or (rate is None and _RATED in text) or (depth is None and _DEEP in text):
+    if name is None or type_ is None:  # a string says what was counted
         return None
     return PortText(name, type_, rate, depth)
 

@@ -30,7 +30,7 @@ from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 SECONDS = 5.0
 """Processor time that pySHACL may take for the shapes of one partition: they are written by strangers."""
-_PORTS = attrgetter("profile.ports")
+_PORTS, _CONDITION = attrgetter("profile.ports"), attrgetter("condition")
 _SHAPE = IRI("urn:selfconf:acceptance:shape")
 _OUTPUT = IRI("urn:selfconf:acceptance:output")
 _PATH = "urn:selfconf:acceptance:path:"
@@ -270,9 +270,9 @@ def _asked_of(template: Template, partition: Partition) -> tuple[list[list[_Aske
 
 def _stating(candidates: Sequence[Candidate | Recruit]) -> Iterator[Ports]:
     """The ports, each once, of candidates of which an input asks for more than a type."""
-    # One look at each candidate in C, then one at each choice of ports that they share.
+    # One look at each candidate and input in C, since few inputs state a condition.
     for ports in {id(ports): ports for ports in map(_PORTS, candidates)}.values():
-        if any(True for _ in _asked(ports)):
+        if any(map(_CONDITION, ports.inputs)) and any(_asked(ports)):
             yield ports
 
 

@@ -56,7 +56,7 @@ class Wiring:
         if self._names_inputs[role]:
             numbered = self._numbered(role, dict.fromkeys(chain.from_iterable(inputs)))
             return [tuple(dict.fromkeys([numbered[one] for one in some if one in numbered])) for some in inputs]
-        sources, known = self.problem.feeding(role, None), dict[WantedSignal, int]()
+        sources, known = self.problem.feeding(role, None), dict[tuple[tuple[IRI, ...], Condition | None], int]()
         spared = self.problem.spared[role]
         if self._fed_later(sources):
             return [()] * len(inputs)
@@ -66,12 +66,12 @@ class Wiring:
             for _, signals, _, optional, condition in some:
                 if optional:
                     continue
-                wanted = WantedSignal(signals, condition)
-                if wanted in spared:
+                wanted = signals, condition
+                if spared and wanted in spared:
                     continue
                 number = known.get(wanted)
                 if number is None:
-                    number = known[wanted] = self._new(Need(role, wanted, sources))
+                    number = known[wanted] = self._new(Need(role, WantedSignal(*wanted), sources))
                 numbers.append(number)
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
         return found
