@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from selfconf.model.configuration import Configuration, Connection, ParameterSetting
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import Candidate, Partition
-from selfconf.model.profile import Input, Operation, Output, Profile
+from selfconf.model.profile import Input, Output, Profile
 from selfconf.model.template import Task
 from selfconf.model.term import IRI, Term
 

@@ -10,13 +10,14 @@ from selfconf.api.arguments import Paths
 from selfconf.api.ecology import Ecology
 from selfconf.api.tables import Tabular
 from selfconf.api.task import TaskSpecification
+from selfconf.composition import exclusions_nearest_first
 from selfconf.model.holder import Holder
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.partition import Candidate
 from selfconf.model.template import Role
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
-from selfconf.rdf.eligibility import CompiledRole, Exclusion, exclusions
+from selfconf.rdf.eligibility import CompiledRole, Exclusion
 from selfconf.render import Names, holder_text
 
 
@@ -42,8 +43,10 @@ class RolePartition(Tabular):
     @cached_property
     def excluded(self) -> tuple[Exclusion, ...]:
         """The components that are not eligible, each with its obstacles; the nearest ones first."""
-        partitioner = self._inquiry.composer.partitioner
-        return tuple(exclusions(partitioner, self._compiled, frozenset(self.eligible), self._inquiry.ecology))
+        composer = self._inquiry.composer
+        known = self._inquiry.method.wider() or composer.hierarchy
+        number = composer.partitioner.roles.index(self._compiled)
+        return exclusions_nearest_first(composer, self._inquiry.ecology, number, known)
 
     def obstacles(self, component: IRI) -> tuple[Obstacle, ...]:
         """What keeps a component out of the role; nothing if it is eligible.

@@ -108,7 +108,7 @@ def _lines(one: RolePartition, names: Names, why: Why) -> Iterator[str]:
 
 
 def _body(found: PartitionTable, why: Why) -> dict[str, Any]:
-    from selfconf.render import alternative_body, holder_body, value_body
+    from selfconf.render import alternative_body, holder_body, likeness_body, value_body
 
     return {
         "template": found.inquiry.task.iri,
@@ -120,7 +120,12 @@ def _body(found: PartitionTable, why: Why) -> dict[str, Any]:
                 **({"held": [{"component": c, **holder_body(h)} for c, h in one.held.items()]} if one.held else {}),
                 **({"candidates": list(map(alternative_body, why[one.role.iri]))} if why else {}),
                 "excluded": [
-                    {"component": e.component, "of_its_class": e.akin, "obstacles": list(map(str, e.obstacles))}
+                    {
+                        "component": e.component,
+                        "of_its_class": e.akin,
+                        "obstacles": list(map(str, e.obstacles)),
+                        **likeness_body(e.obstacles[0], e.likeness),
+                    }
                     for e in one.excluded
                 ],
             }

@@ -1,11 +1,13 @@
 """Act 3 of the paper, composition: from a task and an ecology to a configuration or an explained refusal.
 
 A `Composer` composes one task again and again, by a `Strategy`; `composed` is its best answer within a `TimeLimit`, and
-`explained` a refusal with everything that can be found out about it.
+`explained` a refusal with everything that can be found out about it. `exclusions_nearest_first` tells of a role what
+keeps each other component out.
 """
 
 from selfconf.composition.composer import Composer, Strategy
 from selfconf.composition.explanation import explained
+from selfconf.composition.nearest import exclusions_nearest_first
 from selfconf.composition.time_limit import TimeLimit, composed
 
-__all__ = ["Composer", "Strategy", "TimeLimit", "composed", "explained"]
+__all__ = ["Composer", "Strategy", "TimeLimit", "composed", "exclusions_nearest_first", "explained"]

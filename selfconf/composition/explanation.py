@@ -1,4 +1,4 @@
-"""What else a refusal can tell: which components nearly fit by type, what would mend it, the reasoning that would."""
+"""What else a refusal can tell: which components nearly fit, what would mend it, the reasoning that would."""
 
 from __future__ import annotations
 
@@ -6,13 +6,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from selfconf.composition.composer import Composer
+from selfconf.composition.nearest import nearest_first
 from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.hierarchy import Hierarchy
-from selfconf.model.partition import NearMiss
-from selfconf.model.refusal import Refusal, TooFewEligible
+from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import near_misses_by_type
 
 
 def explained(
@@ -28,21 +27,9 @@ def explained(
     is a configuration under it. None where the composer has seen a hierarchy already.
     """
     known = composer.hierarchy if wider is None else wider
-    refusal = replace(refusal, near_misses=(*_by_type(composer, ecology, refusal, known), *refusal.near_misses))
+    found = limit.within(lambda: nearest_first(composer, ecology, refusal, known), refusal.near_misses)
+    refusal = replace(refusal, near_misses=found)
     refusal = limit.within(lambda: composer.mended(ecology, refusal), refusal)
     if wider is not None and limit.within(lambda: composer.possible_under(ecology, wider), False):
         return replace(refusal, hint="with --reasoning subclass there is a configuration")
     return refusal
-
-
-def _by_type(
-    composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal, known: Hierarchy
-) -> tuple[NearMiss, ...]:
-    """For roles with too few candidates, the components whose type alone keeps them out: most likely a slip."""
-    short = {reason.role for reason in refusal.reasons if isinstance(reason, TooFewEligible)}
-    return tuple(
-        miss
-        for role in composer.partitioner.roles
-        if role.iri in short
-        for miss in near_misses_by_type(role, composer.partitioner, composer.gathered(ecology), known)
-    )

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar
 
+from selfconf.model.signal_match import Degree, SignalMatch
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.unit_dimension import differ_in_dimension
 
 _LIMITS = {
     "minInclusive": "at least",
@@ -240,6 +242,76 @@ class ParameterForbids(_Predicate):
         return f"wants {self.parameter.short} to be {in_words(self.values)}, which it may not be"
 
 
+_RELATIONS = {
+    Degree.PLUG_IN: "which lies below",
+    Degree.SUBSUMES: "which lies above",
+    Degree.OVERLAP: "which is akin to",
+}
+"""In words how an offered signal type is related to the one that is wanted."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnlikePorts(_Predicate):
+    """The component would fit but for its ports: what it should issue or take, and what comes nearest."""
+
+    code: ClassVar[str] = "unlike-ports"
+    issued: tuple[SignalMatch, ...] = ()
+    """For each signal that it should issue the nearest that it does."""
+    given: tuple[SignalMatch, ...] = ()
+    """For each signal that it requires the nearest that it would be given."""
+
+    def __str__(self) -> str:
+        issued = [_issuing(one) for one in self.issued if not one.exact]
+        given = [_taking(one) for one in self.given if not one.exact]
+        return " and ".join(dict.fromkeys((*issued, *given))) or "has other ports"
+
+
+@dataclass(frozen=True, slots=True)
+class UnfitOutput(_Predicate):
+    """The component issues the signal that an input wants, but in another unit or frame, or of another shape."""
+
+    code: ClassVar[str] = "unfit-output"
+    output: str
+    units: tuple[IRI, IRI] | None = None
+    """The unit that it issues and the one that is wanted, where they differ."""
+    frames: tuple[Term, Term] | None = None
+    """The frame that it refers to and the one that is wanted, where they differ."""
+    unaccepted: Obstacle | None = None
+    """What keeps the output from conforming to the shape of the input."""
+
+    @property
+    def hopeless(self) -> bool:
+        """Whether no conversion helps, as what it issues is of another dimension."""
+        return self.units is not None and differ_in_dimension(*self.units) is True
+
+    def __str__(self) -> str:
+        said = []
+        if self.units is not None:
+            found, wanted = self.units
+            differ = differ_in_dimension(found, wanted)
+            note = "" if differ is None else f", a unit of {'another' if differ else 'the same'} dimension"
+            said.append(f"is in {found.short}, not in {wanted.short}{note}")
+        if self.frames is not None:
+            said.append(f"is in the frame {in_words(self.frames[:1])}, not in {in_words(self.frames[1:])}")
+        if self.unaccepted is not None:
+            said.append(f"is not accepted: {self.unaccepted.clause}")
+        return f"issues what {' and '.join(said)} (output {self.output!r})"
+
+
+def _issuing(match: SignalMatch) -> str:
+    wanted = match.wanted.short if match.wanted else "signal without a type"
+    if match.offered is None:
+        return f"issues no {wanted}"
+    return f"issues {match.offered.short}, {_RELATIONS[match.degree]} {wanted}"
+
+
+def _taking(match: SignalMatch) -> str:
+    wanted = match.wanted.short if match.wanted else "a signal without a type"
+    if match.offered is None:
+        return f"needs {wanted}, which it would not be given"
+    return f"needs {wanted} and would be given {match.offered.short}, {_RELATIONS[match.degree]} it"
+
+
 @dataclass(frozen=True, slots=True)
 class NotJudged(_Predicate):
     """What the component says would take too long to judge, or cannot be judged at all; so it plays no role."""
@@ -261,6 +333,8 @@ Obstacle = (
     | ShapeViolated
     | NoCommonValue
     | ParameterForbids
+    | UnlikePorts
+    | UnfitOutput
     | NotJudged
 )
 

@@ -66,6 +66,8 @@ class NearMiss:
     obstacle: Obstacle
     allows: Mapping[IRI, frozenset[Term]] = field(default_factory=dict, compare=False, repr=False)
     """For each free parameter that it constrains, the values that it would allow."""
+    likeness: float = field(default=0.0, kw_only=True, compare=False)
+    """How near it comes to what the role asks for, from 0 to 1, by its ports and its texts."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the component is described, if that is known."""
 

@@ -13,6 +13,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.holder import Holder
 from selfconf.model.number import plain_number
+from selfconf.model.obstacle import Obstacle, UnlikePorts
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Operation, Output
@@ -106,13 +107,24 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
         ],
         **({} if refusal.smallest else {"minimality": refusal.minimality}),
         "near_misses": [
-            {"role": miss.role, "component": miss.component, "obstacle": str(miss.obstacle), **_place(miss)}
+            {
+                "role": miss.role,
+                "component": miss.component,
+                "obstacle": str(miss.obstacle),
+                **likeness_body(miss.obstacle, miss.likeness),
+                **_place(miss),
+            }
             for miss in refusal.near_misses
         ],
         "repairs": repairs,
         **({"held": [{"component": c, **holder_body(h)} for c, h in refusal.held]} if refusal.held else {}),
         **({"missing_sites": list(refusal.missing_sites)} if refusal.missing_sites else {}),
     }
+
+
+def likeness_body(obstacle: Obstacle, likeness: float) -> dict[str, float]:
+    """How near a component comes to what a role asks for, where that depends on its ports."""
+    return {"likeness": round(likeness, 4)} if isinstance(obstacle, UnlikePorts) else {}
 
 
 def holder_body(holder: Holder) -> dict[str, Any]:

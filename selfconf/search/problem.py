@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from heapq import heappop, heappush
+from itertools import chain
 from typing import NamedTuple
 
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting, ordered_connections
@@ -276,26 +277,28 @@ class Problem:
         return bindings
 
     def _connections(self, playing: Playing) -> tuple[Connection, ...]:
+        issuing = self._issuing(playing)
+        nobody: Playing = [()] * len(playing)
         connections = {
-            connection for role, sinks in enumerate(playing) for connection in self._feeding(role, sinks, playing)
+            Connection(source.component, output.name, candidate.profile.component, wanted.name)
+            for position, role in enumerate(playing)
+            for candidate in role
+            for wanted in candidate.profile.inputs
+            for few in (issuing.get(wanted.signals[0], nobody) if len(wanted.signals) == 1 else playing,)
+            for source, output in self.feeders(position, wanted, few)
         }
         return ordered_connections(connections, (c.profile.component for role in playing for c in role))
 
-    def _feeding(self, role: int, sinks: Sequence[Candidate], playing: Playing) -> Iterator[Connection]:
-        """Yield what feeds the players of a role; inputs are found by their signals, so that few pairs are compared."""
-        inputs = [(candidate.profile.component, wanted) for candidate in sinks for wanted in candidate.profile.inputs]
-        taking: dict[IRI, list[tuple[IRI, Input]]] = {}
-        for one in inputs:
-            for signal in one[1].signals:
-                taking.setdefault(signal, []).append(one)
-        for link in self.links[role] if inputs else ():
-            by_name = link.output is not None and link.input is not None
-            for source in playing[link.source]:
-                for output in source.profile.outputs:
-                    served = self.hierarchy.served(output.signals)
-                    for sink, wanted in inputs if by_name else (one for s in served for one in taking.get(s, ())):
-                        if self.matches(output, link, wanted):
-                            yield Connection(source.profile.component, output.name, sink, wanted.name)
+    def _issuing(self, playing: Playing) -> dict[IRI, list[list[Candidate]]]:
+        """Return for each signal, role by role, the candidates that issue it, or have an output without a type."""
+        wanted = {signal for role in playing for c in role for port in c.profile.inputs for signal in port.signals}
+        found: dict[IRI, list[list[Candidate]]] = {}
+        for position, role in enumerate(playing):
+            for candidate in role:
+                served = [self.hierarchy.served(output.signals) for output in candidate.profile.outputs]
+                for signal in wanted if () in served else wanted.intersection(chain.from_iterable(served)):
+                    found.setdefault(signal, [[] for _ in playing])[position].append(candidate)
+        return found
 
     def _settings(self, playing: Playing, bindings: Mapping[str, Term]) -> Iterator[ParameterSetting]:
         names = {parameter.iri: parameter.name for parameter in self.task.template.parameters}

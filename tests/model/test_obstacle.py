@@ -22,12 +22,16 @@ from selfconf.model.obstacle import (
     PropertyUnmet,
     ShapeViolated,
     TypeRelation,
+    UnfitOutput,
+    UnlikePorts,
     WrongComponent,
     WrongCount,
     WrongType,
     in_words,
 )
+from selfconf.model.signal_match import Degree, SignalMatch
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
+from selfconf.rdf.vocabulary import UNIT
 
 SH = "http://www.w3.org/ns/shacl#"
 CAMERA, SENSOR, PLACE, HALL, CELLAR = (
@@ -86,7 +90,47 @@ WORDED: list[tuple[Obstacle, str, str]] = [
         'wants room to be "hall", which it may not be',
         'it wants room to be "hall", which it may not be',
     ),
+    (
+        UnlikePorts(
+            (
+                SignalMatch(IRI("urn:Pose"), IRI("urn:Pose"), Degree.EXACT, 1.0),
+                SignalMatch(IRI("urn:Scan"), IRI("urn:Sonar"), Degree.SUBSUMES, 0.6),
+            ),
+            (SignalMatch(IRI("urn:Map"), None, Degree.FAIL, 0.0),),
+        ),
+        "issues Sonar, which lies above Scan and needs Map, which it would not be given",
+        "it issues Sonar, which lies above Scan and needs Map, which it would not be given",
+    ),
+    (UnlikePorts(), "has other ports", "it has other ports"),
+    (
+        UnlikePorts(given=(SignalMatch(IRI("urn:Map"), IRI("urn:Plan"), Degree.OVERLAP, 0.4),)),
+        "needs Map and would be given Plan, which is akin to it",
+        "it needs Map and would be given Plan, which is akin to it",
+    ),
     (NotJudged("too much"), "is not judged: too much", "it is not judged: too much"),
+    *(
+        (UnfitOutput("d", units, frames, wrong), f"{said} (output 'd')", f"it {said} (output 'd')")
+        for units, frames, wrong, said in (
+            (
+                (UNIT.MilliM, UNIT.M),
+                None,
+                None,
+                "issues what is in MilliM, not in M, a unit of the same dimension",
+            ),
+            (
+                (UNIT.Zorkmid, UNIT.M),
+                (Literal("map"), Literal("odom")),
+                None,
+                'issues what is in Zorkmid, not in M and is in the frame "map", not in "odom"',
+            ),
+            (
+                (UNIT.KiloGM, UNIT.M),
+                None,
+                unmet(Missing()),
+                "issues what is in KiloGM, not in M, a unit of another dimension and is not accepted: it has no place",
+            ),
+        )
+    ),
 ]
 
 
@@ -115,6 +159,8 @@ def test_codes_are_stable_and_different() -> None:
         "parameter-undeclared",
         "property-unmet",
         "shape-violated",
+        "unfit-output",
+        "unlike-ports",
         "wrong-component",
         "wrong-type",
     ]

@@ -2,7 +2,8 @@
 
 `Partitioner` compiles the roles of a task (`CompiledRole`) and partitions an `AdvertisementIndex`. `near_misses` and
 `near_misses_by_type` find the components that one obstacle keeps out, `exclusions` everything that keeps the others
-out (`Exclusion`). `bound_shape` is the shape of a role with its parameters replaced.
+out (`Exclusion`). `kept_out_by_ports` finds those that only the ports keep out that a shape asks for (`ports_asked`),
+`words_of_role` the words of what a role asks for. `bound_shape` is the shape of a role with its parameters replaced.
 """
 
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
@@ -20,6 +21,7 @@ from selfconf.rdf.eligibility.role_tests import (
     SelfTest,
 )
 from selfconf.rdf.eligibility.similar_types import near_misses_by_type
+from selfconf.rdf.eligibility.unlike_ports import kept_out_by_ports, ports_asked, words_of_role
 
 __all__ = [
     "ANYBODY",
@@ -36,9 +38,12 @@ __all__ = [
     "SelfTest",
     "bound_shape",
     "exclusions",
+    "kept_out_by_ports",
     "near_misses",
     "near_misses_by_type",
+    "ports_asked",
     "prefaced",
     "statements",
     "wanted",
+    "words_of_role",
 ]

@@ -16,7 +16,7 @@ from typing import NamedTuple, TypeVar
 
 from selfconf.errors import AuthorError, TemplateError
 from selfconf.model.hierarchy import Hierarchy
-from selfconf.model.obstacle import NotJudged
+from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
 from selfconf.model.partition import Candidate, Partition, Recruit
 from selfconf.model.profile import Input, Output, Ports, Profile, shared_ports
 from selfconf.model.template import Template
@@ -111,7 +111,9 @@ class OutputShape:
         predicate, value = statement
         if predicate != SH.path:
             return statement
-        return predicate, self._names.setdefault(value, IRI(f"{_PATH}{len(self._names)}"))
+        # The last segment of the name is how an obstacle calls the property.
+        steps = ".".join(step.short for step in _steps(self._document, value))
+        return predicate, self._names.setdefault(value, IRI(f"{_PATH}{len(self._names)}#{steps}"))
 
     def conforming(self, outputs: Sequence[Port], seen: SeenOutputs) -> set[Port]:
         """Those of some outputs that conform. Raises TemplateError where that cannot be judged."""
@@ -120,12 +122,24 @@ class OutputShape:
         ]
         return {*passed} if self._tests.complete or not passed else self._by_pyshacl(passed, seen)
 
+    def obstacle(self, output: Port, seen: SeenOutputs) -> Obstacle | None:
+        """What keeps an output from conforming, if anything does. Raises TemplateError where that cannot be judged."""
+        ((looks, _),) = seen.alike(self._paths, [output]).items()
+        found = self._obstacle(looks)
+        if found is None and not self._tests.complete and not self._by_pyshacl([output], seen):
+            return ShapeViolated("it does not conform")
+        return found
+
     def _passes(self, looks: Looks) -> bool:
         """Whether outputs that look alike pass the tests that were compiled."""
+        return self._obstacle(looks) is None
+
+    def _obstacle(self, looks: Looks) -> Obstacle | None:
+        """The first obstacle that outputs which look alike meet in the tests."""
         ends, types = looks
         pairs = [(name, value) for name, values in zip(self._names.values(), ends, strict=True) for value in values]
         # The tests look at the profile of a component, so that is what an output has to look like.
-        return next(self._tests.obstacles(Profile(_OUTPUT, types, tuple(pairs)), self._hierarchy), None) is None
+        return next(self._tests.obstacles(Profile(_OUTPUT, types, tuple(pairs)), self._hierarchy), None)
 
     def _by_pyshacl(self, outputs: Sequence[Port], seen: SeenOutputs) -> set[Port]:
         from selfconf.rdf.conformance import violations  # most shapes are compiled in full: pySHACL is not loaded
@@ -234,6 +248,14 @@ class Acceptance:
                 self._shapes[text] = _cannot_be_judged(error)
         return self._shapes[text]
 
+    def obstacle(self, shape: str, output: Port, seen: Seen) -> Obstacle | None:
+        """What keeps an output from being accepted by a shape, if anything does, or that it cannot be judged."""
+        known = self._shape(shape)
+        try:
+            return known if isinstance(known, NotJudged) else known.obstacle(output, SeenOutputs(seen, self._hierarchy))
+        except AuthorError as error:
+            return _cannot_be_judged(error)
+
     def _can_be_judged(self, profile: Profile) -> bool:
         """Whether each shape that a component states can be judged; it is kept out otherwise, and named."""
         for one in _asked(profile.ports):
@@ -242,6 +264,14 @@ class Acceptance:
                 self.not_judged[profile.component] = shape
                 return False
         return True
+
+
+def _steps(document: Document, path: Term) -> Iterator[IRI]:
+    """The properties that a path names, in their order."""
+    if isinstance(path, IRI):
+        yield path
+    for item in document.items(path) or [value for _, value in document.about(path)]:
+        yield from _steps(document, item)
 
 
 def _cannot_be_judged(error: AuthorError) -> NotJudged:

@@ -32,6 +32,8 @@ class Exclusion:
     obstacles: tuple[Obstacle, ...]
     akin: bool
     """Whether it is of the classes that the role asks for."""
+    likeness: float = 0.0
+    """How near it comes to what the role asks for, from 0 to 1, by its ports and its texts."""
 
 
 def exclusions(

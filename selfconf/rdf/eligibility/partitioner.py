@@ -20,6 +20,7 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Recruit, Variable, ordered
 from selfconf.model.profile import Profile
+from selfconf.model.template import Role
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_parameters as free_values
@@ -35,7 +36,7 @@ from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
-from selfconf.rdf.turtle import Triple
+from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, TYPE
 
 if TYPE_CHECKING:
@@ -78,10 +79,7 @@ class Partitioner:
         self.task, self.document, self.hierarchy = given.task, with_named_suppliers(given.document), hierarchy
         self.free = free_parameters(given.task.template, given.task.bindings)
         self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
-        self.roles = tuple(
-            compile_role(self.document, role.iri, tuple(s.type for s in role.settings), given.task.bindings, self.free)
-            for role in given.task.template.roles
-        )
+        self.roles = tuple(map(self._compiled, given.task.template.roles))
         unbound = {iri: parameter.name for iri, parameter in self._parameters.items() if iri in self.free}
         self.suppliers = {
             number: suppliers_of(self.document, role.iri, given.task.bindings, unbound)
@@ -96,11 +94,24 @@ class Partitioner:
         self._acceptance = Acceptance(hierarchy)
         self.suitable = free_values.Suitable(self._parameters, self.document)
 
+    def _compiled(self, role: Role) -> CompiledRole:
+        """The tests of a role, by its shape as it stands in the document."""
+        settings = tuple(setting.type for setting in role.settings)
+        return compile_role(self.document, role.iri, settings, self.task.bindings, self.free)
+
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
         other.not_judged, other._given_up, other._acceptance = {}, {}, Acceptance(hierarchy)
+        return other
+
+    def reading(self, document: Document, role: IRI) -> Partitioner:
+        """A partitioner of one role of this task, whose shape stands in another document."""
+        other = copy(self)
+        other.document = document
+        other.roles = (other._compiled(self.task.template.role(role)),)
+        other.not_judged, other._given_up = {}, {}
         return other
 
     def partition(self, advertisements: Advertisements) -> Partition:
@@ -126,6 +137,10 @@ class Partitioner:
         )
         self.not_judged |= self._acceptance.not_judged
         return with_sent_requests(judged, self.hierarchy)
+
+    def unaccepted(self, ecology: AdvertisementIndex, component: IRI, output: str, shape: str) -> Obstacle | None:
+        """What keeps an output of a component from conforming to the shape that an input accepts."""
+        return self._acceptance.obstacle(shape, (component, output), lambda one: tuple(self.visible([ecology[one]])))
 
     def _recruits(self, ecology: AdvertisementIndex) -> tuple[Recruit, ...]:
         """The components that may supply the players of each role that recruits, in the order of preference."""

@@ -1,0 +1,169 @@
+"""The near misses of a refusal, the nearest first: also the components that only their ports keep out of a role.
+
+Ports keep a component out where the shape of the role asks for signal types that it lacks, and where it is eligible but
+feeds none of the inputs that stay unfed. How near it comes, by degree of match and by words, is `model.nearness`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from selfconf.composition.composer import Composer
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.nearness import ranked
+from selfconf.model.obstacle import UnfitOutput, UnlikePorts
+from selfconf.model.partition import NearMiss
+from selfconf.model.port_likeness import PortLikeness
+from selfconf.model.profile import Condition, Input, Output, Profile
+from selfconf.model.refusal import Refusal, TooFewEligible
+from selfconf.model.requirement import InputFed
+from selfconf.model.signal_likeness import SignalLikeness
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.eligibility import (
+    Exclusion,
+    exclusions,
+    kept_out_by_ports,
+    near_misses_by_type,
+    ports_asked,
+    words_of_role,
+)
+from selfconf.search.problem import Problem
+from selfconf.search.wanted_along import ways_along_interactions
+
+MOST_NEAR = 2_000
+"""How many near misses a refusal has for one role at most."""
+
+
+def nearest_first(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal, known: Hierarchy
+) -> tuple[NearMiss, ...]:
+    """The near misses of a refusal, role by role: first probable slips of the type, then by likeness.
+
+    `known` is the hierarchy that the ontologies have, whatever the roles see.
+    """
+    problem = Problem(composer.task.task, composer.partition(ecology), composer.hierarchy)
+    signals = SignalLikeness(known)
+    short = {reason.role for reason in refusal.reasons if isinstance(reason, TooFewEligible)}
+    unfed = [r for reason in refusal.reasons for r in reason.requirements if isinstance(r, InputFed)]
+    slips: list[NearMiss] = []
+    found: list[NearMiss] = []
+    for number, role in enumerate(problem.roles):
+        if role.iri in short:
+            compiled = composer.partitioner.roles[number]
+            slips += near_misses_by_type(compiled, composer.partitioner, composer.gathered(ecology), known)
+        question = _Question(composer, ecology, problem, number, signals)
+        misses = [miss for miss in refusal.near_misses if miss.role == role.iri]
+        if role.iri in short or not short:
+            misses += question.kept_out()
+        misses += question.feeding_nothing([need for need in unfed if number in _sources(problem, need.role)])
+        found += question.ranked(misses)[:MOST_NEAR]
+    return (*slips, *found)
+
+
+def _sources(problem: Problem, sink: IRI) -> tuple[int, ...]:
+    """The roles, by number, that feed a role."""
+    return problem.sources[next(number for number, role in enumerate(problem.roles) if role.iri == sink)]
+
+
+class _Question:
+    """What one role asks for, by its shape or along its interactions, and who comes near to it."""
+
+    def __init__(
+        self,
+        composer: Composer,
+        ecology: Mapping[IRI, Advertisement],
+        problem: Problem,
+        number: int,
+        signals: SignalLikeness,
+    ) -> None:
+        self._composer, self._ecology, self._problem, self._number = composer, ecology, problem, number
+        self._role = problem.roles[number].iri
+        self._asked = ports_asked(composer.partitioner, self._role)
+        self._ways = [self._asked] if self._asked else ways_along_interactions(problem, number)
+        self._ports = PortLikeness(self._ways, signals) if self._ways else None
+
+    def kept_out(self) -> Iterator[NearMiss]:
+        """The components that only their ports keep out of the role."""
+        if self._asked is None or self._ports is None:
+            return
+        inside = {candidate.profile.component for candidate in self._problem.candidates[self._number]}
+        ecology = self._composer.gathered(self._ecology)
+        for one in kept_out_by_ports(self._composer.partitioner, self._role, ecology, inside):
+            yield NearMiss(self._role, one.profile.component, self._ports.of(one.profile.ports)[1], one.allows)
+
+    def feeding_nothing(self, unfed: Sequence[InputFed]) -> Iterator[NearMiss]:
+        """The candidates that feed none of some inputs, but issue what is akin to it, or the same in other units."""
+        for candidate in self._problem.candidates[self._number] if unfed and self._ports else ():
+            obstacle = self._unfit(candidate.profile, unfed) or self._unlike(candidate.profile)
+            if obstacle is not None:
+                yield NearMiss(self._role, candidate.profile.component, obstacle)
+
+    def _unlike(self, profile: Profile) -> UnlikePorts | None:
+        """What the ports of a component lack that issues something akin to what is wanted; None if nothing."""
+        if self._ports is None:
+            return None
+        _, lacking = self._ports.of(profile.ports)
+        akin = any(match.likeness for match in lacking.issued)
+        return lacking if akin and not all(match.exact for match in (*lacking.issued, *lacking.given)) else None
+
+    def _unfit(self, profile: Profile, unfed: Sequence[InputFed]) -> UnfitOutput | None:
+        """What is wrong with the first output that an unfed input would take by its type."""
+        for need in unfed:
+            plain = Input("", need.wanted.signals)
+            for output in profile.outputs:
+                if need.wanted.condition is not None and self._problem.hierarchy.pairs(output, plain):
+                    return self._at_fault(profile.component, output, need.wanted.condition)
+        return None
+
+    def _at_fault(self, component: IRI, output: Output, wanted: Condition) -> UnfitOutput | None:
+        """In what an output differs from what an input asks for besides the type; None if in nothing."""
+        units = None if output.unit is None or wanted.unit in (None, output.unit) else (output.unit, wanted.unit)
+        frames = None if output.frame is None or wanted.frame in (None, output.frame) else (output.frame, wanted.frame)
+        unaccepted = None
+        if wanted.accepts is not None and wanted.accepts not in output.conforms:
+            ecology = self._composer.gathered(self._ecology)
+            unaccepted = self._composer.partitioner.unaccepted(ecology, component, output.name, wanted.accepts)
+        found = UnfitOutput(output.name, units, frames, unaccepted)
+        return found if units or frames or unaccepted else None
+
+    def ranked(self, misses: Iterable[NearMiss]) -> list[NearMiss]:
+        """Near misses of the role, the nearest first; of several of one component the last."""
+        of = {miss.component: miss for miss in misses}
+        profiles = [self._ecology[component].profile for component in of]
+        question = words_of_role(self._composer.task.document, self._role, next(iter(self._ways), None))
+        found = [
+            replace(of[near.profile.component], likeness=near.likeness)
+            for near in ranked(profiles, self._ports, question)
+        ]
+        return sorted(found, key=lambda miss: isinstance(miss.obstacle, UnfitOutput) and miss.obstacle.hopeless)
+
+
+def exclusions_nearest_first(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], number: int, known: Hierarchy
+) -> tuple[Exclusion, ...]:
+    """What keeps components out of a role, by number: those of its class first, then those with few obstacles.
+
+    Where the role asks for signal types, all that its ports keep out of it is one obstacle, and those that have equally
+    many come in the order of their likeness.
+    """
+    partitioner, role = composer.partitioner, composer.partitioner.roles[number]
+    inside = {candidate.profile.component for candidate in composer.partition(ecology).candidates[number]}
+    found = exclusions(partitioner, role, inside, composer.gathered(ecology))
+    asked = ports_asked(partitioner, role.iri)
+    if asked is None:
+        return tuple(found)
+    of = {one.component: one for one in found}
+    by_ports = {
+        one.profile.component for one in kept_out_by_ports(partitioner, role.iri, composer.gathered(ecology), inside)
+    }
+    question = words_of_role(composer.task.document, role.iri, asked)
+    ports = PortLikeness([asked], SignalLikeness(known))
+    nearest = []
+    for near in ranked((ecology[component].profile for component in of), ports, question):
+        one = replace(of[near.profile.component], likeness=near.likeness)
+        if near.lacking is not None and one.component in by_ports:
+            one = replace(one, obstacles=(near.lacking,))
+        nearest.append(one)
+    return tuple(sorted(nearest, key=lambda one: (not one.akin, len(one.obstacles))))

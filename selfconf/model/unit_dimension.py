@@ -1,0 +1,88 @@
+"""Whether two units of QUDT measure one thing, as metres and millimetres do: told from their local names.
+
+QUDT composes the names of units: a prefix (`MilliM`), a power (`M2`), factors joined by `-` and divisors behind `PER`
+(`KiloM-PER-HR`, `N-M`). Of names that are composed of units listed here the dimension is known, of others it is not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from functools import lru_cache
+
+from selfconf.model.term import IRI
+
+_PREFIX = re.compile(
+    "(?:Yotta|Zetta|Exa|Peta|Tera|Giga|Mega|Kilo|Hecto|Deca|Deci|Centi|Milli|Micro|Nano|Pico|Femto|Kibi|Mebi|Gibi)"
+    "(?=[A-Z])"
+)
+_FACTOR = re.compile(r"([A-Z]+(?:_[A-Z_]+)?)([0-9]*)")
+_UNITS: dict[str, str] = {
+    "M": "length", "IN": "length", "FT": "length", "YD": "length", "MI": "length", "MI_N": "length", "AU": "length",
+    "GM": "mass", "LB": "mass", "OZ": "mass", "TONNE": "mass", "TON_Metric": "mass",
+    "SEC": "time", "MIN": "time", "HR": "time", "DAY": "time", "WK": "time", "MO": "time", "YR": "time",
+    "HZ": "frequency", "REV-PER-MIN": "frequency",
+    "RAD": "angle", "DEG": "angle", "ARCMIN": "angle", "ARCSEC": "angle", "REV": "angle", "GRAD": "angle",
+    "K": "temperature", "DEG_C": "temperature", "DEG_F": "temperature", "DEG_R": "temperature",
+    "A": "current", "V": "voltage", "OHM": "resistance", "FARAD": "capacitance", "C": "charge", "H": "inductance",
+    "N": "force", "LB_F": "force", "KiloGM_F": "force",
+    "J": "energy", "CAL": "energy", "EV": "energy", "BTU_IT": "energy",
+    "W": "power", "HP": "power",
+    "PA": "pressure", "BAR": "pressure", "ATM": "pressure", "PSI": "pressure", "TORR": "pressure",
+    "L": "volume", "GAL_US": "volume",
+    "LUX": "illuminance", "LM": "luminous flux", "CD": "luminous intensity",
+    "BIT": "information", "BYTE": "information",
+    "UNITLESS": "ratio", "PERCENT": "ratio", "PPM": "ratio", "PPB": "ratio", "FRACTION": "ratio",
+    "MOL": "amount", "T": "magnetic flux density", "GAUSS": "magnetic flux density",
+}  # fmt: skip
+_COMPOSED = {"volume": {"length": 3}, "power": {"energy": 1, "time": -1}, "frequency": {"time": -1}}
+"""The dimensions of this list that are composed of others of it."""
+
+Dimension = frozenset[tuple[str, int]]
+"""Base dimensions with their powers."""
+
+
+@lru_cache(maxsize=1024)
+def dimension(unit: IRI) -> Dimension | None:
+    """What a unit measures; None where its name does not tell.
+
+    >>> dimension(IRI("http://qudt.org/vocab/unit/MilliM")) == dimension(IRI("http://qudt.org/vocab/unit/FT"))
+    True
+    """
+    name = unit.short
+    if name in _UNITS:
+        return _composed(Counter({_UNITS[name]: 1}))
+    found: Counter[str] = Counter()
+    above, per, below = name.rpartition("PER-")
+    factors = [(1, one) for one in (above.removesuffix("-") if per else below).split("-") if one or not per]
+    factors += [(-1, one) for one in below.split("-") if per]
+    for sign, factor in factors:
+        measured = _measured(factor)
+        if measured is None:
+            return None
+        found[measured[0]] += sign * measured[1]
+    return _composed(found)
+
+
+def _measured(factor: str) -> tuple[str, int] | None:
+    """What one factor of a unit measures, and its power."""
+    if factor in _UNITS:
+        return _UNITS[factor], 1
+    match = _FACTOR.fullmatch(_PREFIX.sub("", factor, count=1))
+    if match is None or match[1] not in _UNITS:
+        return None
+    return _UNITS[match[1]], int(match[2] or 1)
+
+
+def _composed(found: Counter[str]) -> Dimension:
+    whole: Counter[str] = Counter()
+    for name, power in found.items():
+        for part, times in _COMPOSED.get(name, {name: 1}).items():
+            whole[part] += power * times
+    return frozenset((name, power) for name, power in whole.items() if power)
+
+
+def differ_in_dimension(one: IRI, other: IRI) -> bool | None:
+    """Whether two units measure different things; None where that is not known."""
+    first, second = dimension(one), dimension(other)
+    return None if first is None or second is None else first != second

@@ -1,0 +1,126 @@
+"""What the shape of a role asks of ports: the signal types of its outputs and inputs, and the shape without that.
+
+A property shape is *about ports* if its path begins with `sc:hasOutput` or `sc:hasInput`; so is what `sh:and`, `sh:or`,
+`sh:xone` or `sh:node` lead to, if it holds nothing else. Of these are gathered the classes that it names by
+`sh:hasValue` or `sh:in` behind `sc:signalType`. That is enough to tell how near a component comes; whether it conforms
+is judged by the whole shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+from selfconf.model.port_likeness import Types, WantedPorts
+from selfconf.model.term import IRI, BlankNode, Term
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
+from selfconf.rdf.turtle import Document, Node
+from selfconf.rdf.vocabulary import RDF, SC, SH
+
+_PORTS = frozenset((SC.hasInput, SC.hasOutput))
+_DEEPEST = 16
+"""How many shapes within shapes are looked at."""
+_SAYS_NOTHING = frozenset((RDF.type, SH.name, SH.description, SH.message, SH.severity, SH.order, SH.group))
+
+
+class _Want(NamedTuple):
+    """That a port which a predicate links to is of one of some types."""
+
+    link: IRI
+    types: Types
+
+
+def wanted_ports(document: Document, role: IRI, bindings: Mapping[IRI, Term]) -> WantedPorts | None:
+    """What the shape of a role asks of ports, parameters replaced by their values; None if it asks nothing."""
+    wants = [
+        want
+        for predicate, value in _statements_about_ports(document, role)
+        for want in _said(document, predicate, value, bindings, (), 0)
+    ]
+    if not wants:
+        return None
+    issued = tuple(dict.fromkeys(want.types for want in wants if want.link == SC.hasOutput))
+    given = tuple(dict.fromkeys(want.types for want in wants if want.link == SC.hasInput))
+    return WantedPorts(issued or None, given or None)
+
+
+def without_port_shapes(document: Document, role: IRI) -> Document:
+    """A template in which the shape of a role asks nothing of ports."""
+    about_ports = set(_statements_about_ports(document, role))
+    said = [statement for statement in document.about(role) if statement not in about_ports]
+    statements: dict[Node, list[tuple[IRI, Term]]] = {**document.statements, role: said}
+    return replace(document, statements=statements)
+
+
+def _statements_about_ports(document: Document, role: IRI) -> Iterator[tuple[IRI, Term]]:
+    """The statements about a role that speak of ports alone."""
+    for predicate, value in document.about(role):
+        if predicate in SHAPE_VALUED and predicate != SH["not"]:
+            shapes = document.items(value) if predicate in LISTS_OF_SHAPES else [value]
+            if all(_about_ports(document, shape) for shape in shapes):
+                yield predicate, value
+
+
+def _about_ports(document: Document, shape: Term, depth: int = 0) -> bool:
+    """Whether a shape speaks of ports, and of nothing else."""
+    path = _path(document, shape)
+    if path:
+        return path[0] in _PORTS
+    said = [(predicate, value) for predicate, value in document.about(shape) if predicate not in _SAYS_NOTHING]
+    return bool(said) and all(
+        predicate in SHAPE_VALUED
+        and depth < _DEEPEST
+        and all(
+            _about_ports(document, inner, depth + 1)
+            for inner in (document.items(value) if predicate in LISTS_OF_SHAPES else [value])
+        )
+        for predicate, value in said
+    )
+
+
+def _path(document: Document, shape: Term) -> list[Term]:
+    """The path of a property shape, as the list of its steps."""
+    path = document.value(shape, SH.path)
+    if path is None:
+        return []
+    return list(document.items(path)) if isinstance(path, BlankNode) and document.value(path, RDF.first) else [path]
+
+
+def _wants(
+    document: Document, shape: Term, bindings: Mapping[IRI, Term], before: tuple[Term, ...], depth: int
+) -> Iterator[_Want]:
+    """The types that a shape names, where the path that leads to them goes through the type of a port."""
+    path = (*before, *_path(document, shape))
+    for predicate, value in document.about(shape) if depth < _DEEPEST else ():
+        yield from _said(document, predicate, value, bindings, path, depth)
+
+
+def _said(
+    document: Document, predicate: IRI, value: Term, bindings: Mapping[IRI, Term], path: tuple[Term, ...], depth: int
+) -> Iterator[_Want]:
+    """The types that one statement of a shape names, or the shapes that it leads to."""
+    if predicate in LISTS_OF_SHAPES:
+        found = [want for one in document.items(value) for want in _wants(document, one, bindings, path, depth + 1)]
+        yield from iter(found) if predicate == SH["and"] else _any_of(found)
+    elif predicate in SHAPE_VALUED and predicate != SH["not"]:
+        yield from _wants(document, value, bindings, path, depth + 1)
+    elif predicate in (SH.hasValue, SH["in"]) and SC.signalType in path and isinstance(path[0], IRI):
+        named = [value] if predicate == SH.hasValue else document.items(value)
+        types = tuple(_bound(bindings, named))
+        if types:
+            yield _Want(path[0], types)
+
+
+def _bound(bindings: Mapping[IRI, Term], named: Iterable[Term]) -> Iterator[IRI]:
+    """The classes that some terms are, a parameter being its value."""
+    terms = (bindings.get(one, one) if isinstance(one, IRI) else one for one in named)
+    return (one for one in terms if isinstance(one, IRI))
+
+
+def _any_of(wants: list[_Want]) -> Iterator[_Want]:
+    """Alternatives as one want for each side: a port of any of the types."""
+    for link in (SC.hasOutput, SC.hasInput):
+        types = tuple(dict.fromkeys(one for want in wants if want.link == link for one in want.types))
+        if types:
+            yield _Want(link, types)
