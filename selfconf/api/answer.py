@@ -216,7 +216,7 @@ class Inquiry:
             LeftOut(self._source(component), component, why.reason)
             for component, why in sorted(self.composer.not_judged().items())
         )
-        """The components that play no role as what they say cannot be judged, or would take too long."""
+        """The components that play no role, or feed nothing, as what they say cannot be judged, or not in time."""
 
     def _source(self, component: IRI) -> str:
         """The name of what a component is described in."""

@@ -36,6 +36,13 @@ class RolePartition(Tabular):
         return tuple(candidate.profile.component for candidate in self.candidates)
 
     @property
+    def recruits(self) -> tuple[IRI, ...]:
+        """The components that may be recruited for its players, in the order of preference."""
+        number = self._inquiry.composer.partitioner.roles.index(self._compiled)
+        partition = self._inquiry.composer.partition(self._inquiry.ecology)
+        return tuple(recruit.component for recruit in partition.recruits if number in recruit.roles)
+
+    @property
     def held(self) -> Mapping[IRI, Holder]:
         """The eligible components that other tasks hold, as of the same or a higher priority, and by whom."""
         return {c: self._inquiry.holders[c] for c in self.eligible if c in self._inquiry.holders}

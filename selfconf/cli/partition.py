@@ -100,6 +100,9 @@ def _lines(one: RolePartition, names: Names, why: Why) -> Iterator[str]:
         held = one.held.get(component)
         said = f": {alternative_text(told[component], chosen)}" if component in told else ""
         yield f"  {number}. {names(component)}{said}" + (f"  ({holder_text(held)})" if held is not None else "")
+    if one.recruits:
+        more = len(one.recruits) - SHOWN
+        yield f"  may recruit {', '.join(map(names, one.recruits[:SHOWN]))}" + (f" and {more} more" if more > 0 else "")
     if one.excluded:
         yield "  kept out"
         yield from (f"    {names(e.component)}: {', '.join(map(str, e.obstacles))}" for e in one.excluded[:SHOWN])
@@ -119,6 +122,7 @@ def _body(found: PartitionTable, why: Why) -> dict[str, Any]:
                 "eligible": list(one.eligible),
                 **({"held": [{"component": c, **holder_body(h)} for c, h in one.held.items()]} if one.held else {}),
                 **({"candidates": list(map(alternative_body, why[one.role.iri]))} if why else {}),
+                **({"recruits": list(one.recruits)} if one.role.recruits else {}),
                 "excluded": [
                     {
                         "component": e.component,

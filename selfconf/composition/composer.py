@@ -237,9 +237,17 @@ class Composer:
     def mended(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
         problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
+        eligible = {
+            (role.iri, c.profile.component)
+            for role, some in zip(problem.roles, problem.candidates, strict=True)
+            for c in some
+        }
+        outside = [
+            miss for miss in refusal.near_misses if not miss.recruit and (miss.role, miss.component) not in eligible
+        ]
         near = [
             (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables)))
-            for miss in refusal.near_misses[:NEAR]
+            for miss in outside[:NEAR]
         ]
         return with_relaxations(problem, refusal, near, self.steps)
 

@@ -7,9 +7,11 @@ from dataclasses import replace
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.nearest import nearest_first
+from selfconf.composition.nearest_recruits import recruiting_instead, with_nearest_recruits
 from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
+from selfconf.model.relaxation import LetRecruit
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 
@@ -29,7 +31,11 @@ def explained(
     known = composer.hierarchy if wider is None else wider
     found = limit.within(lambda: nearest_first(composer, ecology, refusal, known), refusal.near_misses)
     refusal = replace(refusal, near_misses=found)
+    refusal = limit.within(lambda: with_nearest_recruits(composer, ecology, refusal, known), refusal)
     refusal = limit.within(lambda: composer.mended(ecology, refusal), refusal)
+    nobody: tuple[LetRecruit, ...] = ()
+    recruiting = limit.within(lambda: tuple(recruiting_instead(composer, ecology, refusal)), nobody)
+    refusal = replace(refusal, repairs=(*recruiting, *refusal.repairs))
     if wider is not None and limit.within(lambda: composer.possible_under(ecology, wider), False):
         return replace(refusal, hint="with --reasoning subclass there is a configuration")
     return refusal

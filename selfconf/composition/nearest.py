@@ -62,6 +62,19 @@ def nearest_first(
     return (*slips, *found)
 
 
+def fault_of(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], component: IRI, output: Output, wanted: Condition
+) -> UnfitOutput | None:
+    """In what an output differs from what an input asks for besides the type; None if in nothing."""
+    units = None if output.unit is None or wanted.unit in (None, output.unit) else (output.unit, wanted.unit)
+    frames = None if output.frame is None or wanted.frame in (None, output.frame) else (output.frame, wanted.frame)
+    unaccepted = None
+    if wanted.accepts is not None and wanted.accepts not in output.conforms:
+        index = composer.gathered(ecology)
+        unaccepted = composer.partitioner.unaccepted(index, component, output.name, wanted.accepts)
+    return UnfitOutput(output.name, units, frames, unaccepted) if units or frames or unaccepted else None
+
+
 def _sources(problem: Problem, sink: IRI) -> tuple[int, ...]:
     """The roles, by number, that feed a role."""
     return problem.sources[next(number for number, role in enumerate(problem.roles) if role.iri == sink)]
@@ -114,19 +127,8 @@ class _Question:
             plain = Input("", need.wanted.signals)
             for output in profile.outputs:
                 if need.wanted.condition is not None and self._problem.hierarchy.pairs(output, plain):
-                    return self._at_fault(profile.component, output, need.wanted.condition)
+                    return fault_of(self._composer, self._ecology, profile.component, output, need.wanted.condition)
         return None
-
-    def _at_fault(self, component: IRI, output: Output, wanted: Condition) -> UnfitOutput | None:
-        """In what an output differs from what an input asks for besides the type; None if in nothing."""
-        units = None if output.unit is None or wanted.unit in (None, output.unit) else (output.unit, wanted.unit)
-        frames = None if output.frame is None or wanted.frame in (None, output.frame) else (output.frame, wanted.frame)
-        unaccepted = None
-        if wanted.accepts is not None and wanted.accepts not in output.conforms:
-            ecology = self._composer.gathered(self._ecology)
-            unaccepted = self._composer.partitioner.unaccepted(ecology, component, output.name, wanted.accepts)
-        found = UnfitOutput(output.name, units, frames, unaccepted)
-        return found if units or frames or unaccepted else None
 
     def ranked(self, misses: Iterable[NearMiss]) -> list[NearMiss]:
         """Near misses of the role, the nearest first; of several of one component the last."""

@@ -298,6 +298,19 @@ class UnfitOutput(_Predicate):
         return f"issues what {' and '.join(said)} (output {self.output!r})"
 
 
+@dataclass(frozen=True, slots=True)
+class NotFedItself(_Predicate):
+    """The component issues what an input wants, but could not be recruited: an input of its own stays unfed."""
+
+    code: ClassVar[str] = "not-fed-itself"
+    input: str
+    signals: tuple[IRI, ...]
+
+    def __str__(self) -> str:
+        wanted = " or ".join(signal.short for signal in self.signals) or "signal"
+        return f"is not fed itself: no component that can be recruited issues a {wanted} for its input {self.input!r}"
+
+
 def _issuing(match: SignalMatch) -> str:
     wanted = match.wanted.short if match.wanted else "signal without a type"
     if match.offered is None:
@@ -335,6 +348,7 @@ Obstacle = (
     | ParameterForbids
     | UnlikePorts
     | UnfitOutput
+    | NotFedItself
     | NotJudged
 )
 

@@ -68,6 +68,8 @@ class NearMiss:
     """For each free parameter that it constrains, the values that it would allow."""
     likeness: float = field(default=0.0, kw_only=True, compare=False)
     """How near it comes to what the role asks for, from 0 to 1, by its ports and its texts."""
+    recruit: bool = field(default=False, kw_only=True)
+    """Whether it would not play the role, but be recruited for it."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the component is described, if that is known."""
 

@@ -142,6 +142,8 @@ class InputUnfed:
     """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
     recruits: bool = False
     """Whether the role recruits, so that components outside of the roles could have fed it."""
+    nearest: NearMiss | None = field(default=None, kw_only=True, compare=False)
+    """The component that comes nearest to being recruited for it, if there is one."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the role or component that it speaks of is described, if that is known."""
 
@@ -154,6 +156,8 @@ class InputUnfed:
         if self.recruits:
             no_role = f"no recruit that can be fed itself {issues}"
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
+        if self.nearest is not None:
+            lack += f"; the nearest is {self.nearest.component.short}, which {self.nearest.obstacle}"
         verdict = "needs cannot be called" if called else "cannot be fed"
         return "; so ".join([f"{name} {verdict}: {lack}", *map(str, self.consequences)])
 

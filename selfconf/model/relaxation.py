@@ -95,6 +95,23 @@ class AskForFewer:
 
 
 @dataclass(frozen=True, slots=True)
+class LetRecruit:
+    """A role that recruits makes the task possible."""
+
+    code: ClassVar[str] = "let-recruit"
+    role: IRI
+    recruits: tuple[IRI, ...]
+    """The components that would be recruited."""
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where the role or component to be changed is described, if that is known."""
+
+    def __str__(self) -> str:
+        would = "it would bring" if self.recruits else "no recruit would be needed"
+        names = listed(recruit.short for recruit in self.recruits)
+        return f"let the role {self.role.short} recruit (sc:recruits true): {would} {names}".rstrip()
+
+
+@dataclass(frozen=True, slots=True)
 class AddInteraction:
     """One more interaction makes the task possible."""
 
@@ -128,4 +145,4 @@ class AcceptNearMiss:
         return f"let {self.near.component.short} play {self.near.role.short}, although {self.near}"
 
 
-Relaxation = AddComponents | AskForFewer | AddInteraction | AcceptNearMiss
+Relaxation = AddComponents | AskForFewer | AddInteraction | LetRecruit | AcceptNearMiss

@@ -112,6 +112,7 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
                 "component": miss.component,
                 "obstacle": str(miss.obstacle),
                 **likeness_body(miss.obstacle, miss.likeness),
+                **({"recruit": True} if miss.recruit else {}),
                 **_place(miss),
             }
             for miss in refusal.near_misses

@@ -160,4 +160,5 @@ def _placed(sentence: str, fact: Reason | Relaxation | NearMiss) -> str:
 
 
 def _near_miss(miss: NearMiss, name: Name) -> str:
-    return f"{miss.role.short}: {name(miss.component)} would fit, but {miss}"
+    would = "could be recruited" if miss.recruit else "would fit"
+    return f"{miss.role.short}: {name(miss.component)} {would}, but {miss}"

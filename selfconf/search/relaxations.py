@@ -33,6 +33,7 @@ from selfconf.model.relaxation import (
     AddInteraction,
     Addition,
     AskForFewer,
+    LetRecruit,
     Relaxation,
 )
 from selfconf.model.requirement import InputFed, RolePlayed
@@ -106,10 +107,9 @@ def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
         interactions = (*template.interactions, Interaction(relaxation.role, relaxation.sink))
         template = replace(template, interactions=interactions)
     else:
-        roles = tuple(
-            replace(role, minimum=relaxation.minimum) if role.iri == relaxation.role else role
-            for role in template.roles
-        )
+        # Who may be recruited is for the partition to know, which is not changed here.
+        changed = {"recruits": True} if isinstance(relaxation, LetRecruit) else {"minimum": relaxation.minimum}
+        roles = tuple(replace(role, **changed) if role.iri == relaxation.role else role for role in template.roles)
         template = replace(template, roles=roles)
     return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
 

@@ -95,6 +95,19 @@ def test_text_shows_the_nearest_of_many_and_json_all(tmp_path: Path, capsys: pyt
     assert excluded[0] == {"component": iri("near"), "of_its_class": True, "obstacles": ["p is 2, not 1"]}
 
 
+def test_who_may_be_recruited_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = PREFIXES + ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :K ; sc:recruits [ sh:class :S ] ."
+    (tmp_path / "t.ttl").write_text(text)
+    (tmp_path / "ads.ttl").write_text(
+        PREFIXES + ":k a sc:Component, :K . " + "".join(f":s{n} a sc:Component, :S . " for n in range(10))
+    )
+    given = str(tmp_path / "t.ttl"), "--ads", str(tmp_path / "ads.ttl")
+    line = "  may recruit " + ", ".join(f":s{n}" for n in range(8)) + " and 2 more"
+    assert told(capsys, *given).splitlines()[2] == line
+    (role,) = json.loads(told(capsys, *given, "--format", "json"))["roles"]
+    assert role["recruits"] == [iri(f"s{n}") for n in range(10)]
+
+
 def spelt(text: str) -> dict[str, str]:
     """What is printed for each role."""
     parts = re.split(r"^# (\S+)\n", text, flags=re.MULTILINE)[1:]

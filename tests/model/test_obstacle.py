@@ -15,6 +15,7 @@ from selfconf.model.obstacle import (
     NoAlternative,
     NoCommonValue,
     NotAmong,
+    NotFedItself,
     NotJudged,
     Obstacle,
     ParameterForbids,
@@ -107,6 +108,11 @@ WORDED: list[tuple[Obstacle, str, str]] = [
         "needs Map and would be given Plan, which is akin to it",
         "it needs Map and would be given Plan, which is akin to it",
     ),
+    (
+        NotFedItself("raw", (IRI("urn:Echo"), IRI("urn:Ping"))),
+        "is not fed itself: no component that can be recruited issues a Echo or Ping for its input 'raw'",
+        "it is not fed itself: no component that can be recruited issues a Echo or Ping for its input 'raw'",
+    ),
     (NotJudged("too much"), "is not judged: too much", "it is not judged: too much"),
     *(
         (UnfitOutput("d", units, frames, wrong), f"{said} (output 'd')", f"it {said} (output 'd')")
@@ -154,6 +160,7 @@ def test_codes_are_stable_and_different() -> None:
         "excluded",
         "no-alternative",
         "no-common-value",
+        "not-fed-itself",
         "not-judged",
         "parameter-forbids",
         "parameter-undeclared",

@@ -15,6 +15,7 @@ from selfconf.model.relaxation import (
     AddInteraction,
     Addition,
     AskForFewer,
+    LetRecruit,
     Relaxation,
 )
 from tests.lab import iri
@@ -47,6 +48,8 @@ WORDED: list[tuple[Relaxation, str]] = [
     (AskForFewer(EYE, 0), "let the role eye be optional (sc:minCount 0)"),
     (AskForFewer(EYE, 2), "let the role eye ask for 2 (sc:minCount 2)"),
     (AddInteraction(EYE, MIND), "let the role eye feed the role mind (sc:feeds)"),
+    (LetRecruit(EYE, (iri("lens"),)), "let the role eye recruit (sc:recruits true): it would bring lens"),
+    (LetRecruit(EYE, ()), "let the role eye recruit (sc:recruits true): no recruit would be needed"),
     (
         AcceptNearMiss(NearMiss(EYE, iri("cap"), WrongType(iri("Eye"))), Candidate(Profile(iri("cap")))),
         "let cap play eye, although it is no Eye",
@@ -62,6 +65,7 @@ def test_every_relaxation_is_worded_and_has_a_code_and_a_role() -> None:
         "add-components",
         "add-interaction",
         "ask-for-fewer",
+        "let-recruit",
     ]
 
 

@@ -115,12 +115,21 @@ class OutputShape:
         steps = ".".join(step.short for step in _steps(self._document, value))
         return predicate, self._names.setdefault(value, IRI(f"{_PATH}{len(self._names)}#{steps}"))
 
-    def conforming(self, outputs: Sequence[Port], seen: SeenOutputs) -> set[Port]:
-        """Those of some outputs that conform. Raises TemplateError where that cannot be judged."""
-        passed = [
-            port for looks, some in seen.alike(self._paths, outputs).items() if self._passes(looks) for port in some
-        ]
-        return {*passed} if self._tests.complete or not passed else self._by_pyshacl(passed, seen)
+    def conforming(
+        self, outputs: Sequence[Port], seen: SeenOutputs, not_judged: dict[Port, NotJudged] | None = None
+    ) -> set[Port]:
+        """Those of some outputs that conform; those that cannot be judged are noted in `not_judged`.
+
+        Raises TemplateError where none can be judged, as then it is the shape that is at fault.
+        """
+        passed: list[Port] = []
+        for looks, some in seen.alike(self._paths, outputs).items():
+            obstacle = self._obstacle(looks)
+            if obstacle is None:
+                passed += some
+            elif isinstance(obstacle, NotJudged) and not_judged is not None:
+                not_judged.update(dict.fromkeys(some, obstacle))
+        return {*passed} if self._tests.complete or not passed else self._by_pyshacl(passed, seen, not_judged)
 
     def obstacle(self, output: Port, seen: SeenOutputs) -> Obstacle | None:
         """What keeps an output from conforming, if anything does. Raises TemplateError where that cannot be judged."""
@@ -130,10 +139,6 @@ class OutputShape:
             return ShapeViolated("it does not conform")
         return found
 
-    def _passes(self, looks: Looks) -> bool:
-        """Whether outputs that look alike pass the tests that were compiled."""
-        return self._obstacle(looks) is None
-
     def _obstacle(self, looks: Looks) -> Obstacle | None:
         """The first obstacle that outputs which look alike meet in the tests."""
         ends, types = looks
@@ -141,7 +146,9 @@ class OutputShape:
         # The tests look at the profile of a component, so that is what an output has to look like.
         return next(self._tests.obstacles(Profile(_OUTPUT, types, tuple(pairs)), self._hierarchy), None)
 
-    def _by_pyshacl(self, outputs: Sequence[Port], seen: SeenOutputs) -> set[Port]:
+    def _by_pyshacl(
+        self, outputs: Sequence[Port], seen: SeenOutputs, not_judged: dict[Port, NotJudged] | None = None
+    ) -> set[Port]:
         from selfconf.rdf.conformance import violations  # most shapes are compiled in full: pySHACL is not loaded
         from selfconf.rdf.rdflib_terms import to_rdflib
 
@@ -156,6 +163,10 @@ class OutputShape:
             wrong = violations(data, shapes, _SHAPE, list(nodes.values()), "sc:accepts", detailed=False)
             found |= {port for port, node in nodes.items() if node not in wrong}
             reasons += [one for some in wrong.values() for one in some]
+            for port, node in nodes.items():
+                for one in wrong.get(node, ()):
+                    if not_judged is not None and isinstance(one, NotJudged):
+                        not_judged[port] = one
         if not found and all(isinstance(one, NotJudged) for one in reasons):
             raise TemplateError(str(reasons[0]), file="sc:accepts")  # no output is to blame
         return found
@@ -175,7 +186,7 @@ class Acceptance:
         self._hierarchy = hierarchy
         self._shapes: dict[str, OutputShape | NotJudged] = {}
         self.not_judged: dict[IRI, NotJudged] = {}
-        """Of the partition that was looked at last: the components whose inputs state a shape that cannot be judged."""
+        """Of the partition looked at last: the components of which an input's shape, or an output, cannot be judged."""
 
     def judged(self, template: Template, partition: Partition, seen: Seen) -> Partition:
         """A partition in which each output tells to which of the shapes it conforms that inputs ask of it."""
@@ -234,8 +245,13 @@ class Acceptance:
             if not in_time:
                 self._shapes[text] = NotJudged("the shapes that inputs accept take too long to be judged")
                 return set()
+            slow: dict[Port, NotJudged] = {}
             try:
-                return shape.conforming(outputs, seen)
+                conforming = shape.conforming(outputs, seen, slow)
+                for (component, name), why in slow.items():
+                    said = f"its output {name!r} feeds no input that accepts some outputs only: {why.reason}"
+                    self.not_judged.setdefault(component, NotJudged(said))
+                return conforming
             except AuthorError as error:
                 self._shapes[text] = _cannot_be_judged(error)
         return set()

@@ -32,7 +32,10 @@ LITERAL = COUNTS | SWITCHES | LIMITS | _terms("pattern", "flags")
 NODES = _terms("node", "not", "property", "qualifiedValueShape", "sparql")
 NODE_KINDS = _terms("IRI", "BlankNode", "Literal", "BlankNodeOrIRI", "BlankNodeOrLiteral", "IRIOrLiteral")
 ONLY_WITH_A_PATH = _terms("minCount", "maxCount", "uniqueLang", "lessThan", "lessThanOrEquals", "qualifiedValueShape")
-
+PATH_FORMS = _terms("inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
+"""What leads from a path in brackets to the path that it is made of; an alternative leads to a list of paths."""
+DEEPEST_PATH = 50
+"""How deep paths within paths are looked at: one that leads back to itself is none."""
 
 ILL_FORMED = "This is not a well-formed shape."
 """What is said of a shape where no more can be told."""
@@ -85,11 +88,39 @@ def _fits(document: Document, predicate: IRI, value: Term) -> bool:
         return literal is not None
     if predicate == SH.nodeKind:
         return value in NODE_KINDS
-    if predicate == SH.property:
-        return len(document.values(value, SH.path)) == 1
     if predicate == SH.pattern:
         return literal is not None and _compiles(literal.lexical)
-    return literal is None
+    return literal is None and _fitting_node(document, predicate, value)
+
+
+def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:
+    """Whether a node may be the value of one of SHACL's properties that lead to nodes."""
+    if predicate == SH.property:
+        return len(document.values(value, SH.path)) == 1
+    return predicate != SH.path or is_path(document, value)
+
+
+def is_path(document: Document, path: Term, depth: int = 0) -> bool:
+    """Whether a term is a property path (SHACL, 2.3.1): a property, or a blank node with one of the forms of a path."""
+    if depth > DEEPEST_PATH or isinstance(path, Literal) or path == NIL:
+        return False
+    if isinstance(path, IRI):
+        return True
+    said = document.about(path)
+    if document.value(path, FIRST) is not None:
+        return _paths(document, path, depth)
+    if len(said) != 1:
+        return False
+    ((form, inner),) = said
+    if form == SH.alternativePath:
+        return _paths(document, inner, depth)
+    return form in PATH_FORMS and is_path(document, inner, depth + 1)
+
+
+def _paths(document: Document, head: Term, depth: int) -> bool:
+    """Whether a list has two members or more, each of them a path."""
+    members = document.items(head)
+    return len(members) > 1 and all(is_path(document, member, depth + 1) for member in members)
 
 
 def _compiles(pattern: str) -> bool:

@@ -186,3 +186,20 @@ def test_many_strangers_with_shapes_of_their_own_change_no_answer() -> None:
         among.recruits,
         among.connections,
     )
+
+
+def test_an_output_that_takes_too_long_to_judge_feeds_nothing_and_is_named() -> None:
+    port = 'sc:hasOutput [ sc:name "o" ; sc:signalType :Pose ]'
+    accepts = 'sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :model ) ; sh:pattern "^(?:(a|b|ab)+)\\\\1?$" ]'
+    wants = f'sc:hasInput [ sc:name "i" ; sc:signalType :Pose ; sc:accepts [ {accepts} ] ]'
+    ads = f""":slow a sc:Component, :Sensor ; :model "{"ab" * 40}!" ; {port} .
+        :quick a sc:Component, :Sensor ; :model "aa" ; {port} . :show a sc:Component, :Display ; {wants} ."""
+    ecology = AdvertisementIndex.of(read_advertisements((PREFIXES + ads).encode(), "ads")[0])
+    partitioner = Partitioner(template(TASK).document, NOTHING_ABOVE)
+    sensors, _ = partitioner.partition(ecology).candidates
+    assert [bool(one.profile.outputs[0].conforms) for one in sensors] == [True, False]
+    ((component, why),) = partitioner.not_judged.items()
+    assert component == home("slow")
+    assert why.reason.startswith(
+        "its output 'o' feeds no input that accepts some outputs only: matching the sh:pattern"
+    )

@@ -1,0 +1,111 @@
+"""What a refusal says of recruits: who comes nearest to feeding an input, and whether it would help to recruit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from selfconf.composition.composer import Composer
+from selfconf.composition.nearest import fault_of
+from selfconf.model.configuration import Configuration
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.nearness import Near, ranked
+from selfconf.model.obstacle import NotFedItself, Obstacle
+from selfconf.model.partition import NearMiss
+from selfconf.model.port_likeness import PortLikeness, WantedPorts
+from selfconf.model.profile import Input, Profile
+from selfconf.model.refusal import InputUnfed, Refusal
+from selfconf.model.relaxation import LetRecruit
+from selfconf.model.requirement import InputFed
+from selfconf.model.signal_likeness import SignalLikeness
+from selfconf.model.term import IRI
+from selfconf.model.text_likeness import words
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.search.budget import Budget
+from selfconf.search.problem import Problem
+from selfconf.search.strategies import possible
+
+MOST_NAMED = 8
+"""How many components are named that could nearly be recruited for an input."""
+MOST_ROLES = 4
+"""Of how many roles it is tried whether they would better recruit."""
+TRIAL_STEPS = 100_000
+"""Steps for the question whether there is a solution where a role recruits."""
+
+
+def with_nearest_recruits(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal, known: Hierarchy
+) -> Refusal:
+    """A refusal that names, for each input that a recruit could have fed, those who come nearest to it."""
+    problem = Problem(composer.task.task, composer.partition(ecology), composer.hierarchy)
+    near: list[NearMiss] = []
+    reasons = []
+    for reason in refusal.reasons:
+        if isinstance(reason, InputUnfed) and reason.recruits:
+            few = list(_nearest(composer, ecology, problem, reason, SignalLikeness(known)))[:MOST_NAMED]
+            reason = replace(reason, nearest=few[0] if few else None)
+            near += few
+        reasons.append(reason)
+    return replace(refusal, reasons=tuple(reasons), near_misses=(*refusal.near_misses, *near))
+
+
+def _nearest(
+    composer: Composer,
+    ecology: Mapping[IRI, Advertisement],
+    problem: Problem,
+    reason: InputUnfed,
+    signals: SignalLikeness,
+) -> Iterator[NearMiss]:
+    """Those who could nearly be recruited for an input, the nearest first."""
+    number = next(number for number, role in enumerate(problem.roles) if role.iri == reason.role)
+    profiles = [r.profile for r in problem.supply.recruits if number in r.roles and r.component != reason.component]
+    ports = PortLikeness([WantedPorts((reason.wanted.signals,))], signals)
+    question = [word for signal in reason.wanted.signals for word in words(signal.short)] + words(reason.input)
+    for near in ranked(profiles, ports, question):
+        if near.lacking is not None and near.lacking.issued[0].likeness:
+            obstacle = _obstacle(composer, ecology, problem, reason, near)
+            likeness = near.likeness
+            yield NearMiss(reason.role, near.profile.component, obstacle, likeness=likeness, recruit=True)
+
+
+def _obstacle(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], problem: Problem, reason: InputUnfed, near: Near
+) -> Obstacle:
+    """Why a component is not recruited for an input."""
+    wanted = reason.wanted
+    plain = Input(reason.input, wanted.signals)
+    matching = [output for output in near.profile.outputs if problem.hierarchy.pairs(output, plain)]
+    for output in matching:
+        if wanted.condition is not None:
+            fault = fault_of(composer, ecology, near.profile.component, output, wanted.condition)
+            if fault is not None:
+                return fault
+    unfed = _unfed(problem, near.profile) if matching else None
+    assert near.lacking is not None  # for ports are compared
+    return near.lacking if unfed is None else NotFedItself(unfed.name, unfed.signals)
+
+
+def _unfed(problem: Problem, profile: Profile) -> Input | None:
+    """The first input of a component that neither players nor recruits that are fed themselves could feed."""
+    outputs = {output for some in problem.candidates for c in some for output in c.profile.outputs}
+    available = problem.supply.available(problem.supply.usable(outputs))
+    for output in outputs:
+        available.add(output)
+    return next((port for port in profile.required if not available.serves(port.wanted)), None)
+
+
+def recruiting_instead(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal
+) -> Iterator[LetRecruit]:
+    """Of the roles with unfed inputs that recruit nobody, each that makes the task possible if it recruits."""
+    template = composer.task.task.template
+    unfed = dict.fromkeys(r.role for one in refusal.reasons for r in one.requirements if isinstance(r, InputFed))
+    for iri in [iri for iri in unfed if not template.role(iri).recruits][:MOST_ROLES]:
+        roles = tuple(replace(role, recruits=True) if role.iri == iri else role for role in template.roles)
+        task = replace(composer.task.task, template=replace(template, roles=roles))
+        changed = Composer(replace(composer.task, task=task), composer.hierarchy, steps=composer.steps)
+        problem = Problem(task, changed.partition(ecology), changed.hierarchy)
+        if possible(problem, Budget(TRIAL_STEPS)):
+            found = changed.compose(ecology, frozenset(), None)
+            if isinstance(found, Configuration):
+                yield LetRecruit(iri, found.recruits)

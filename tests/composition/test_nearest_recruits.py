@@ -1,0 +1,94 @@
+"""What a refusal says of recruits: the nearest, what keeps it from being recruited, and when it helps to recruit."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.composition.composer import Composer
+from selfconf.composition.explanation import explained
+from selfconf.composition.time_limit import TimeLimit
+from selfconf.model.configuration import Configuration
+from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.refusal import InputUnfed, Refusal
+from selfconf.model.relaxation import LetRecruit
+from selfconf.model.term import IRI
+from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.turtle import document as turtle
+from tests.lab import PREFIXES
+from tests.rdf.eligibility.test_partitioner import read
+
+NEEDY = ':needy a sc:Component , :Localiser ; sc:hasInput [ sc:name "scan" ; sc:signalType :Scan{} ] .'
+ABOVE = Hierarchy([(IRI(f"https://example.org/peis-home#{one}"), IRI("urn:Ranges")) for one in ("Scan", "Echo")])
+
+
+def composer(recruits: str) -> Composer:
+    text = f"{PREFIXES} :t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Localiser{recruits} ."
+    return Composer(bindings.complete(templates.read_task(turtle.parse(text, "t.ttl"))))
+
+
+def refused(recruits: str, *ads: str) -> Refusal:
+    asked, ecology = composer(recruits), {one.component: one for one in read(ads)}
+    answer = asked.compose(ecology, frozenset(), None)
+    assert isinstance(answer, Refusal)
+    return explained(asked, ecology, answer, ABOVE, TimeLimit(None))
+
+
+def source(name: str, signal: str, more: str = "") -> str:
+    return f':{name} a sc:Component , :Source ; sc:hasOutput [ sc:name "o" ; sc:signalType :{signal}{more} ] .'
+
+
+def nearest(*ads: str, wanting: str = "") -> tuple[str, list[str]]:
+    """What the reason says of the nearest recruit, and the names of all who are near."""
+    refusal = refused(" ; sc:recruits true", NEEDY.format(wanting), *ads)
+    (reason,) = refusal.reasons
+    assert isinstance(reason, InputUnfed)
+    names = [miss.component.short for miss in refusal.near_misses if miss.recruit]
+    return str(reason).partition("; the nearest is ")[2], names
+
+
+def test_the_nearest_recruit_is_named_with_what_it_issues() -> None:
+    said, names = nearest(source("camera", "Image"), source("sonar", "Echo"))
+    assert said == "sonar, which issues Echo, which is akin to Scan"
+    assert names == ["sonar"]
+
+
+def test_a_recruit_that_is_not_fed_itself_is_named_with_what_it_lacks() -> None:
+    converter = (
+        ':converter a sc:Component , :Source ; sc:hasInput [ sc:name "raw" ; sc:signalType :Raw ] ;'
+        ' sc:hasOutput [ sc:name "o" ; sc:signalType :Scan ] .'
+    )
+    said, names = nearest(converter, source("sonar", "Echo"))
+    assert said.startswith("converter, which is not fed itself: no component that can be recruited issues a Raw for")
+    assert names == ["converter", "sonar"]
+
+
+def test_a_recruit_in_another_unit_or_that_is_not_accepted_is_named_with_that() -> None:
+    said, _ = nearest(source("lidar", "Scan", " ; sc:unit unit:MilliM"), wanting=" ; sc:unit unit:M")
+    assert said == "lidar, which issues what is in MilliM, not in M, a unit of the same dimension (output 'o')"
+    shape = " ; sc:accepts [ sh:property [ sh:path sc:frame ; sh:minCount 1 ] ]"
+    said, _ = nearest(source("lidar", "Scan"), wanting=shape)
+    assert said == "lidar, which issues what is not accepted: it has no frame (output 'o')"
+
+
+def test_where_nobody_is_near_nobody_is_named() -> None:
+    assert nearest(source("camera", "Image")) == ("", [])
+
+
+def test_who_could_be_recruited_is_not_advised_as_a_player() -> None:
+    refusal = refused(" ; sc:recruits true", NEEDY.format(""), source("sonar", "Echo"))
+    assert not [one for one in refusal.repairs if one.code in ("accept-near-miss", "let-recruit")]
+
+
+def test_that_a_role_recruits_is_advised_where_it_helps() -> None:
+    ads = NEEDY.format(""), source("lidar", "Scan")
+    (advice,) = [one for one in refused("", *ads).repairs if isinstance(one, LetRecruit)]
+    assert str(advice) == "let the role r recruit (sc:recruits true): it would bring lidar"
+    followed = composer(" ; sc:recruits true").compose({one.component: one for one in read(ads)}, frozenset(), None)
+    assert isinstance(followed, Configuration)
+    assert followed.recruits == advice.recruits
+
+
+@pytest.mark.parametrize("signal", ["Echo", "Image"])
+def test_that_a_role_recruits_is_not_advised_where_it_does_not_help(signal: str) -> None:
+    refusal = refused("", NEEDY.format(""), source("other", signal))
+    assert not [one for one in refusal.repairs if isinstance(one, LetRecruit)]
