@@ -177,7 +177,7 @@ class Composer:
                 continue
             steps = RECRUIT_STEPS if self.steps is None else self.steps
             whole = recruited(problem, outcome, kept, steps)
-            other = first_recruited(problem, steps) if whole is None else whole[0]
+            other = first_recruited(problem, steps, running) if whole is None else whole[0]
             if other is None:
                 roles = tuple(role.iri for role in problem.roles)
                 conflict = Conflict(roles, requirements=tuple(map(RolePlayed, roles)))

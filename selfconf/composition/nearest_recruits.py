@@ -25,11 +25,11 @@ from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import possible
 
-MOST_NAMED = 8
+RECRUITS_NAMED = 8
 """How many components are named that could nearly be recruited for an input."""
-MOST_ROLES = 4
+RECRUITING_ROLES = 4
 """Of how many roles it is tried whether they would better recruit."""
-TRIAL_STEPS = 100_000
+RECRUITING_STEPS = 100_000
 """Steps for the question whether there is a solution where a role recruits."""
 
 
@@ -42,7 +42,7 @@ def with_nearest_recruits(
     reasons = []
     for reason in refusal.reasons:
         if isinstance(reason, InputUnfed) and reason.recruits:
-            few = list(_nearest(composer, ecology, problem, reason, SignalLikeness(known)))[:MOST_NAMED]
+            few = list(_nearest(composer, ecology, problem, reason, SignalLikeness(known)))[:RECRUITS_NAMED]
             reason = replace(reason, nearest=few[0] if few else None)
             near += few
         reasons.append(reason)
@@ -100,12 +100,12 @@ def recruiting_instead(
     """Of the roles with unfed inputs that recruit nobody, each that makes the task possible if it recruits."""
     template = composer.task.task.template
     unfed = dict.fromkeys(r.role for one in refusal.reasons for r in one.requirements if isinstance(r, InputFed))
-    for iri in [iri for iri in unfed if not template.role(iri).recruits][:MOST_ROLES]:
+    for iri in [iri for iri in unfed if not template.role(iri).recruits][:RECRUITING_ROLES]:
         roles = tuple(replace(role, recruits=True) if role.iri == iri else role for role in template.roles)
         task = replace(composer.task.task, template=replace(template, roles=roles))
         changed = Composer(replace(composer.task, task=task), composer.hierarchy, steps=composer.steps)
         problem = Problem(task, changed.partition(ecology), changed.hierarchy)
-        if possible(problem, Budget(TRIAL_STEPS)):
+        if possible(problem, Budget(RECRUITING_STEPS)):
             found = changed.compose(ecology, frozenset(), None)
             if isinstance(found, Configuration):
                 yield LetRecruit(iri, found.recruits)

@@ -210,6 +210,39 @@ def test_of_equally_few_recruits_those_that_run_are_kept() -> None:
     assert found[0].recruits == (iri("b"),)
 
 
+def busy(unrelated: int) -> Problem:
+    """A problem whose first solution has no recruits: the only supplier of `needy` has to play a role itself.
+
+    Roles that have nothing to do with it follow, with five candidates each.
+    """
+    needy, other, plain = component("needy", "s:S"), component("other", "s:S"), component("plain")
+    supplier = component("supplier", outputs="s:S")
+    roles = {"user": [needy, other, plain], "job": [supplier]}
+    roles |= {f"idle{k}": [component(f"idle{k}-{n}") for n in range(5)] for k in range(unrelated)}
+    helped = with_recruits(problem(roles), supplier)
+    few = tuple(replace(role, recruits=role.iri == iri("user")) for role in helped.roles)
+    template = replace(helped.task.template, roles=few)
+    return Problem(replace(helped.task, template=template), helped.partition)
+
+
+@pytest.mark.parametrize("unrelated", [0, 1, 12])
+def test_players_on_whom_no_recruit_depends_are_not_tried_in_all_ways(unrelated: int) -> None:
+    found = first_recruited(busy(unrelated), steps=2_000)
+    assert isinstance(found, Configuration)
+    assert found.assignments[0].components == (iri("plain"),)
+
+
+def test_of_players_with_recruits_those_that_run_come_first() -> None:
+    helped = busy(2)
+    fresh = first_recruited(helped)
+    assert isinstance(fresh, Configuration)
+    ran = replace(fresh.assignments[2], components=(iri("idle0-3"),))
+    running = replace(fresh, assignments=(*fresh.assignments[:2], ran, *fresh.assignments[3:]))
+    kept = first_recruited(helped, running=running)
+    assert isinstance(kept, Configuration)
+    assert [a.components[0].short for a in kept.assignments] == ["plain", "supplier", "idle0-3", "idle1-0"]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

@@ -37,6 +37,11 @@ class CandidateSearch:
         self.slots = [role for role, asked in enumerate(problem.roles) for _ in range(asked.minimum)]
         self.playing: list[list[Candidate]] = [[] for _ in problem.roles]
         self.taken: set[str] = set()
+        self.matters = len(self.slots) - 1
+        """The last slot on which it depends whether a solution will do for the caller.
+
+        Solutions that differ from one only in later slots are skipped.
+        """
         self.furthest = 0
         """How many slots have been filled at the same time, at most."""
         self._values = [problem.open_values]
@@ -94,10 +99,17 @@ class CandidateSearch:
                     return
             else:
                 yield self.playing
+                for _ in range(place - 1 - max(self.matters, -1)):
+                    place -= 1
+                    self._empty(place)
             place -= 1
             if place >= 0:
-                self.taken.discard(self.playing[slots[place]].pop().profile.component)
-                self._values.pop()
+                self._empty(place)
+
+    def _empty(self, place: int) -> None:
+        """Take the candidate out of a slot, the last one that is filled."""
+        self.taken.discard(self.playing[self.slots[place]].pop().profile.component)
+        self._values.pop()
 
     def _given_up(self, given: int | None) -> bool:
         """Return whether the budget is used up, or the search has taken more steps than its pace allows."""
