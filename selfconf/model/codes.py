@@ -672,6 +672,48 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L19", "What a role recruits is possible.",
+        "If the shape of its suppliers contradicts itself, or holds of no advertisement, nobody can ever be recruited.",
+        f"{_PAIR}\n:source sc:recruits [ sh:property [ sh:path rob:place ; sh:hasValue :kitchen ] ,\n"
+        "    [ sh:path rob:place ; sh:in ( :bedroom :hall ) ] ] .",
+        f"{_PAIR}\n:source sc:recruits [ sh:property [ sh:path rob:place ; sh:minCount 1 ] ,\n"
+        "    [ sh:path rob:place ; sh:in ( :bedroom :hall ) ] ] .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L20", "A role that asks for nobody feeds another, or is fed.",
+        "Components of a role with sc:minCount 0 join where they feed or are fed.",
+        ":radio a sc:Template ; sc:roles ( :source :sink ) .\n"
+        ":source a sc:Role ; sh:class rob:Tuner .\n:sink a sc:Role ; sh:class rob:Speaker ; sc:minCount 0 .",
+        f"{_PAIR}\n:sink sc:minCount 0 .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L21", "Ports of one signal type have units of one dimension.",
+        "An output in kilograms never feeds an input in metres. One of the two units is likely not what was meant.",
+        ':gauge a sc:Component, rob:Sensor ;\n'
+        '    sc:hasOutput [ sc:name "d" ; sc:signalType rob:Odometry2D ; sc:unit unit:KiloGM ] .\n'
+        ":panel a sc:Component, rob:Display ;\n"
+        '    sc:hasInput [ sc:name "d" ; sc:signalType rob:Odometry2D ; sc:unit unit:M ] .',
+        ':gauge a sc:Component, rob:Sensor ;\n'
+        '    sc:hasOutput [ sc:name "d" ; sc:signalType rob:Odometry2D ; sc:unit unit:MilliM ] .\n'
+        ":panel a sc:Component, rob:Display ;\n"
+        '    sc:hasInput [ sc:name "d" ; sc:signalType rob:Odometry2D ; sc:unit unit:M ] .',
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L22", "What an input accepts is met by an output of its type.",
+        "Where a file has outputs of the type that an input wants, one of them should conform to its sc:accepts.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .\n'
+        ':speaker a sc:Component, rob:Speaker ; sc:hasInput [ sc:name "in" ; sc:signalType rob:Audio ;\n'
+        "    sc:accepts [ sh:property [ sh:path ( sc:rate sc:value ) ; sh:minCount 1 ] ] ] .",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ;\n'
+        "    sc:rate [ sc:value 5 ; sc:unit unit:HZ ] ] .\n"
+        ':speaker a sc:Component, rob:Speaker ; sc:hasInput [ sc:name "in" ; sc:signalType rob:Audio ;\n'
+        "    sc:accepts [ sh:property [ sh:path ( sc:rate sc:value ) ; sh:minCount 1 ] ] ] .",
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

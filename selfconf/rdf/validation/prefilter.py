@@ -114,6 +114,7 @@ def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.
         and all(_harmless(properties) and advertisements.rated(properties) for properties in statements.values())
         and all(advertisements.clear(component) for component in found.components)
         and _owned(statements)
+        and _of_one_unit(statements)
     )
     return found
 
@@ -235,6 +236,12 @@ def _owned(statements: Statements) -> bool:
             if predicate in properties:
                 parts.difference_update(properties[predicate])
     return not parts
+
+
+def _of_one_unit(statements: Statements) -> bool:
+    """Whether all ports that state a unit state the same one; others may be of another dimension."""
+    stated = (said for said in statements.values() if SC.unit in said and not _TYPED.isdisjoint(said))
+    return len({unit for said in stated for unit in said[SC.unit]}) < 2
 
 
 @dataclass(frozen=True, slots=True)

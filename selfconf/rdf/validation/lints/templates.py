@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from rdflib import RDF, SH, BNode, URIRef
+from rdflib import RDF, SH, BNode, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
@@ -26,6 +26,22 @@ def unlisted_roles(file: LintedFile) -> Iterator[Diagnostic]:
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))) - listed:
         message = "This role stands in the list of roles of no template, so nobody will play it."
         yield at(file.positions, file.offset(role), "SC-L09", message)
+
+
+def useless_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
+    """Roles that ask for nobody (`sc:minCount 0`) and that no interaction joins to another."""
+    graph = file.graph
+    feeding = {*graph.subjects(URIRef(SC.feeds)), *graph.objects(None, URIRef(SC["from"]))}
+    fed = {*graph.objects(None, URIRef(SC.feeds)), *graph.objects(None, URIRef(SC.to))}
+    for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - feeding - fed:
+        for least in graph.objects(role, URIRef(SC.minCount)):
+            if isinstance(least, Literal) and least.value == 0:
+                message = (
+                    "This role asks for nobody, feeds nobody and is fed by nobody, so whoever plays it helps nobody."
+                )
+                hint = "Say whom it feeds (sc:feeds), or ask for one."
+                offset = file.positions.triples[role, URIRef(SC.minCount), least].predicate
+                yield at(file.positions, offset, "SC-L20", message, hint=hint)
 
 
 def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
@@ -87,20 +103,25 @@ def _named(file: LintedFile, query: str) -> set[str]:
 
 
 def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
-    """Roles whose shapes contradict themselves, or what holds of every advertisement."""
+    """Roles, or what they recruit, whose shapes contradict themselves or what holds of every advertisement."""
     always = list(file.source.subjects(SH.targetClass, URIRef(SC.Component)))
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        short = file.short(str(role))
         for conflict in contradictions(NormalForm(file.source, (role, *always))):
-            yield _contradiction(file, role, conflict)
+            yield _contradiction(file, role, conflict, f"nobody can play the role {short}", "SC-L11")
+        for shape in file.graph.objects(role, URIRef(SC.recruits)):
+            for conflict in (
+                () if isinstance(shape, Literal) else contradictions(NormalForm(file.source, (shape, *always)))
+            ):
+                yield _contradiction(file, shape, conflict, f"nobody can be recruited for the role {short}", "SC-L19")
 
 
-def _contradiction(file: LintedFile, role: Node, conflict: ShapeContradiction) -> Diagnostic:
-    """The later of two statements, with the place of the earlier."""
+def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, nobody: str, code: str) -> Diagnostic:
+    """The later of two statements, with the place of the earlier; `nobody` says what follows."""
     places = {one: file.positions.triples[one].predicate for one in conflict if one in file.positions.triples}
     later = max(places, key=lambda one: places[one], default=conflict.one)
     earlier = conflict.other if later == conflict.one else conflict.one
-    offset = places.get(later, file.offset(role))
-    nobody = f"nobody can play the role {file.short(str(role))}"
+    offset = places.get(later, file.offset(shape))
     hint = None
     if later == earlier:
         what = "No alternative of this can hold" if later[1] in (SH["or"], SH.xone) else "This cannot hold"
@@ -114,4 +135,4 @@ def _contradiction(file: LintedFile, role: Node, conflict: ShapeContradiction) -
         message = f"{file.said(later)} cannot hold of any advertisement, so {nobody}. {always}"
     if SH.closed in (later[1], earlier[1]):
         hint = "List what else a component may say in sh:ignoredProperties, at least rdf:type."
-    return at(file.positions, offset, "SC-L11", message, hint=hint)
+    return at(file.positions, offset, code, message, hint=hint)

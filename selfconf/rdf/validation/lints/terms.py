@@ -22,6 +22,7 @@ from selfconf.rdf import vocabulary
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
+from selfconf.rdf.validation.lints.sources import incommensurable_units, unmet_shapes
 from selfconf.rdf.validation.lints.templates import (
     impossible_roles,
     queried_parameters,
@@ -29,6 +30,7 @@ from selfconf.rdf.validation.lints.templates import (
     unlisted_parameters,
     unlisted_roles,
     unused_parameters,
+    useless_optional_roles,
 )
 from selfconf.rdf.validation.prefilter import TERM_POSITIONS
 from selfconf.rdf.validation.term_index import OWN, STANDARD, TermIndex, namespace
@@ -213,4 +215,7 @@ TEMPLATES = (
     impossible_roles,
     idle_loops,
     starving_inputs,
+    useless_optional_roles,
+    incommensurable_units,
+    unmet_shapes,
 )

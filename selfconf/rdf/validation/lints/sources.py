@@ -1,0 +1,92 @@
+"""Inputs that no output in sight can feed: units of other dimensions, shapes that no output of the type conforms to.
+
+Only what stands in one file is in sight. Where it has no output of a type, nothing is said of the inputs that want it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rdflib import SH, Graph, Literal, URIRef
+from rdflib.term import Node
+
+from selfconf.errors import AuthorError
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.obstacle import NotJudged
+from selfconf.model.term import IRI
+from selfconf.model.term import Literal as TypedLiteral
+from selfconf.model.unit_dimension import differ_in_dimension
+from selfconf.rdf.conformance import violations
+from selfconf.rdf.rdflib_terms import from_rdflib
+from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.vocabulary import SC
+
+_INPUT, _OUTPUT, _UNIT, _SIGNAL = (URIRef(one) for one in (SC.hasInput, SC.hasOutput, SC.unit, SC.signalType))
+_ACCEPTS = URIRef(SC.accepts)
+_ASKED = IRI("urn:selfconf:lint:accepted")
+MOST_SHAPES, MOST_OUTPUTS = 50, 100
+"""How many shapes of a file are judged, and of how many outputs at most: a lint is not to take long."""
+
+
+def incommensurable_units(file: LintedFile) -> Iterator[Diagnostic]:
+    """Units of inputs, where each output of the same signal type that states a unit has one of another dimension."""
+    outputs = _Outputs(file)
+    for port, wanted in sorted(file.graph.subject_objects(_UNIT), key=lambda pair: file.offset(pair[0])):
+        if (None, _INPUT, port) not in file.graph:
+            continue
+        units = sorted({str(unit) for output in outputs.of(port) for unit in file.graph.objects(output, _UNIT)})
+        if units and all(differ_in_dimension(IRI(unit), IRI(wanted)) for unit in units):
+            message = (
+                f"{file.short(str(wanted))} is of another dimension than {file.short(units[0])}, which an output of "
+                "this signal type in this file has."
+            )
+            yield at(file.positions, file.positions.triples[port, _UNIT, wanted].object, "SC-L21", message)
+
+
+def unmet_shapes(file: LintedFile) -> Iterator[Diagnostic]:
+    """Shapes of inputs to which no output of the same signal type in the file conforms."""
+    outputs = _Outputs(file)
+    shapes = sorted(file.graph.subject_objects(_ACCEPTS), key=lambda pair: file.offset(pair[0]))
+    for port, shape in shapes[:MOST_SHAPES]:
+        near = outputs.of(port)
+        if 0 < len(near) <= MOST_OUTPUTS and not _met(file, shape, near):
+            message = "No output of this signal type in this file conforms to this shape."
+            yield at(file.positions, file.positions.triples[port, _ACCEPTS, shape].predicate, "SC-L22", message)
+
+
+class _Outputs:
+    """The outputs of a file by their signal types."""
+
+    def __init__(self, file: LintedFile) -> None:
+        self._file = file
+        self._by_type: dict[str, list[Node]] = {}
+        self._serving: dict[str, list[Node]] = {}
+        for output in sorted(set(file.graph.objects(None, _OUTPUT)), key=file.offset):
+            for offered in () if isinstance(output, Literal) else file.graph.objects(output, _SIGNAL):
+                self._by_type.setdefault(str(offered), []).append(output)
+
+    def of(self, port: Node) -> list[Node]:
+        """The outputs that serve a signal type of an input, in the widest sense, each once."""
+        wanted = [str(signal) for signal in self._file.graph.objects(port, _SIGNAL)]
+        return list(dict.fromkeys(output for signal in wanted for output in self._of_type(signal) if output != port))
+
+    def _of_type(self, wanted: str) -> list[Node]:
+        if wanted not in self._serving:
+            some = (outputs for offered, outputs in self._by_type.items() if self._file.index.serves(offered, wanted))
+            self._serving[wanted] = [output for outputs in some for output in outputs]
+        return self._serving[wanted]
+
+
+def _met(file: LintedFile, shape: Node, outputs: Sequence[Node]) -> bool:
+    """Whether an output conforms to a shape, or that cannot be judged."""
+    shapes = Graph()
+    for triple in file.graph:
+        shapes.add(triple)
+    shapes.add((URIRef(_ASKED), SH.node, shape))
+    nodes = [term for term in map(from_rdflib, outputs) if not isinstance(term, TypedLiteral)]
+    try:
+        wrong = violations(file.graph, shapes, _ASKED, nodes, "sc:accepts", detailed=False)
+    except AuthorError:
+        return True
+    return len(wrong) < len(nodes) or any(isinstance(one, NotJudged) for some in wrong.values() for one in some)
