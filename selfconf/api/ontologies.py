@@ -12,7 +12,7 @@ from selfconf.api.reading import file_text, listed_files
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
-from selfconf.rdf.reasoning import HIERARCHY, hierarchy
+from selfconf.rdf.reasoning import READ, hierarchy
 from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hiera
     own = listed_files(ontologies, files.ONTOLOGY)
     if reasoning is Reasoning.SYNTACTIC:
         return hierarchy([], reasoning)
-    relevant = HIERARCHY if reasoning is Reasoning.SUBCLASS else None
+    relevant = READ if reasoning is Reasoning.SUBCLASS else None
     texts = map(file_text, (*library.ontologies(), *own))
     return hierarchy(
         [turtle.read_ontology(*text, relevant) for text in texts], reasoning, entailment.entailed_hierarchy

@@ -1,20 +1,24 @@
 """From ontologies to the hierarchy that a reasoning mode lets a role's shape see.
 
-`subclass` reads `rdfs:subClassOf`, `rdfs:subPropertyOf`, `owl:equivalentClass` and `owl:equivalentProperty` and
-closes them itself. `owl-rl` first lets owlrl infer what it can from the ontology alone: it never sees a property
-value of a component, because owlrl gives values that it takes for equal to subjects that never had them.
+`subclass` reads `rdfs:subClassOf`, `rdfs:subPropertyOf`, `owl:equivalentClass` and `owl:equivalentProperty`, and of an
+`owl:intersectionOf` the members that have names, and closes them itself. `owl-rl` first lets owlrl infer what it can
+from the ontology alone: it never sees a property value of a component, because owlrl gives values that it takes for
+equal to subjects that never had them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
-from selfconf.model.term import IRI
+from selfconf.model.term import IRI, Term
 from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import OWL, RDFS
+from selfconf.rdf.vocabulary import FIRST, OWL, RDFS, REST
 
 HIERARCHY = (RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty)
+READ = (*HIERARCHY, OWL.intersectionOf, FIRST, REST)
+"""The predicates that the mode `subclass` reads."""
 Entailment = Callable[[Iterable[Triple]], Iterable[Triple]]
 
 
@@ -42,7 +46,7 @@ def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning, entail: Enta
     if reasoning is Reasoning.OWL_RL:
         triples = list(entail(triples))
     return Hierarchy(
-        edges(triples, RDFS.subClassOf, OWL.equivalentClass),
+        chain(edges(triples, RDFS.subClassOf, OWL.equivalentClass), *map(intersections, ontologies)),
         edges(triples, RDFS.subPropertyOf, OWL.equivalentProperty),
     )
 
@@ -57,3 +61,15 @@ def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IR
         yield subject, value
         if predicate == same:
             yield value, subject
+
+
+def intersections(document: Document) -> Iterator[tuple[IRI, IRI]]:
+    """The pairs (lower, higher) of a class and each named class that it is, or lies below, an intersection of."""
+    named: dict[Term, list[IRI]] = {}
+    for subject, predicate, value in document.triples():
+        if isinstance(subject, IRI) and predicate in (RDFS.subClassOf, OWL.equivalentClass):
+            named.setdefault(value, []).append(subject)
+    for subject, predicate, value in document.triples():
+        if predicate == OWL.intersectionOf:
+            for lower in [subject] if isinstance(subject, IRI) else named.get(subject, ()):
+                yield from ((lower, one) for one in document.items(value) if isinstance(one, IRI))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -53,9 +54,24 @@ def test_what_is_above_everything_and_what_has_no_name_is_left_out() -> None:
 
 
 def test_owl_rl_infers_what_subclass_mode_does_not() -> None:
-    text = ":A owl:intersectionOf ( :B :C ) . :A a owl:Class ."
-    assert not of(text).matches(iri("A"), iri("B"))
-    assert of(text, Reasoning.OWL_RL).matches(iri("A"), iri("B"))
+    text = ":A owl:unionOf ( :B :C ) . :A a owl:Class ."
+    assert not of(text).matches(iri("B"), iri("A"))
+    assert of(text, Reasoning.OWL_RL).matches(iri("B"), iri("A"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":A owl:intersectionOf ( :B :C [ a owl:Restriction ] ) .",
+        ":A owl:equivalentClass [ owl:intersectionOf ( :B :C ) ] .",
+        ":A rdfs:subClassOf [ a owl:Class ; owl:intersectionOf ( [ a owl:Restriction ] :B :C ) ] .",
+    ],
+)
+@pytest.mark.parametrize("mode", [Reasoning.SUBCLASS, Reasoning.OWL_RL])
+def test_a_class_lies_below_the_named_classes_that_it_is_an_intersection_of(text: str, mode: Reasoning) -> None:
+    found = of(f"{text} :A a owl:Class .", mode)
+    assert found.superclasses(iri("A")) == {iri("A"), iri("B"), iri("C")}
+    assert not found.matches(iri("B"), iri("A"))
 
 
 def test_owl_rl_says_no_less_than_subclass_mode_and_hands_out_no_values() -> None:
