@@ -23,6 +23,7 @@ from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import first_recruited, priced, recruited
 from selfconf.search.strategies import best, first
+from tests.effort import NIGHTLY
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -139,7 +140,7 @@ def check(problem: Problem) -> None:
 
 
 @given(recruiting())
-@agreement()
+@agreement(1.0 if NIGHTLY else 2.5)  # 500 for every push
 def test_recruits_are_those_that_enumeration_finds_first(problem: Problem) -> None:
     pytest.importorskip("pysat")
     check(problem)

@@ -35,6 +35,7 @@ from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
+from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, TYPE
@@ -179,7 +180,7 @@ class Partitioner:
         by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
         for number, role in enumerate(self.roles):
             passed = self._passed(role, ecology)
-            survivors = [a for a, _ in passed]
+            survivors = self._issuing(role, [a for a, _ in passed])
             if role.complete:
                 found.append([EligibleComponent(a.profile, outcome.allows, _NOTHING) for a, outcome in passed])
                 continue
@@ -204,6 +205,26 @@ class Partitioner:
             elif isinstance(reason := outcome.obstacles[0], NotJudged):
                 self.not_judged.update((a.component, reason) for a in alike)
         return passed
+
+    def _issuing(self, role: CompiledRole, passed: list[Advertisement]) -> list[Advertisement]:
+        """Those of some advertisements that have ports of the types which the shape asks for, where pySHACL is asked.
+
+        A property that lies below those of ports may lead to further ports: then pySHACL decides.
+        """
+        asked = () if role.complete else required_signals(self.document, role.iri, self.task.bindings)
+        required = [(link, signal) for link, signal in asked if signal not in self.free]
+        links = {link for link, _ in required}
+
+        def may_conform(profile: Profile) -> bool:
+            if any(not links.isdisjoint(self.hierarchy.superproperties(one)) for one, _ in profile.properties):
+                return True
+            types = {
+                SC.hasInput: [port.signals for port in profile.inputs],
+                SC.hasOutput: [port.signals for port in profile.outputs],
+            }
+            return all(any(signal in self.hierarchy.served(one) for one in types[link]) for link, signal in required)
+
+        return [one for one in passed if may_conform(one.profile)] if required else passed
 
     def _suited(
         self,

@@ -16,7 +16,7 @@ from selfconf.model.port_likeness import Types, WantedPorts
 from selfconf.model.term import IRI, BlankNode, Term
 from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.turtle import Document, Node
-from selfconf.rdf.vocabulary import RDF, SC, SH
+from selfconf.rdf.vocabulary import RDF, RDFS, SC, SH
 
 _PORTS = frozenset((SC.hasInput, SC.hasOutput))
 _DEEPEST = 16
@@ -43,6 +43,26 @@ def wanted_ports(document: Document, role: IRI, bindings: Mapping[IRI, Term]) ->
     issued = tuple(dict.fromkeys(want.types for want in wants if want.link == SC.hasOutput))
     given = tuple(dict.fromkeys(want.types for want in wants if want.link == SC.hasInput))
     return WantedPorts(issued or None, given or None)
+
+
+def required_signals(document: Document, role: IRI, bindings: Mapping[IRI, Term]) -> tuple[tuple[IRI, IRI], ...]:
+    """What a component needs at least: `sc:hasInput` or `sc:hasOutput`, and the type of a port of that kind.
+
+    Only what a property shape of the role asks for by `sh:hasValue` behind the types of ports counts.
+    """
+    found: list[tuple[IRI, IRI]] = []
+    for shape in document.values(role, SH.property):
+        path = _path(document, shape)
+        if len(path) > 1 and path[0] in _PORTS and path[1] == SC.signalType and _upward(document, path[2:]):
+            values = document.values(shape, SH.hasValue) if document.value(shape, SH.deactivated) is None else []
+            found += [(link, one) for link in path[:1] if isinstance(link, IRI) for one in _bound(bindings, values)]
+    return tuple(found)
+
+
+def _upward(document: Document, steps: list[Term]) -> bool:
+    """Whether the rest of a path leads from a class to classes above it alone, or nowhere."""
+    star = [(SH.zeroOrMorePath, RDFS.subClassOf)]
+    return all(step == RDFS.subClassOf or document.about(step) == star for step in steps)
 
 
 def without_port_shapes(document: Document, role: IRI) -> Document:

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import pytest
+
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
+from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.unlike_ports import kept_out_by_ports, ports_asked, words_of_role
+from selfconf.rdf.vocabulary import SC
+from tests.lab import iri
 from tests.rdf.eligibility.test_partitioner import partitioner, read
 
 TEMPLATE = """
@@ -42,3 +48,38 @@ def test_a_role_is_worded_by_its_name_its_label_and_its_signals() -> None:
     wanted = ports_asked(asked, asked.roles[0].iri)
     assert words_of_role(asked.document, asked.roles[0].iri, wanted) == ["price", "car", "price"]
     assert words_of_role(asked.document, asked.roles[0].iri, None) == ["price", "car"]
+
+
+STAR = "[ sh:zeroOrMorePath rdfs:subClassOf ]"
+
+
+@pytest.mark.parametrize(
+    "hierarchy", [NOTHING_ABOVE, Hierarchy([(iri("Taxed"), iri("Price"))], [(iri("emits"), SC.hasOutput)])]
+)
+@pytest.mark.parametrize("path", ["", "rdfs:subClassOf", STAR])
+@pytest.mark.parametrize("more", ["", "; sh:deactivated true", "; sh:minCount 2"])
+def test_what_is_not_shown_to_pyshacl_is_what_it_would_refuse(
+    hierarchy: Hierarchy, path: str, more: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shape = f"sh:property [ sh:path ( sc:hasOutput sc:signalType {path} ) ; sh:hasValue :Price {more} ]"
+    text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Service ; {shape} ."
+    taxed = f":taxed a sc:Component , :Service ; {OUTPUT.format(':Taxed')} , [ sc:name 'p' ; sc:signalType :Colour ] ."
+    below = ":below a sc:Component , :Service ; :emits [ sc:name 'o' ; sc:signalType :Price ] ."
+    found = []
+    for filtered in (True, False):
+        asked = partitioner(text)
+        asked = asked.under(hierarchy)
+        if not filtered:
+            monkeypatch.setattr(Partitioner, "_issuing", lambda self, role, passed: passed)
+        (some,) = asked.eligible(AdvertisementIndex.of(read((*ADS, taxed, below))))
+        found.append(sorted(one.profile.component.short for one in some))
+    assert found[0] == found[1]
+    assert found[0] or "minCount" in more or path == "rdfs:subClassOf"
+
+
+def test_a_free_parameter_is_no_type() -> None:
+    text = """:t a sc:Template ; sc:parameter :kind ; sc:roles ( :r ) . :kind a sc:Parameter ; sc:name "kind" .
+        :r a sc:Role ; sh:class :Service ;
+            sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue :kind ] ."""
+    (some,) = partitioner(text).eligible(ecology())
+    assert sorted(one.profile.component.short for one in some) == ["elsewhere", "good", "other"]
