@@ -11,6 +11,7 @@ only that this is still the one.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -36,7 +37,9 @@ MOST_COMPLAINTS = 20
 MOST_LIVES = 16
 """How many lives of one component are followed: there should be one, and two where processes clash."""
 BETWEEN_DISCOVERIES = 0.2
-"""Seconds between the beginnings of two discoveries of one ecology, however often something is said to have changed."""
+"""Seconds between two discoveries of one ecology on average, however often something is said to have changed."""
+IN_A_ROW = 20
+"""How many discoveries may begin without a pause after a quiet time, as where tasks contend for components."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +130,7 @@ class EcologyView:
         """What the sites that live have answered before."""
         self._followed = False
         self._undo: list[Undo] = []
-        self._next_discovery = 0.0
+        self._next_discovery = -math.inf
         """When, on the bus's clock, the next discovery may begin."""
 
     def life(self, component: IRI) -> str | None:
@@ -178,12 +181,12 @@ class EcologyView:
     def discover(self, done: Callable[[Discovery], None]) -> None:
         """Ask all sites what they advertise; `done` is called once, when all have answered or time is up.
 
-        Discoveries begin `BETWEEN_DISCOVERIES` seconds apart, or strangers who put `changed` again and again could keep
-        everybody busy.
+        On average discoveries begin `BETWEEN_DISCOVERIES` seconds apart, or strangers who put `changed` again and again
+        could keep everybody busy (the generic cell rate algorithm, ITU-T I.371).
         """
         now, inquiry = self.bus.now(), _Inquiry(self, done)
         begin = max(now, self._next_discovery)
-        self._next_discovery = begin + BETWEEN_DISCOVERIES
+        self._next_discovery = max(self._next_discovery, now - IN_A_ROW * BETWEEN_DISCOVERIES) + BETWEEN_DISCOVERIES
         if begin > now:
             self.bus.later(begin - now, inquiry.start)
         else:

@@ -24,9 +24,7 @@ try:
     from cryptography.hazmat.primitives.asymmetric import ec
     from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 except ImportError:  # an extra: who needs no keys need not have it
-    raise InstallationError(
-        "keys need the package cryptography; install it with: pip install 'selfconf[keys]'"
-    ) from None
+    raise InstallationError("keys need the package cryptography; install the extra `keys`") from None
 
 AUTHORITY_DAYS = 3650.0
 """How long an authority lasts."""

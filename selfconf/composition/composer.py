@@ -140,15 +140,10 @@ class Composer:
         may play it, for a question about an alternative. A configuration is certified before it is handed
         out, by rules that share nothing with the search.
         """
-        partition = self.partition(ecology)
         lost -= {self.outside}  # the task that holds the composite is the one that its inside is for
         if running is not None and self.outside is not None:
             running = with_outside_player(running, self.outside)
-        partition = partition.without(lost) if lost else partition
-        if played is not None:
-            number = next(n for n, role in enumerate(self._task.template.roles) if role.iri == played[0])
-            partition = partition.with_only(number, played[1])
-        problem = Problem(self._task, partition, self.hierarchy)
+        problem = self._problem(self.partition(ecology), lost, played)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
         for answer in self._with_recruits(problem, self._with_additions(self._search, problem, running), running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
@@ -164,6 +159,14 @@ class Composer:
                 yield replace(outcome, near_misses=misses[short])
             else:
                 yield outcome
+
+    def _problem(self, partition: Partition, lost: frozenset[IRI], played: tuple[IRI, IRI] | None) -> Problem:
+        """What is to be searched: without the lost components, and with one player for a role where that is asked."""
+        partition = partition.without(lost) if lost else partition
+        if played is not None:
+            number = next(n for n, role in enumerate(self._task.template.roles) if role.iri == played[0])
+            partition = partition.with_only(number, played[1])
+        return Problem(self._task, partition, self.hierarchy)
 
     def _with_recruits(
         self, problem: Problem, found: Iterator[Optimum | Outcome], running: Configuration | None

@@ -16,6 +16,7 @@ from selfconf.protocol.messages import (
     End,
     Fail,
     Free,
+    Moved,
     Notice,
     Page,
     Release,
@@ -169,6 +170,16 @@ ATTACKS: dict[str, Callable[[Stage], bool]] = {
     ),
     "last signal of another": lambda s: s.serve(
         s.keys.outputs(s.dormant), s.keys.output(s.dormant, "pose"), s.keys.output(s.dormant, "pose"), b"{}"
+    ),
+    "answers an operation of a dormant one": lambda s: s.serve(
+        s.keys.operation(s.dormant, "open"),
+        s.keys.operation(s.dormant, "open"),
+        s.keys.operation(s.dormant, "open"),
+        b"{}",
+    ),
+    "moves the outputs of another": lambda s: s.put(s.keys.moved(s.victim), encode(Moved(s.victim, _LIFE))),
+    "asks for an operation": lambda s: s.overhear(
+        s.keys.operation(s.dormant, "open"), s.keys.operation(s.dormant, "open")
     ),
     "advertises for the site": lambda s: s.serve(
         s.keys.advertisements(s.site),

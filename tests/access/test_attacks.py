@@ -40,10 +40,10 @@ RELAYS = {
     "forges a task",
 }
 MAY: dict[str, set[str]] = {
-    "comp": HEARS,
+    "comp": HEARS | {"asks for an operation"},
     "read": READS,
     "conf": READS | HEARS | CALLS,
-    "site": READS | HEARS | CALLS | RELAYS,
+    "site": READS | HEARS | CALLS | RELAYS | {"asks for an operation"},
     "boss": set(),
 }
 """What each kind of insider may do; what a site may do with configurators is what it does for those that connect to it.

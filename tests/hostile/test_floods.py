@@ -9,7 +9,7 @@ import pytest
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Request, Urgency
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
-from selfconf.discovery import MOST_COMPLAINTS, Discovery, EcologyView
+from selfconf.discovery import BETWEEN_DISCOVERIES, IN_A_ROW, MOST_COMPLAINTS, Discovery, EcologyView
 from selfconf.protocol.activation import MOST_HOLDING
 from selfconf.protocol.codec import LARGEST, MOST_ADVERTISED, MOST_WIRES, encode
 from selfconf.protocol.messages import Apply, Cause, Fail, Page, Reserve, Stamp, Wire
@@ -121,7 +121,7 @@ def test_five_hundred_changes_a_second_ask_nobody_oftener(tmp_path: Path, refuse
         for _ in range(1000):
             changed.put(b"")
             lab.let_pass(0.002)
-    assert len(lab.acts("query")) - before <= 2.0 / 0.2 + 2
+    assert len(lab.acts("query")) - before <= IN_A_ROW + 2.0 / BETWEEN_DISCOVERIES + 2
     assert refused or agent.state.phase is Phase.RUNNING
 
 

@@ -26,6 +26,7 @@ from selfconf.model.relaxation import (
     AddInteraction,
     Addition,
     AskForFewer,
+    LetRecruit,
     Relaxation,
 )
 from selfconf.model.term import IRI, Literal
@@ -64,6 +65,7 @@ REPAIRS: tuple[Relaxation, ...] = (
     AskForFewer(SOURCE, 0),
     AddInteraction(SOURCE, SINK, place=Place("tell.ttl", 7)),
     AcceptNearMiss(MISS, Candidate(Profile(LAMP))),
+    LetRecruit(SOURCE, (LAMP,)),
 )
 """A relaxation of each kind."""
 REFUSAL = Refusal(

@@ -39,7 +39,9 @@ def test_every_version_that_a_user_installs_is_in_it() -> None:
     for who, requirement in PINNED:
         pin = re.match(r"(\S+)==(\S+)", requirement)
         assert pin is not None
-        assert ((pin[1], pin[2]) in written) == bool(who & {"-", "sim", "solvers", "serve", "keys", "fast-owl"})
+        assert ((pin[1], pin[2]) in written) == bool(
+            who & {"-", "sim", "solvers", "serve", "keys", "wot", "ros2", "fast-owl"}
+        )
 
 
 def test_the_same_pins_make_the_same_bytes_and_others_another_serial_number() -> None:

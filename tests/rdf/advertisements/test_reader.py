@@ -225,9 +225,14 @@ def test_the_order_of_components_in_a_file_changes_no_profile(names: list[str]) 
     assert [a.profile for a in forward] == [a.profile for a in reversed(backward)]
 
 
+JUDGED_LATER = "accepts-path-"
+"""Files whose shapes have paths that are none: they are read, and left out when the shape is to be judged."""
+
+
 def broken(path: Path) -> bool:
     """Whether a bad file breaks the shape of an advertisement, and not another."""
-    return re.match(r"# expect: \S+ error\[SC-A", path.read_text()) is not None
+    expected = re.match(r"# expect: \S+ error\[SC-A", path.read_text()) is not None
+    return expected and not path.stem.startswith(JUDGED_LATER)
 
 
 @pytest.mark.parametrize("path", sorted(filter(broken, BAD.glob("*.ttl"))), ids=lambda path: path.stem)
