@@ -17,6 +17,7 @@ of its required inputs is matched, and the free parameters still have a value. A
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from heapq import heappop, heappush
@@ -33,6 +34,8 @@ from selfconf.search.supply import Supply
 
 Playing = Sequence[Sequence[Candidate]]
 """For each role, in order, the candidates that play it so far."""
+Issuing = defaultdict[int, list[Candidate]]
+"""By role, candidates that issue a signal; nobody where a role is not named."""
 
 
 class Feeder(NamedTuple):
@@ -145,7 +148,7 @@ class Problem:
             return wanted.condition is None or wanted.condition.met_by(output)
         return self.hierarchy.pairs(output, wanted)
 
-    def feeders(self, role: int, wanted: Input, playing: Playing) -> Iterator[tuple[Profile, Output]]:
+    def feeders(self, role: int, wanted: Input, playing: Playing | Issuing) -> Iterator[tuple[Profile, Output]]:
         """Yield the profiles, with their outputs, that feed an input of a component that plays a role."""
         for link in self.links[role]:
             for candidate in playing[link.source]:
@@ -278,7 +281,7 @@ class Problem:
 
     def _connections(self, playing: Playing) -> tuple[Connection, ...]:
         issuing = self._issuing(playing)
-        nobody: Playing = [()] * len(playing)
+        nobody: Issuing = defaultdict(list)
         connections = {
             Connection(source.component, output.name, candidate.profile.component, wanted.name)
             for position, role in enumerate(playing)
@@ -289,15 +292,15 @@ class Problem:
         }
         return ordered_connections(connections, (c.profile.component for role in playing for c in role))
 
-    def _issuing(self, playing: Playing) -> dict[IRI, list[list[Candidate]]]:
-        """Return for each signal, role by role, the candidates that issue it, or have an output without a type."""
+    def _issuing(self, playing: Playing) -> dict[IRI, Issuing]:
+        """Return for each signal, by role, the candidates that issue it, or have an output without a type."""
         wanted = {signal for role in playing for c in role for port in c.profile.inputs for signal in port.signals}
-        found: dict[IRI, list[list[Candidate]]] = {}
+        found: dict[IRI, Issuing] = defaultdict(lambda: defaultdict(list))
         for position, role in enumerate(playing):
             for candidate in role:
                 served = [self.hierarchy.served(output.signals) for output in candidate.profile.outputs]
                 for signal in wanted if () in served else wanted.intersection(chain.from_iterable(served)):
-                    found.setdefault(signal, [[] for _ in playing])[position].append(candidate)
+                    found[signal][position].append(candidate)
         return found
 
     def _settings(self, playing: Playing, bindings: Mapping[str, Term]) -> Iterator[ParameterSetting]:
