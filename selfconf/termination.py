@@ -88,8 +88,12 @@ def _status(process: int) -> list[bytes]:
 
 
 def end_as_by_ctrl_c() -> None:
-    """Let SIGTERM raise KeyboardInterrupt, as SIGINT does, until there is a `Termination` that handles both."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    """Let SIGINT and SIGTERM raise KeyboardInterrupt, until there is a `Termination` that handles both.
+
+    A program that a shell has started in the background ignores SIGINT otherwise.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
 
 
 def ignore_from_now_on() -> None:
