@@ -25,6 +25,7 @@ def standing() -> Iterator[StandingDataset]:
     found = StandingDataset()
     found.replace("urn:first", FIRST)
     found.replace("urn:second", SECOND)
+    assert rows(found, "SELECT * { ?s ?p ?o }") == 3  # its process is started by the first question
     yield found
     found.close()
 
