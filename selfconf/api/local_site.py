@@ -46,7 +46,7 @@ class SiteProcess:
         ecology, self._connect = rendezvous.asked_for(ecology, connect)
         self.ecology = f"run-{secrets.token_hex(3)}" if ecology is None else ecology
         self.name = f"s{secrets.token_hex(3)}"
-        self._keys = rendezvous.keys_folder(keys)
+        self._keys = _of_authority(rendezvous.keys_folder(keys))
         self._process: subprocess.Popen[bytes] | None = None
         self.endpoint = ""
         """Where it listens."""
@@ -118,3 +118,17 @@ def sites(ecology: str | None = None) -> tuple[LocalSite, ...]:
     ['home']
     """
     return tuple(rendezvous.local_sites(ecology))
+
+
+def _of_authority(keys: Path | None) -> Path | None:
+    """A folder of keys by which a site of any name can be started. Raises AuthorError for that of one holder."""
+    if keys is None:
+        return None
+    from selfconf.access import KeysFolder  # what it needs is an extra
+
+    if not KeysFolder(keys).is_authority:
+        raise AuthorError(
+            f"{keys} is not the folder of an authority, by which a site can be started for these files; start one with"
+            " `selfconf site`, and leave the files out here"
+        )
+    return keys

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.access import KeysFolder, Principal, PrincipalKind
+from selfconf.api.local_site import SiteProcess
 from selfconf.api.secured_site import SecuredSite
 from selfconf.errors import AuthorError
 from tests.cli.processes import Home, component_of, dormant
@@ -24,6 +25,14 @@ def test_the_keys_of_somebody_else_are_refused(tmp_path: Path) -> None:
         SecuredSite(tmp_path / "attic", "cellar")
     with pytest.raises(AuthorError, match=r"speaks for read.alice; this takes a certificate of site.NAME"):
         SecuredSite(tmp_path / "alice", None)
+
+
+def test_a_site_of_any_name_takes_the_keys_of_an_authority(tmp_path: Path) -> None:
+    authority = KeysFolder.init(tmp_path / "keys")
+    authority.issue(Principal(PrincipalKind.CONFIGURATOR, "alice"), tmp_path / "alice")
+    SiteProcess([tmp_path], keys=tmp_path / "keys")
+    with pytest.raises(AuthorError, match=r"not the folder of an authority.*start one with `selfconf site`"):
+        SiteProcess([tmp_path], keys=tmp_path / "alice")
 
 
 @pytest.fixture
