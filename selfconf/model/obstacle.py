@@ -22,6 +22,7 @@ _LIMITS = {
     "maxInclusive": "at most",
     "maxExclusive": "less than",
 }
+_PAIRS = {"lessThan": "less than", "lessThanOrEquals": "at most"}
 _LENGTHS = {"minLength": "at least", "maxLength": "at most"}
 
 
@@ -117,7 +118,10 @@ class NotAmong:
 
 @dataclass(frozen=True, slots=True)
 class ConstraintFailed:
-    """Some values fail a constraint of SHACL on each value; `constraint` is its parameter, such as `sh:pattern`."""
+    """Some values fail a constraint of SHACL on each value; `constraint` is its parameter, such as `sh:pattern`.
+
+    Where that compares two properties (`sh:lessThan`), `wanted` is the other one.
+    """
 
     values: frozenset[Term]
     constraint: IRI
@@ -135,6 +139,8 @@ class ConstraintFailed:
             return f"{_LIMITS[constraint]} {wanted}"
         if constraint in _LENGTHS:
             return f"{_LENGTHS[constraint]} {wanted} characters long"
+        if constraint in _PAIRS:
+            return f"{_PAIRS[constraint]} its {wanted}"
         return f"like /{wanted}/" if constraint == "pattern" else f"a {wanted}"
 
 

@@ -1,21 +1,26 @@
 """Literals as rdflib and pySHACL understand them: whether one is well-typed, and which of two is the greater.
 
-pySHACL also orders what has no order, a date and a number by the names of their datatypes, and so lets `sh:minInclusive
-5` pass any date. Here only literals of one value space have an order, as in SPARQL; within `only_ordered` pySHACL asks
-for it here.
+pySHACL also orders what has no order, a date and a number by the names of their datatypes, two IRIs by their letters,
+and so lets `sh:minInclusive 5` pass any date, and `sh:lessThan` too. Here only literals of one value space have an
+order, as in SPARQL; within `only_ordered` pySHACL asks for it here.
 
 Loading both takes longer than most configurations, so `selfconf.rdf.shacl` imports this module when a test needs it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from datetime import datetime, timedelta
 from decimal import Decimal
+from typing import Any
 
 import rdflib
 from pyshacl.constraints.core import value_range_constraints
+from pyshacl.constraints.core.property_pair_constraints import (
+    LessThanConstraintComponent,
+    LessThanOrEqualsConstraintComponent,
+)
 from pyshacl.rdfutil.compare import compare_literal
 from rdflib.xsd_datetime import Duration
 
@@ -44,13 +49,39 @@ def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
 
 @contextmanager
 def only_ordered() -> Iterator[None]:
-    """In the block, a value passes a limit of pySHACL only if the two have an order."""
-    module = vars(value_range_constraints)
-    module["compare_literal"] = _compare_in_order
-    try:
+    """In the block, pySHACL lets a value pass beside a limit, or another property, only if the two have an order."""
+    with ExitStack() as stack:
+        for place, name, ours in _OURS:
+            stack.callback(setattr, place, name, getattr(place, name))
+            setattr(place, name, ours)
         yield
-    finally:
-        module["compare_literal"] = compare_literal
+
+
+def _less(component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any) -> tuple[bool, Any]:
+    return _compared(component, values, others, graph, focus, lambda order: order < 0)
+
+
+def _less_or_equal(
+    component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any
+) -> tuple[bool, Any]:
+    return _compared(component, values, others, graph, focus, lambda order: order <= 0)
+
+
+def _compared(
+    component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any, holds: Callable[[int], bool]
+) -> tuple[bool, Any]:
+    """What pySHACL wants to know of a constraint on two properties: whether it is violated, and the results."""
+    orders = [(value, _order(value, other)) for value in values for other in others]
+    wrong = [value for value, order in orders if order is None or not holds(order)]
+    return bool(wrong), [component.make_v_result(graph, focus, value_node=value) for value in wrong]
+
+
+_OURS: tuple[tuple[object, str, object], ...] = (
+    (value_range_constraints, "compare_literal", _compare_in_order),
+    (LessThanConstraintComponent, "_compare_lt", _less),
+    (LessThanOrEqualsConstraintComponent, "_compare_ltoe", _less_or_equal),
+)
+"""What pySHACL orders by: where it is, its name, and what takes its place."""
 
 
 def well_typed(literal: Literal) -> bool:
@@ -67,7 +98,10 @@ def has_value(literal: Literal) -> bool:
 
 def order(value: Term, limit: Term) -> int | None:
     """How a value compares with a limit: negative, zero or positive; None where the two have no order (SHACL, 4.3)."""
-    one, other = rdflib_term(value), rdflib_term(limit)
+    return _order(rdflib_term(value), rdflib_term(limit))
+
+
+def _order(one: rdflib.term.Node, other: rdflib.term.Node) -> int | None:
     if not isinstance(one, rdflib.Literal) or not isinstance(other, rdflib.Literal):
         return None
     if isinstance(one.value, str) != isinstance(other.value, str):

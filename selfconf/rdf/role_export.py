@@ -33,6 +33,7 @@ from selfconf.rdf.turtle import Triple, ox_term
 from selfconf.rdf.vocabulary import RDF, SC, SH, TYPE, XSD
 
 _COMPARED = {SH.minInclusive: ">=", SH.maxInclusive: "<=", SH.minExclusive: ">", SH.maxExclusive: "<"}
+_LESS = {SH.lessThan: "<", SH.lessThanOrEquals: "<="}
 _KIND_OF_NODE = {
     SH.IRI: "isIRI(?v)",
     SH.Literal: "isLiteral(?v)",
@@ -163,6 +164,9 @@ class _Speller:
             yield f"EXISTS {{ ?component {path} {_term(value)} }}"
         for one in test.each:
             yield f"NOT EXISTS {{ ?component {path} ?v FILTER ( !COALESCE( {_on_value(one)} , false ) ) }}"
+        for pair in test.compared:
+            less = f"COALESCE( ?v {_LESS[pair.constraint]} ?w , false )"
+            yield f"NOT EXISTS {{ ?component {path} ?v ; {self._path(pair.other)} ?w FILTER ( !{less} ) }}"
         for _, members in test.free_in:
             others = " && ".join(_none(name, members) for name in ("?v0", "?v1"))
             yield f"NOT EXISTS {{ {_several(path, 2)} FILTER ( {others} ) }}"

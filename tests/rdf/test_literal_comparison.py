@@ -6,12 +6,13 @@ from itertools import product
 
 import pyshacl
 import pytest
+from pyoxigraph import RdfFormat, Store
 from rdflib import Graph
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.literal_comparison import has_value, only_ordered, order, well_typed
 from selfconf.rdf.vocabulary import RDF, XSD
-from tests.lab import PREFIXES
+from tests.lab import PREFIXES, iri
 
 
 def typed(text: str, datatype: str) -> Literal:
@@ -102,3 +103,22 @@ def test_in_the_block_pyshacl_lets_no_date_pass_a_limit_that_is_a_number() -> No
         with only_ordered():
             verdicts.append(pyshacl.validate(data, shacl_graph=shapes)[0])
     assert verdicts == [False, True, False]
+
+
+@pytest.mark.parametrize("constraint", ["lessThan", "lessThanOrEquals"])
+def test_in_the_block_pyshacl_compares_two_properties_as_sparql_does(constraint: str) -> None:
+    shape = f":s a sh:NodeShape ; sh:targetNode :a ; sh:property [ sh:path :p ; sh:{constraint} :q ] ."
+    shapes = Graph().parse(data=PREFIXES + shape, format="turtle")
+    less = "<" if constraint == "lessThan" else "<="
+    values = ('"2024-01-01"^^xsd:date', '"2024-01-02"^^xsd:date', "5", "5.0", "6", '"a"', '"b"', ":x", ":y", "[]")
+    for value, other in product(values, values):
+        text = f"{PREFIXES}:a :p {value} ; :q {other} ."
+        data = Graph().parse(data=text, format="turtle")
+        with only_ordered():
+            found = pyshacl.validate(data, shacl_graph=shapes)[0]
+        store = Store()
+        store.load(text.encode(), RdfFormat.TURTLE)
+        query = (
+            f"ASK {{ ?a <{iri('p')}> ?p ; <{iri('q')}> ?q FILTER ( isLiteral(?p) && isLiteral(?q) && ?p {less} ?q ) }}"
+        )
+        assert found == bool(store.query(query)), (value, other)

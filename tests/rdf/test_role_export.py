@@ -19,7 +19,7 @@ from tests.lab import PREFIXES, iri
 
 ABOVE = Hierarchy([(iri("Lamp"), iri("Light")), (iri("Goal"), iri("Aim"))], [(iri("red"), iri("colour"))])
 ADS = PREFIXES + (
-    ":a a sc:Component, :Lamp ; :p 1, 2 ; :colour :warm ; sc:preference 1 ."
+    ":a a sc:Component, :Lamp ; :p 1, 2 ; :most 2 ; :colour :warm ; sc:preference 1 ."
     ' :b a sc:Component, :Light ; :p 10 ; :red :cold ; rdfs:label "Bee" .'
     ' :c a sc:Component, :Bell ; :p "x" ; sc:hasParameter [ sc:name "n" ; sc:parameterType :Aim ] .'
 )
@@ -38,6 +38,9 @@ SHAPES = [
     ("sh:property [ sh:path :p ; sh:in ( 1 2 10 ) ]", "ab"),
     ("sh:property [ sh:path :p ; sh:datatype xsd:integer ]", "ab"),
     ("sh:property [ sh:path :p ; sh:minInclusive 2 ]", "b"),
+    ("sh:property [ sh:path :p ; sh:lessThan :most ]", "bc"),
+    ("sh:property [ sh:path :p ; sh:lessThanOrEquals :most ]", "abc"),
+    ("sh:property [ sh:path :p ; sh:lessThan :colour ]", "c"),
     ("sh:property [ sh:path :colour ; sh:pattern 'WARM$' ; sh:flags 'i' ]", "ac"),
     ("sh:property [ sh:path rdfs:label ; sh:maxLength 2 ]", "ac"),
     ("sh:property [ sh:path :p ; sh:nodeKind sh:IRI ]", ""),

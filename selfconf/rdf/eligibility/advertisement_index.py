@@ -86,7 +86,7 @@ class RelevantPredicates(dict[str, bool]):
 
     def __init__(self, tests: Iterable[RoleTest], hierarchy: Hierarchy) -> None:
         tests = list(tests)
-        self._paths = {test.path for test in tests if isinstance(test, PropertyTest)}
+        self._paths = {path for test in tests if isinstance(test, PropertyTest) for path in test.looked_at}
         self._hierarchy = hierarchy
         self.update({f"<{predicate}>": False for predicate in STRUCTURE}, a=False)
         self[f"<{SC.hasParameter}>"] = any(isinstance(test, ParameterTest) for test in tests)

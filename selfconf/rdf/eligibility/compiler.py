@@ -4,7 +4,7 @@
 
 * `sh:class`, `sh:in` and `sh:hasValue` on the node (SHACL 4.1.1, 4.8.2, 4.8.3);
 * property shapes over one predicate with `sh:in`, `sh:hasValue`, `sh:minCount`, `sh:maxCount` (4.8, 4.2), and what
-  `selfconf.rdf.values` knows of single values (4.1.2, 4.1.3, 4.3, 4.4);
+  `selfconf.rdf.shacl.value_tests` knows of single values (4.1.2, 4.1.3, 4.3, 4.4) and of pairs (4.5.3, 4.5.4);
 * `sh:and`, `sh:or`, `sh:xone`, `sh:not` and `sh:node` over shapes of that kind (4.6, 4.7.1);
 * a parameter left unbound inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
 
@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
+from typing import TypeGuard
 
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, Literal, Term
@@ -31,7 +32,7 @@ from selfconf.rdf.eligibility.role_tests import (
     SelfTest,
 )
 from selfconf.rdf.permitted_fields import STRUCTURE
-from selfconf.rdf.shacl import compiled
+from selfconf.rdf.shacl import PAIRS, PairTest, compiled
 from selfconf.rdf.tasks import ROLE_STRUCTURE
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE
@@ -133,6 +134,7 @@ class _PropertyParts:
     required: list[Term] = field(default_factory=list)
     free_in: list[tuple[IRI, frozenset[Term]]] = field(default_factory=list)
     free_required: list[IRI] = field(default_factory=list)
+    compared: list[PairTest] = field(default_factory=list)
     others: dict[IRI, list[Term]] = field(default_factory=dict)
     """The values of all other constraints."""
 
@@ -219,16 +221,7 @@ class _Compiler:
             return
         parts = _PropertyParts()
         for predicate, raw in dict.fromkeys(self.document.about(shape)):
-            value = self._bound(raw)
-            if predicate == SH["in"]:
-                self._among(raw, parts)
-            elif predicate == SH.hasValue and value in self.free and isinstance(value, IRI):
-                parts.free_required.append(value)
-            elif predicate in SH and predicate not in _SILENT and not parts.takes(predicate, value):
-                if self._mentions(raw):
-                    self.rest = True
-                else:
-                    parts.others.setdefault(predicate, []).append(value)
+            self._constraint_of_values(predicate, raw, parts)
         each, covered = compiled(parts.others)
         self.rest = self.rest or not parts.others.keys() <= covered or self._repeats(shape)
         yield PropertyTest(
@@ -240,14 +233,32 @@ class _Compiler:
             tuple(parts.free_in),
             tuple(parts.free_required),
             tuple(each),
+            tuple(parts.compared),
         )
+
+    def _constraint_of_values(self, predicate: IRI, raw: Term, parts: _PropertyParts) -> None:
+        """One constraint of a property shape."""
+        value = self._bound(raw)
+        if predicate == SH["in"]:
+            self._among(raw, parts)
+        elif predicate == SH.hasValue and value in self.free and isinstance(value, IRI):
+            parts.free_required.append(value)
+        elif predicate in PAIRS and self._plain(value):
+            parts.compared.append(PairTest(predicate, value))
+        elif predicate in SH and predicate not in _SILENT and not parts.takes(predicate, value):
+            if self._mentions(raw):
+                self.rest = True
+            else:
+                parts.others.setdefault(predicate, []).append(value)
 
     def _path(self, shape: Term) -> IRI | None:
         """The path of a property shape, if it is one property that a component states of itself."""
         paths = [self._bound(path) for path in self.document.values(shape, SH.path)]
-        if len(paths) != 1 or not isinstance(paths[0], IRI):
-            return None
-        return None if paths[0] in self.free or paths[0] in STRUCTURE or paths[0] in SC else paths[0]
+        return paths[0] if len(paths) == 1 and self._plain(paths[0]) else None
+
+    def _plain(self, path: Term) -> TypeGuard[IRI]:
+        """Whether a path is one property that a profile keeps as statements."""
+        return isinstance(path, IRI) and path not in self.free and path not in STRUCTURE and path not in SC
 
     def _among(self, head: Term, parts: _PropertyParts) -> None:
         """A list of values: all known, or all but one free parameter, which may be any other value."""

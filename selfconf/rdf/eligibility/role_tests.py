@@ -30,7 +30,7 @@ from selfconf.model.obstacle import (
 )
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, Term
-from selfconf.rdf.shacl import MatchTooCostly, ValueTest
+from selfconf.rdf.shacl import MatchTooCostly, PairTest, ValueTest
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,14 +71,27 @@ class PropertyTest:
     free_required: tuple[IRI, ...] = ()
     """The free parameters that stand in `sh:hasValue`."""
     each: tuple[ValueTest, ...] = ()
+    compared: tuple[PairTest, ...] = ()
 
-    def values(self, profile: Profile, hierarchy: Hierarchy) -> set[Term]:
+    @property
+    def looked_at(self) -> Iterator[IRI]:
+        """The properties whose values decide."""
+        yield self.path
+        yield from (pair.other for pair in self.compared)
+
+    def values(self, profile: Profile, hierarchy: Hierarchy) -> frozenset[Term]:
         """The values of the path: those of the property itself and of every property below it."""
-        return {value for key, value in profile.properties if self.path in hierarchy.superproperties(key)}
+        return _values(self.path, profile, hierarchy)
 
     def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
-        faults = tuple(self._faults(frozenset(self.values(profile, hierarchy))))
-        return PropertyUnmet(self.path, faults) if faults else None
+        values = self.values(profile, hierarchy)
+        faults = [*self._faults(values)]
+        for pair in self.compared if values else ():
+            others = _values(pair.other, profile, hierarchy)
+            wrong = frozenset([value for value in values if not pair.passes(value, others)])
+            if wrong:
+                faults.append(ConstraintFailed(wrong, pair.constraint, pair.other))
+        return PropertyUnmet(self.path, tuple(faults)) if faults else None
 
     # complexity: one case for each field of the test, in the order in which faults are told
     def _faults(self, values: frozenset[Term]) -> Iterator[Fault]:
@@ -104,7 +117,7 @@ class PropertyTest:
     def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
         """For each free parameter that this component constrains, the values it allows."""
         found: dict[IRI, frozenset[Term]] = {}
-        values = frozenset(self.values(profile, hierarchy))
+        values = self.values(profile, hierarchy)
         for parameter, members in self.free_in:
             rest = values - members
             if rest:
@@ -112,6 +125,10 @@ class PropertyTest:
         for parameter in self.free_required:
             found[parameter] = found.get(parameter, values) & values
         return found
+
+
+def _values(path: IRI, profile: Profile, hierarchy: Hierarchy) -> frozenset[Term]:
+    return frozenset([value for key, value in profile.properties if path in hierarchy.superproperties(key)])
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,20 +1,23 @@
 """SHACL without pySHACL: constraints on single values as compiled tests, and the syntax of shapes.
 
-`ValueTest` is a constraint on one value; `compiled` makes tests of the constraints that can be. `misfit`, `unfit`,
-`LITERAL`, `ONLY_WITH_A_PATH` and `ILL_FORMED` say what may stand as a value of SHACL's own properties.
-`pattern` is a regular expression that a text cannot make expensive; where that cannot be, it is `MatchTooCostly`.
+`ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
+makes tests of the constraints that can be. `misfit`, `unfit`, `LITERAL`, `ONLY_WITH_A_PATH` and `ILL_FORMED` say what
+may stand as a value of SHACL's own properties. `pattern` is a regular expression that a text cannot make expensive;
+where that cannot be, it is `MatchTooCostly`.
 Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, pattern
 from selfconf.rdf.shacl.shape_syntax import ILL_FORMED, LITERAL, ONLY_WITH_A_PATH, misfit, unfit
-from selfconf.rdf.shacl.value_tests import ValueTest, compiled
+from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled
 
 __all__ = [
     "ILL_FORMED",
     "LITERAL",
     "ONLY_WITH_A_PATH",
+    "PAIRS",
     "MatchTooCostly",
+    "PairTest",
     "ValueTest",
     "compiled",
     "misfit",

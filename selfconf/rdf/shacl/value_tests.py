@@ -1,4 +1,5 @@
-"""What SHACL asks of one value: its kind, datatype, range, length and pattern (SHACL 4.1.2, 4.1.3, 4.3, 4.4).
+"""What SHACL asks of one value: its kind, datatype, range, length and pattern (SHACL 4.1.2, 4.1.3, 4.3, 4.4), and
+that it is less than the values of another property (4.5.3, 4.5.4).
 
 Whether a literal is well-formed, and which of two is the greater, is decided by rdflib, as it is in pySHACL
 (`selfconf.rdf.literal_comparison`): two opinions on what `"07"^^xsd:integer` is would be one too many. Verdicts are
@@ -8,7 +9,7 @@ remembered, as values recur.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from types import ModuleType
@@ -31,6 +32,11 @@ _LIMITS: Mapping[IRI, Callable[[int], bool]] = {
     SH.maxInclusive: lambda order: order <= 0,
     SH.maxExclusive: lambda order: order < 0,
 }
+PAIRS: Mapping[IRI, Callable[[int], bool]] = {
+    SH.lessThan: lambda order: order < 0,
+    SH.lessThanOrEquals: lambda order: order <= 0,
+}
+"""The constraints that compare a value with those of another property of the node that has it."""
 _LENGTHS = frozenset((SH.minLength, SH.maxLength))
 _SOLE = frozenset((SH.nodeKind, SH.datatype, SH.minLength, SH.maxLength))
 """Constraints of which a shape may state only one."""
@@ -47,6 +53,24 @@ class ValueTest:
     def passes(self, value: Term) -> bool:
         """Whether a value is as wanted. Raises MatchTooCostly for a pattern that takes too long to find out about."""
         return _passes(self, value)
+
+
+@dataclass(frozen=True, slots=True)
+class PairTest:
+    """Each value is less than each of another property: one of PAIRS, and the other property."""
+
+    constraint: IRI
+    other: IRI
+
+    def passes(self, value: Term, others: Iterable[Term]) -> bool:
+        """Whether a value is as wanted beside the values of the other property; what has no order is not."""
+        return all(_ordered(self.constraint, value, other) for other in others)
+
+
+@lru_cache(maxsize=1 << 12)
+def _ordered(constraint: IRI, value: Term, other: Term) -> bool:
+    order = _literals().order(value, other)
+    return order is not None and PAIRS[constraint](order)
 
 
 def compiled(constraints: Mapping[IRI, list[Term]]) -> tuple[list[ValueTest], set[IRI]]:

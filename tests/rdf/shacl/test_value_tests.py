@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.shacl.value_tests import ValueTest, compiled
+from selfconf.rdf.shacl.value_tests import PairTest, ValueTest, compiled
 from selfconf.rdf.vocabulary import SH, XSD
 
 
@@ -30,6 +30,17 @@ def test_a_value_passes_or_fails(constraint: IRI, wanted: Term, passing: Term, f
     test = ValueTest(constraint, wanted)
     assert test.passes(passing)
     assert not test.passes(failing)
+
+
+def test_a_value_is_less_than_every_value_of_another_property() -> None:
+    date = Literal("2024-01-01", XSD.date)
+    test = PairTest(SH.lessThan, IRI("urn:until"))
+    assert test.passes(number("5"), [number("6"), Literal("5.5", XSD.decimal)])
+    assert test.passes(number("5"), [])
+    assert not test.passes(number("5"), [number("6"), number("5")])
+    assert not test.passes(date, [number("5")])
+    assert not test.passes(IRI("urn:a"), [IRI("urn:b")])
+    assert PairTest(SH.lessThanOrEquals, IRI("urn:until")).passes(number("5"), [number("5")])
 
 
 def test_what_is_no_constraint_on_one_value_is_not_compiled() -> None:
