@@ -32,6 +32,10 @@ log = logging.getLogger(__name__)
 
 LOOK = 1.0
 """How often, in seconds, the folder of keys and what was refused are looked at."""
+RAREST_RETRY = 30.0
+"""After how many seconds at most it is tried again to open the hub."""
+FAULT_AGAIN = 600.0
+"""After how many seconds a fault that lasts is told again."""
 SOON = 0.05
 """Seconds after which others are asked what they advertise, when something has changed: mostly more does. However many
 changes are told of, others are asked no oftener than that."""
@@ -100,6 +104,10 @@ class Doorkeeper:
         self._seen: dict[tuple[str, str, str], int] = {}
         """How often each refused attempt was seen in the log."""
         self._tellings: list[float] = []
+        self._faults: dict[str, float] = {}
+        """What was said to be wrong with the keys or the hub, and when."""
+        self._pause = LOOK
+        self._undo_retry: Callable[[], None] = lambda: None
         self._asks_soon = False
         """Whether others are about to be asked what they advertise."""
         self._renewed_at = credentials.certificate.stat().st_mtime_ns
@@ -158,7 +166,7 @@ class Doorkeeper:
             try:
                 self._admit(decode(sample.payload, Introduction).certificate)
             except SelfconfError as error:
-                self._tell_once("", str(error), sample.key)
+                self._tell_refused("", str(error), sample.key)
         self._renew_rules()
 
     # What others advertise.
@@ -241,18 +249,23 @@ class Doorkeeper:
         try:
             rules = self._made()
         except SelfconfError as error:
-            self._tell_once("", str(error), "")
+            self._tell_fault(str(error))
             return
         if rules != self.rules:
             self.rules = rules
             self._enforced()
 
     def _enforced(self) -> None:
+        """Have the hub opened anew; as long as that fails try again, more and more rarely."""
+        self._undo_retry()
         try:
             self._enforce(self.rules)
         except NetworkError as error:
-            self._complain(f"the hub cannot be opened with its new rules: {error}; trying again")
-            self._bus.later(LOOK, self._enforced)
+            self._tell_fault(f"the hub cannot be opened with its new rules: {error}; trying again")
+            self._undo_retry = self._bus.later(self._pause, self._enforced)
+            self._pause = min(2 * self._pause, RAREST_RETRY)
+        else:
+            self._pause = LOOK
 
     def _look(self) -> None:
         """Look at what changes without a message: the folder of keys, the time, and what was refused."""
@@ -263,7 +276,7 @@ class Doorkeeper:
         self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
         for what in refused:
             if self._seen[what] == LOOKS:
-                self._tell_once(*what)
+                self._tell_refused(*what)
 
     def _renew_certificates(self) -> None:
         """Renew what is half over, and have the hub show the certificate that lies in the folder now."""
@@ -273,7 +286,7 @@ class Doorkeeper:
             changed = self._credentials.certificate.stat().st_mtime_ns
             self._folder.renew_components()
         except (SelfconfError, OSError) as error:
-            self._tell_once("", str(error), "")
+            self._tell_fault(str(error))
             return
         if changed != self._renewed_at:
             self._renewed_at = changed
@@ -281,7 +294,14 @@ class Doorkeeper:
 
     # What is told.
 
-    def _tell_once(self, principal: str, attempt: str, key: str) -> None:
+    def _tell_fault(self, sentence: str) -> None:
+        """Say what is wrong with the keys or the hub, unless that was said a short while ago."""
+        now = self._bus.now()
+        if now - self._faults.get(sentence, -FAULT_AGAIN) >= FAULT_AGAIN:
+            self._faults = {told: at for told, at in self._faults.items() if now - at < FAULT_AGAIN} | {sentence: now}
+            self._complain(sentence)
+
+    def _tell_refused(self, principal: str, attempt: str, key: str) -> None:
         """Say that something was refused, but not for ever."""
         now = self._bus.now()
         self._tellings = [at for at in self._tellings if now - at < 60.0]

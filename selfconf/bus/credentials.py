@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from selfconf.errors import NetworkError
+
 
 @dataclass(frozen=True, slots=True)
 class Credentials:
@@ -18,3 +20,11 @@ class Credentials:
     """Who must have issued the certificate of the other end."""
     folder: Path
     """The keys folder that they are from: what `--keys` was given, for a program that hands it on."""
+
+    def check(self) -> None:
+        """Raise NetworkError if one of the files cannot be read."""
+        for file in (self.certificate, self.key, self.authorities):
+            try:
+                file.read_bytes()
+            except OSError as error:
+                raise NetworkError(f"{file} cannot be read: {error.strerror}") from None

@@ -30,6 +30,8 @@ from selfconf.errors import NetworkError
 
 REOPENING = 2.0
 """Seconds for which a hub that is opened anew tries to have its port again."""
+PORT_PAUSE = 0.02
+"""Seconds between two such tries."""
 QUIET = 0.3
 """Seconds without any change of its links after which an uplink is replaced: trees are computed in between."""
 RETRY_SPREAD = 0.5
@@ -62,8 +64,10 @@ class Hub:
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate: Zenoh reads them only as a session is opened, so it is opened anew.
 
-        Those that are connected lose this hub for a moment. Raises NetworkError if its port is taken meanwhile.
+        Those that are connected lose this hub for a moment. Raises NetworkError if its files cannot be read, and then
+        nothing is changed; or if its port is taken meanwhile.
         """
+        security.credentials.check()
         self.security = security
         _close(self._session)
         deadline = time.monotonic() + REOPENING
@@ -74,6 +78,7 @@ class Hub:
             except NetworkError:
                 if time.monotonic() > deadline:
                     raise
+                time.sleep(PORT_PAUSE)  # nobody tells when the system gives the port back
 
     @property
     def from_here(self) -> str:

@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 
 from selfconf.access import AccessRules, Doorkeeper, KeysFolder, Principal, PrincipalKind, believe, first_rules
+from selfconf.access.doorkeeper import RAREST_RETRY
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.refusals import RefusalLog
+from selfconf.errors import NetworkError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
@@ -27,6 +29,7 @@ class Door:
         self.bus = self.network.node()
         self.enforced: list[AccessRules] = []
         self.said: list[str] = []
+        self.hub_opens = True
         self.refusals = RefusalLog(clock=lambda: 0.0)
         credentials = folder.credentials((PrincipalKind.SITE,), "home")
         self.keeper = Doorkeeper(
@@ -37,7 +40,7 @@ class Door:
             credentials,
             lambda: {LAMP: LAMP},
             lambda: ["home"],
-            self.enforced.append,
+            self.enforce,
             self.said.append,
             self.refusals,
             first_rules("lab", "home", folder, {LAMP: LAMP}),
@@ -50,6 +53,12 @@ class Door:
         self.other.ask(key, payload, 5.0, heard.append)
         self.other.run(lambda: bool(heard))
         return heard[0]
+
+    def enforce(self, rules: AccessRules) -> None:
+        """Open the hub with other rules."""
+        self.enforced.append(rules)
+        if not self.hub_opens:
+            raise NetworkError("the port is in use")
 
     def introduce(self, certificate: str) -> Replies:
         """What is answered to who shows a certificate."""
@@ -89,6 +98,21 @@ def test_who_shows_a_good_certificate_is_let_in_and_shown_that_of_the_site(door:
     assert decode(again.payload, Introduction).known
     door.pass_time(5.0)
     assert len(door.enforced) == 1, "nothing has changed since"
+
+
+def test_a_hub_that_does_not_open_is_tried_more_and_more_rarely_and_complained_of_once(
+    door: Door, tmp_path: Path
+) -> None:
+    door.hub_opens = False
+    door.introduce(door.folder.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice").pem.decode())
+    door.pass_time(120.0)
+    assert 6 <= len(door.enforced) <= 10
+    assert door.said == ["the hub cannot be opened with its new rules: the port is in use; trying again"]
+    door.hub_opens = True
+    door.pass_time(RAREST_RETRY)
+    tried = len(door.enforced)
+    door.pass_time(60.0)
+    assert len(door.enforced) == tried
 
 
 @pytest.mark.parametrize(

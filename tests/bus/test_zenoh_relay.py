@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from selfconf.bus import zenoh_relay
+from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh_relay import Hub, Relay
-from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, with_port
+from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, Security, with_port
 from selfconf.errors import NetworkError
 
 NOBODY = with_port(ANYWHERE_ON_LOOPBACK)
@@ -60,6 +62,16 @@ def test_a_hub_says_which_free_port_it_has_taken(relay: CountedRelay, hub: Hub) 
 def test_a_hub_on_all_addresses_is_reached_from_its_own_host_by_loopback() -> None:
     hub = Hub("tcp/0.0.0.0:0")
     assert hub.from_here == hub.endpoint.replace("0.0.0.0", "127.0.0.1")
+    hub.close()
+
+
+def test_a_hub_whose_keys_are_gone_stays_as_it_is(tmp_path: Path) -> None:
+    hub = Hub(ANYWHERE_ON_LOOPBACK)
+    gone = Credentials("site.home", tmp_path / "certificate.pem", tmp_path / "key", tmp_path / "authority", tmp_path)
+    with pytest.raises(NetworkError, match=r"certificate\.pem cannot be read"):
+        hub.secure(Security(gone))
+    with pytest.raises(NetworkError, match="the port is in use"):
+        Hub(hub.endpoint)
     hub.close()
 
 
