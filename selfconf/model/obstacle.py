@@ -7,14 +7,14 @@ programs.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar
 
 from selfconf.model.signal_match import Degree, SignalMatch
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, Term
 from selfconf.model.unit_dimension import differ_in_dimension
+from selfconf.model.wording import in_full, in_words, term_in_words
 
 _LIMITS = {
     "minInclusive": "at least",
@@ -111,8 +111,8 @@ class NotAmong:
 
     def said(self, name: str) -> str:
         """The fault of the property of that name."""
-        alike = {_word(value) for value in self.values} & {_word(member) for member in self.members}
-        worded = _in_full if alike else in_words
+        alike = {term_in_words(value) for value in self.values} & {term_in_words(member) for member in self.members}
+        worded = in_full if alike else in_words
         return f"{name} is {worded(self.values)}, not {worded(self.members)}"
 
 
@@ -357,21 +357,3 @@ Obstacle = (
     | NotFedItself
     | NotJudged
 )
-
-
-def in_words(values: Iterable[Term]) -> str:
-    """Values for people: `Astrid or Pippi`; of literals also what tells them from others, `"1"` from `1`."""
-    names = sorted(map(_word, values))
-    return " or ".join(names) if names else "nothing"
-
-
-def _in_full(values: Iterable[Term]) -> str:
-    """Values for people where local names do not tell them apart: IRIs as a whole."""
-    said = sorted(repr(value) if isinstance(value, IRI) else _word(value) for value in values)
-    return " or ".join(said) if said else "nothing"
-
-
-def _word(value: Term) -> str:
-    if isinstance(value, Literal):
-        return value.turtle(lambda datatype: datatype.short)
-    return value.short if isinstance(value, IRI) else str(value)

@@ -16,8 +16,8 @@ from decimal import Decimal
 from functools import lru_cache
 from typing import NamedTuple
 
-from selfconf.model.obstacle import in_words
 from selfconf.model.term import IRI, Term
+from selfconf.model.wording import in_words
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from selfconf.model.obstacle import in_words
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.profile import CALL_MARK, Operation, Output, Place
 from selfconf.model.term import IRI, Term
-from selfconf.model.wording import listed
+from selfconf.model.wording import in_words, listed
 
 
 @dataclass(frozen=True, slots=True)

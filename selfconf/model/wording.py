@@ -1,9 +1,11 @@
-"""Lists in sentences, and text that steers no terminal."""
+"""Lists and terms in sentences, and text that steers no terminal."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+
+from selfconf.model.term import IRI, Literal, Term
 
 MANY = 12
 """How many names are listed; the rest become a number."""
@@ -43,3 +45,22 @@ def listed(names: Iterable[str]) -> str:
     if len(words) < 2:
         return "".join(words)
     return f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def in_words(values: Iterable[Term]) -> str:
+    """Values for people: `Astrid or Pippi`; of literals also what tells them from others, `"1"` from `1`."""
+    names = sorted(map(term_in_words, values))
+    return " or ".join(names) if names else "nothing"
+
+
+def in_full(values: Iterable[Term]) -> str:
+    """Values for people where local names do not tell them apart: IRIs as a whole."""
+    said = sorted(repr(value) if isinstance(value, IRI) else term_in_words(value) for value in values)
+    return " or ".join(said) if said else "nothing"
+
+
+def term_in_words(value: Term) -> str:
+    """A term for people: an IRI by its local name, a literal as in Turtle."""
+    if isinstance(value, Literal):
+        return value.turtle(lambda datatype: datatype.short)
+    return value.short if isinstance(value, IRI) else str(value)

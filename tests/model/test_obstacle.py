@@ -28,10 +28,9 @@ from selfconf.model.obstacle import (
     WrongComponent,
     WrongCount,
     WrongType,
-    in_words,
 )
 from selfconf.model.signal_match import Degree, SignalMatch
-from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
+from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.rdf.vocabulary import UNIT
 
 SH = "http://www.w3.org/ns/shacl#"
@@ -212,13 +211,6 @@ def test_several_faults_of_a_property_are_one_obstacle() -> None:
 
 def test_alternatives_that_lack_the_same_say_it_once() -> None:
     assert str(NoAlternative((WrongType(CAMERA), WrongType(CAMERA)))) == "is no Camera"
-
-
-def test_values_are_sorted_and_told_from_others_that_look_alike() -> None:
-    assert in_words({HALL, CELLAR, FIVE}) == "5 or cellar or hall"
-    assert in_words([Literal("5"), FIVE]) == '"5" or 5'
-    assert in_words([BlankNode("_:b")]) == "_:b"
-    assert in_words([]) == "nothing"
 
 
 def test_values_with_one_local_name_are_told_apart_by_their_whole_iris() -> None:

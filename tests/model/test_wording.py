@@ -1,10 +1,14 @@
-"""Lists in sentences, and what strangers say in one line."""
+"""Lists and terms in sentences, and what strangers say in one line."""
 
 from __future__ import annotations
 
 import pytest
 
-from selfconf.model.wording import LONGEST_REMARK, MANY, is_one_line, listed, one_line, plain
+from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
+from selfconf.model.wording import LONGEST_REMARK, MANY, in_full, in_words, is_one_line, listed, one_line, plain
+
+HALL, CELLAR = (IRI(f"https://example.org/{name}") for name in ("hall", "cellar"))
+FIVE = Literal("5", IRI(XSD_NAMESPACE + "integer"))
 
 
 def test_names_are_listed_as_people_do_and_very_many_are_counted() -> None:
@@ -27,3 +31,12 @@ def test_a_remark_is_a_part_of_one_line_and_not_longer_than_a_screen() -> None:
     assert plain("a\tb\n") == "a\tb\n"
     assert is_one_line("ä 日本 ✓")
     assert one_line("x" * 10_000) == "x" * LONGEST_REMARK + "…"
+
+
+def test_values_are_sorted_and_told_from_others_that_look_alike() -> None:
+    assert in_words({HALL, CELLAR, FIVE}) == "5 or cellar or hall"
+    assert in_words([Literal("5"), FIVE]) == '"5" or 5'
+    assert in_words([BlankNode("_:b")]) == "_:b"
+    assert in_words([]) == "nothing"
+    assert in_full([HALL, FIVE]) == "5 or <https://example.org/hall>"
+    assert in_full([]) == "nothing"
