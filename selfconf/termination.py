@@ -103,9 +103,12 @@ def ignore_from_now_on() -> None:
 
 
 class Termination:
-    """True, when called, once the program is to end; `then` is called once, on the bus's thread."""
+    """True, when called, once the program is to end; before that `then` is called once, on the bus's thread.
 
-    def __init__(self, bus: Bus, then: Callable[[], None] = lambda: None) -> None:
+    Without `then` a signal ends the program also while that thread is held up.
+    """
+
+    def __init__(self, bus: Bus, then: Callable[[], None] | None = None) -> None:
         self._bus, self._then, self._ending = bus, then, False
         self._parent = os.getppid()
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -117,12 +120,15 @@ class Termination:
         return self._ending
 
     def _signalled(self, _: int, __: FrameType | None) -> None:
+        if self._then is None:
+            self._ending = True
         self._bus.wake_up(self._end)
 
     def _end(self) -> None:
         if not self._ending:
             self._ending = True
-            self._then()
+            if self._then is not None:
+                self._then()
 
     def _look(self) -> None:
         if orphaned(self._parent):

@@ -63,6 +63,13 @@ def test_a_signal_ends_the_program_once_however_often_it_comes(number: signal.Si
 
 
 @pytest.mark.usefixtures("handlers")
+def test_a_signal_ends_a_program_whose_bus_is_held_up() -> None:
+    ended = Termination(Network(0).node())  # nobody lets its time pass
+    signal.raise_signal(signal.SIGTERM)
+    assert ended()
+
+
+@pytest.mark.usefixtures("handlers")
 def test_a_program_ends_when_the_one_that_started_it_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
     network = Network(0)
     monkeypatch.setenv("SELFCONF_PARENT", str(os.getppid()))
