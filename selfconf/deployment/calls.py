@@ -113,6 +113,9 @@ class Calls:
         """The components that had no life when their sites were asked to start them, and have had none since."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
+        self.gone: set[IRI] = set()
+        """The components without a life for so long that what is left of an earlier one acts for nobody, if it is not
+        only frozen; what is owed to them stays owed, as one that was frozen goes on with what it did."""
 
     # Waking and reserving.
 
@@ -132,6 +135,7 @@ class Calls:
     def woken(self, component: IRI) -> None:
         """A component lives; perhaps it was started for this task."""
         self._unborn.discard(component)
+        self.gone.discard(component)
         waiting = self._waking.pop(component, None)
         if waiting is not None:
             waiting[1]()
@@ -247,26 +251,44 @@ class Calls:
         component = effect.component
         self._connections.pop(component, None)
         self._awaited.discard(component)
+        message = Release(**self._claim(component, effect.epoch))
         if not self._lives_on(component):
             self._lives.pop(component, None)
             never_acted = component in self._unborn - self._called
             off = Answered(component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE if never_acted else None)
             self.bus.wake_up(lambda: self._step(off))
-            self.bus.later(GONE, partial(self._is_gone, effect))
+            if not never_acted:
+                self._release_unseen(effect, message)
             return
+        self.bus.later(2 * CALL, partial(self._release_again, effect))
+        self._call(component, Call.RELEASE, message)
 
-        def again() -> None:
-            if self._state().owed.get(component) == effect.epoch:
-                self.release(effect)
+    def _release_unseen(self, effect: ReleaseFrom, message: Release) -> None:
+        """Tell a component whose life seems to have ended that it is released, as it may hear this without being heard.
 
-        self.bus.later(2 * CALL, again)
-        self._call(component, Call.RELEASE, Release(**self._claim(component, effect.epoch)))
+        It is told again only if somebody was asked and did not answer. One that cannot be reached has lost sight of its
+        configurator as well, and turns itself off; one that is frozen is released when its life shows again.
+        """
+        component = effect.component
 
-    def _is_gone(self, effect: ReleaseFrom) -> None:
-        """A life that has been gone for longer than its grace acts for nobody: no release is owed to it."""
-        owed = self._state().owed.get(effect.component) == effect.epoch
-        if owed and self.bus.link and not self._lives_on(effect.component):
-            self._step(Answered(effect.component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE))
+        def answered(replies: Replies) -> None:
+            answer = self._answer_in(replies, message.life)
+            if answer is not None:
+                self._answered(component, Call.RELEASE, message, answer)
+            elif not replies.complete:
+                self.bus.later(CALL, partial(self._release_again, effect))
+
+        self.bus.ask(self.keys.call(component, Call.RELEASE.value), encode(message), CALL, answered)
+        self.bus.later(GONE, partial(self._is_gone, component))
+
+    def _release_again(self, effect: ReleaseFrom) -> None:
+        if self._state().owed.get(effect.component) == effect.epoch:
+            self.release(effect)
+
+    def _is_gone(self, component: IRI) -> None:
+        """A life that has been gone for longer than its grace acts for nobody, unless this node is cut off."""
+        if self.bus.link and not self._lives_on(component):
+            self.gone.add(component)
 
     def _end(self, component: IRI) -> None:
         """Have the site end a component that does not obey its release: it may act on for nobody."""

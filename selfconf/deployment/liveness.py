@@ -64,6 +64,8 @@ class Liveness:
         """The liveliness keys of the sites that have answered: a site that was started again has another one."""
         self._unseen: set[tuple[str, str]] = set()
         """The lives of the roll-call that the watch has not shown yet, with the component's chunk."""
+        self._unseen_sites: set[str] = set()
+        """The liveliness keys of the sites that have answered, but that the watch has not shown yet."""
         self._names: dict[str, IRI] = {}
         """Every component that was ever advertised, by its chunk: an event costs one look-up, however many live."""
         self._doubted: set[tuple[str, str]] = set()
@@ -71,7 +73,9 @@ class Liveness:
         self._asking = False
         self._site_ended = float("-inf")
         """When the life of a site ended the last time."""
-        self._link, self._cut_off = self.bus.link, False
+        self._link = self.bus.link
+        self.cut_off = False
+        """Whether this node was found to be cut off, and has not been connected again for long enough since."""
         self._ask_again: Undo = lambda: None
         self._audited = 0
         self._silences: dict[IRI, int] = {}
@@ -85,6 +89,7 @@ class Liveness:
         self._sites.update(discovery.answered)
         if not self.ecology.followed:
             self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
+            self._unseen_sites = set(discovery.answered)
             self.bus.later(SETTLING, self._end_unseen)
         self.ecology.follow(self._life_changed, self._site_changed)
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
@@ -202,13 +207,15 @@ class Liveness:
     def _runs_undisturbed(self, epoch: int) -> bool:
         """Whether the configuration of an epoch runs, and this node is not, and was not just now, cut off."""
         state = self._state()
-        connected = not self._cut_off and self.bus.link == self._link
+        connected = not self.cut_off and self.bus.link == self._link
         return connected and state.phase is Phase.RUNNING and state.epoch == epoch
 
     def _end_unseen(self) -> None:
         """A life that ended between the roll-call and the beginning of the watch was called, but never seen since."""
         for chunk, life in sorted(self._unseen):
             self._ended(chunk, life)
+        for site in sorted(self._unseen_sites):
+            self._site_changed(site, False)
         self._unseen.clear()
 
     def _held_life(self, component: IRI) -> str | None:
@@ -216,6 +223,7 @@ class Liveness:
         return held.life if held is not None else None
 
     def _site_changed(self, key: str, alive: bool) -> None:
+        self._unseen_sites.discard(key)
         if alive and key not in self._sites:
             self._sites.add(key)
             self._calls.site_began(owner_of(key))
@@ -244,11 +252,11 @@ class Liveness:
             if not self.bus.link:
                 look()
                 return
-            self._link, self._cut_off = self.bus.link, False
+            self._link, self.cut_off = self.bus.link, False
             self._reconnected()
 
-        if not self._cut_off:
-            self._cut_off = True
+        if not self.cut_off:
+            self.cut_off = True
             self._report(EcologyUnreachable())
             look()
 

@@ -292,10 +292,15 @@ class TaskRunner:
 
     def _may_be_able(self, component: IRI, loss: Loss) -> bool:
         """Whether a component lives, or its site can start it, and it obeys what it was told last."""
-        if component in self.state.owed and not loss.busy:
+        if component in self._out_of_control and not loss.busy:
             return False
         found = self.ecology.discovery.found.get(component)
         return self.ecology.life(component) is not None or (found is not None and found.startable)
+
+    @property
+    def _out_of_control(self) -> tuple[IRI, ...]:
+        """The components that have not obeyed their release and may still act, sorted."""
+        return tuple(sorted(self.state.owed.keys() - self._calls.gone))
 
     @property
     def losses(self) -> dict[IRI, str]:
@@ -359,7 +364,7 @@ class TaskRunner:
                 self._finish(effect)
 
     def _finish(self, effect: Finish) -> None:
-        refusal, lost, owed = effect.refusal, self.losses, tuple(sorted(self.state.owed))
+        refusal, lost, owed = effect.refusal, self.losses, self._out_of_control
         self._report(TaskStopped(lost=lost, owed=owed) if refusal is None else TaskRefused(refusal, lost, owed))
         try:
             self._report_all()
@@ -497,6 +502,6 @@ class TaskRunner:
             task=self.identity.task,
             priority=self.identity.priority,
             beginning=self.identity.beginning,
-            owed=tuple(self.state.owed),
+            owed=self._out_of_control,
             dropped={one: count for one, count in self._liveness.dropped.items() if count and one in self.state.held},
         )

@@ -38,6 +38,8 @@ SETTLED = 75.0
 """Seconds after the last fault in which the ecology must come into order."""
 SPOKEN = 1.0
 """Seconds in which everybody must have heard what was said last."""
+LOOKED_AGAIN = 1.0
+"""Seconds in which a task that waits must have looked again, as it does from time to time: meanwhile it is undecided."""
 
 
 def startable(advertisement: str) -> str:
@@ -111,6 +113,7 @@ class History:
         self.lab.let_pass(SETTLED)
         self._speak()
         self.lab.let_pass(SPOKEN)
+        self.lab.until(self.watch.all_decided, LOOKED_AGAIN)
         self.watch.end()
 
     def _speak(self) -> None:

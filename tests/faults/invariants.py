@@ -138,9 +138,13 @@ def strangers(history: History, component: str, agent: TaskRunner) -> Iterator[s
 
 
 def runs_without(history: History) -> Iterator[str]:
-    """A task is running only as long as each of its components acts for it."""
+    """A task is running only as long as each of its components acts for it, or its configurator is cut off, and knows.
+
+    It has said so then, and can be asked by nobody.
+    """
     for agent in history.living():
-        if agent.state.phase is Phase.RUNNING and not node_of(agent).paused and agent.configuration is not None:
+        claims = agent.state.phase is Phase.RUNNING and not agent._liveness.cut_off
+        if claims and not node_of(agent).paused and agent.configuration is not None:
             for component in agent.configuration.components:
                 if not _acts_for(history, agent, component):
                     yield f"{agent.name} is running without {component.short}"
@@ -359,6 +363,10 @@ class Watch:
             if now - since > self._bounds[name] and (name, condition) not in self._noted:
                 self._noted.add((name, condition))
                 self.note(name, f"{condition}, since {since:.3f}")
+
+    def all_decided(self) -> bool:
+        """Whether every task is running or refused."""
+        return not any(undecided(self._history))
 
     def end(self) -> None:
         """Look at what must hold in the end."""
