@@ -288,9 +288,9 @@ def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
     )
     if state.policy is Policy.DISMANTLE:
         return _dismantle(without, Phase.COMPOSING)
-    effects = [ReleaseFrom(component, epoch)] if loss.cause is not Cause.CRASH else []
+    effects = (ReleaseFrom(component, epoch),)  # also what seems to be dead: it may hear, and not be heard
     if state.phase is Phase.DISCOVERING:
-        return without, tuple(effects)
+        return without, effects
     if state.fallback is not None and component not in state.fallback.components and state.phase in DEPLOYING:
         return then(effects, deploying.deploy(replace(without, target=state.fallback, fallback=None)))
     return then(effects, _compose(replace(without, fallback=None)))

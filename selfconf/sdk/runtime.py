@@ -25,7 +25,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol import activation as table
 from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys, call_of, life_of, owner_of, task_name
+from selfconf.protocol.keys import Keys, call_of, owner_of, task_name
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
@@ -44,6 +44,7 @@ from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
 from selfconf.sdk.operations import Operations
+from selfconf.sdk.other_lives import OtherLives
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
 from selfconf.sdk.supervision import Supervision
 from selfconf.termination import resident_memory
@@ -60,10 +61,6 @@ OFFER = 0.2
 """Seconds for which a component that has become free is kept for the task that has waited for it first."""
 YIELDING = 2.0
 """Seconds that a task has to let go of a component that a task of higher priority asks for."""
-LOOKS_FOR_OTHERS = (0.0, 1.0)
-"""Seconds after the beginning of a life at which it is looked whether another process is the same component."""
-LIVES_CALL = 3.0
-"""Seconds that this may take."""
 MOST_PENDING = 256
 """How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
 Reply = Callable[[CallAnswer], None]
@@ -133,8 +130,7 @@ class ComponentRuntime:
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
         self._served = bus.serve(keys.call(profile.component), self._call)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
-        for seconds in LOOKS_FOR_OTHERS:
-            bus.later(seconds, self._look_for_others)
+        self._other_lives = OtherLives(bus, keys.lives(profile.component), self.life, self._outlived)
 
     @property
     def active(self) -> bool:
@@ -155,6 +151,7 @@ class ComponentRuntime:
         self._drop([hold.claim.task for hold in self.activation.holds])
         self._served()
         self._token()
+        self._other_lives.close()
         self.outputs.close()
         self.operations.close()
         self._fail.undeclare()
@@ -411,6 +408,7 @@ class ComponentRuntime:
         if step is ActivationStep.RAISE_FAIL:
             self.code.end_acting()  # again: another thread's FAIL may have been overtaken by a release and an apply
         self.supervision.watch({hold.claim.supervisor for hold in activation.holds})
+        self._other_lives.follow(bool(activation.holds))
         if self._preemption is not None and not table.outranked(activation):
             self._preemption()
             self._preemption = None
@@ -453,18 +451,12 @@ class ComponentRuntime:
         self._drop(tasks)
         self._when_at_rest(self._offer)
 
-    def _look_for_others(self) -> None:
-        """Of two processes that are one component, as both began at once, the one with the smaller life stays."""
-
-        def called(keys: tuple[str, ...]) -> None:
-            others = [life for life in map(life_of, keys) if life < self.life]
-            if others and not self._closed:
-                reason = f"{self.profile.component} is alive already, in the life {min(others)}; this process leaves"
-                log.error("%s", reason)
-                self.close(partial(self._superseded, reason))
-
+    def _outlived(self, life: str) -> None:
+        """Leave the ecology: another process is the same component, and stays."""
         if not self._closed:
-            self.bus.roll_call(self.keys.lives(self.profile.component), LIVES_CALL, called)
+            reason = f"{self.profile.component} is alive already, in the life {life}; this process leaves"
+            log.error("%s", reason)
+            self.close(partial(self._superseded, reason))
 
     # What is noticed of the inputs, and asked for the operations.
 

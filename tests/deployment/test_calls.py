@@ -9,7 +9,7 @@ from typing import Any
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
-from selfconf.deployment.calls import CALL, SITE_BACK, STARTING, WAKING
+from selfconf.deployment.calls import CALL, GONE, SITE_BACK, STARTING, WAKING
 from selfconf.deployment.liveness import SETTLING
 from selfconf.deployment.runner import TaskRunner
 from selfconf.model.configuration import Configuration
@@ -275,6 +275,29 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_pat
     assert lab.until(lambda: bool(lab.ended))
     assert ended[0] == End(tracker, runtime.life)
     assert lab.until(lambda: lab.active() == set())
+
+
+def test_a_component_that_hears_but_is_not_heard_is_released_though_it_seems_to_be_dead(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert isinstance(agent.bus, MemoryBus)
+    lab.network.mute(lab.node_of("tracker"), agent.bus)
+    assert lab.until(lambda: lab.active() == TASK | {"odometry"}, 1.0)
+    lab.let_pass(2 * GONE)
+    assert agent.status().owed == ()  # it is not known to have obeyed, but nobody has to see to it
+
+
+def test_a_component_that_goes_on_after_it_was_frozen_for_long_is_released(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.network.pause(lab.node_of("tracker"))
+    assert lab.until(lambda: agent.status().owed == (iri("person-tracker"),), 2.0)
+    lab.let_pass(2 * GONE)
+    assert agent.status().owed == ()
+    assert lab.active() == {*TASK, "odometry", "tracker"}
+    lab.network.resume(lab.node_of("tracker"))
+    assert lab.until(lambda: lab.active() == TASK | {"odometry"}, 0.5)
+    assert lab.until(lambda: not agent.state.owed, 0.1)
 
 
 def test_a_component_that_speaks_another_protocol_is_replaced(lab: Lab) -> None:

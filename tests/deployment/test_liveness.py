@@ -389,3 +389,20 @@ def test_a_site_that_is_started_again_is_news_though_its_earlier_life_has_not_en
     first.bus.close()
     assert lab.running(agent)
     assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_site_that_is_cut_off_before_lives_are_followed_is_news_when_it_is_back(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    astrid, late = lab.site("astrid", "sonar", "encoder", "control", "drive"), lab.site("living-room", "tracker")
+    assert isinstance(late.bus, MemoryBus)
+    lab.network.pause(late.bus)
+    agent = lab.agent(patient=True)
+    lab.let_pass(0.01)
+    lab.isolate(astrid)  # it has answered, and is not watched yet
+    lab.network.resume(late.bus)
+    lab.let_pass(2 * SETTLING)
+    assert agent.state.phase is Phase.REFUSED
+    asked = len(lab.acts("query"))
+    lab.rejoin(astrid)
+    lab.let_pass(0.1)
+    assert len(lab.acts("query")) == asked + 1

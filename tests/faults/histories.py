@@ -39,7 +39,7 @@ SETTLED = 75.0
 SPOKEN = 1.0
 """Seconds in which everybody must have heard what was said last."""
 LOOKED_AGAIN = 1.0
-"""Seconds in which a task that waits must have looked again, as it does from time to time: meanwhile it is undecided."""
+"""Seconds that a task which waits may take to look again, as it does from time to time: it is undecided meanwhile."""
 
 
 def startable(advertisement: str) -> str:

@@ -82,7 +82,7 @@ SECOND = Action(2.0, "begin", "task-2")
 MUTATIONS = {
     "one life acts": Mutation(
         {
-            f"{RUNTIME}._look_for_others": nothing,
+            f"{RUNTIME}._outlived": nothing,
             f"{CALLS}.Calls._claim": means_any_life,
         },
         (Action(1.0, "crash", "drive"), Action(2.0, "twins", "drive")),

@@ -18,7 +18,7 @@ from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Apply, Cause, Fail, Release, Reserve, Verdict, Wire
 from selfconf.sdk.component import Component, Refused, Signal
-from selfconf.sdk.runtime import OFFER, YIELDING, ComponentRuntime
+from selfconf.sdk.runtime import OFFER, YIELDING
 from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.stage import (
@@ -381,53 +381,6 @@ def test_a_call_that_means_another_life_changes_nothing(message: Apply | Reserve
     assert (answer.verdict, answer.life) == (Verdict.OTHER_LIFE, "life-1")
     assert stage.component.active
     assert stage.recorder.said == [("started",)]
-
-
-def test_of_two_processes_that_begin_to_be_one_component_the_smaller_life_stays() -> None:
-    stage = Stage()
-    reasons: list[str] = []
-    larger = ComponentRuntime(stage.network.node(), KEYS, CAP_PROFILE, Recorder(), "life-2", superseded=reasons.append)
-    stage.let_pass(0.1)
-    assert reasons == [f"{CAP} is alive already, in the life life-1; this process leaves"]
-    called: list[tuple[str, ...]] = []
-    stage.caller.roll_call(KEYS.lives(CAP), 1.0, called.append)
-    stage.let_pass(2.0)
-    assert called == [(KEYS.life(CAP, "life-1"),)]
-    assert len(reasons) == 1
-    assert larger.activation.phase is ActivationPhase.IDLE
-
-
-def test_two_processes_that_see_each_other_only_a_moment_after_their_beginning_do_not_both_stay() -> None:
-    stage = Stage()
-    node = stage.network.node()
-    stage.network.cut(node, stage.network.nodes[2])
-    reasons: list[str] = []
-    ComponentRuntime(node, KEYS, CAP_PROFILE, Recorder(), "life-2", superseded=reasons.append)
-    stage.let_pass(0.5)
-    assert reasons == []
-    stage.network.reconnect(node, stage.network.nodes[2])
-    stage.let_pass(0.6)
-    assert len(reasons) == 1
-
-
-def test_a_component_that_is_superseded_is_at_rest_before_its_process_leaves() -> None:
-    stage = Stage()
-    seen: list[list[tuple[Any, ...]]] = []
-    recorder = Recorder()
-    node = stage.network.node()
-    stage.network.cut(node, stage.network.nodes[2])
-
-    def superseded(_: str) -> None:
-        seen.append(recorder.said)
-
-    larger = ComponentRuntime(node, KEYS, CAP_PROFILE, recorder, "life-2", superseded=superseded)
-    replies: list[Replies] = []
-    stage.caller.ask(KEYS.call(CAP, "apply"), encode(apply(1, US, life="life-2")), 1.0, replies.append)
-    stage.let_pass(0.1)
-    assert larger.active
-    stage.network.reconnect(node, stage.network.nodes[2])
-    stage.let_pass(1.0)
-    assert seen == [[("started",), ("stopped",)]]
 
 
 # Who holds it, and who comes next.

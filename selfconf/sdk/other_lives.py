@@ -1,0 +1,54 @@
+"""Other processes that are the same component: of several lives of one component the smallest stays, the others leave.
+
+Two processes that begin at the same moment do not see each other before both are there, so each looks again a moment
+after its beginning. Two that were cut off from each other, or of which one was frozen, meet later: while a component is
+held for a task it follows its own lives, so that no two act. One that nobody holds does nothing, and need not look.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from selfconf.bus.port import Bus, Undo
+from selfconf.protocol.keys import life_of
+from selfconf.sdk.outputs import SIGNALS_FIRST
+
+LOOKS_FOR_OTHERS = (0.0, 1.0)
+"""Seconds after the beginning of a life at which it is looked whether another process is the same component."""
+LIVES_CALL = 3.0
+"""Seconds that this may take."""
+
+
+class OtherLives:
+    """Looks for the other lives of one component."""
+
+    def __init__(self, bus: Bus, lives: str, life: str, outlived: Callable[[str], None]) -> None:
+        """`lives` is the key of all lives of the component; `outlived` hears of a smaller one than `life`."""
+        self._bus, self._lives, self._life, self._outlived = bus, lives, life, outlived
+        self._unfollow: Undo | None = None
+        self._undo_looks = [bus.later(seconds, self._look) for seconds in LOOKS_FOR_OTHERS]
+
+    def follow(self, held: bool) -> None:
+        """Follow the lives of the component as long as it is held for a task."""
+        if held and self._unfollow is None:
+            self._unfollow = self._bus.later(SIGNALS_FIRST, self._begin)
+        elif not held and self._unfollow is not None:
+            self._unfollow()
+            self._unfollow = None
+
+    def close(self) -> None:
+        """Look for no others any more."""
+        self.follow(False)
+        for undo in self._undo_looks:
+            undo()
+
+    def _begin(self) -> None:
+        self._unfollow = self._bus.watch(self._lives, lambda key, alive: self._heard((key,)) if alive else None)
+
+    def _look(self) -> None:
+        self._bus.roll_call(self._lives, LIVES_CALL, self._heard)
+
+    def _heard(self, keys: Iterable[str]) -> None:
+        smaller = [life for life in map(life_of, keys) if life < self._life]
+        if smaller:
+            self._outlived(min(smaller))
