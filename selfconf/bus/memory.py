@@ -172,16 +172,24 @@ class Network:
         """Whether the next message is lost."""
         return self._chance.random() < self.faults.loss
 
-    def deliver(self, sender: MemoryBus, receiver: MemoryBus, action: Callable[[], None], sure: bool = True) -> bool:
+    def deliver(
+        self,
+        sender: MemoryBus,
+        receiver: MemoryBus,
+        action: Callable[[], None],
+        sure: bool = True,
+        outlasts_link: bool = False,
+    ) -> bool:
         """Have the receiver act on a message after the network's delay; False if it is lost.
 
-        What is `sure` is neither lost nor doubled, and keeps its order.
+        What is `sure` is neither lost nor doubled, and keeps its order. What is on the way is lost with the link, unless
+        it `outlasts_link`: whoever has lost a link has seen all lives beyond it end, those that were ending included.
         """
         if not self.reaches(sender, receiver) or (not sure and self.loses()):
             return False
 
         def arrive() -> None:
-            if receiver.open and not self._severed(sender, receiver):  # what was on the way is lost with the link
+            if receiver.open and (outlasts_link or not self._severed(sender, receiver)):
                 receiver.take(action)
 
         times = 2 if not sure and self._chance.random() < self.faults.doubling else 1
@@ -430,7 +438,8 @@ class MemoryBus:
         for node in self.network.nodes:
             for number, (key, changed) in list(node._watchers.items()):
                 if intersects(key, token):
-                    self.network.deliver(self, node, _life_notice(node, number, changed, token, alive))
+                    notice = _life_notice(node, number, changed, token, alive)
+                    self.network.deliver(self, node, notice, outlasts_link=not alive)
 
     def _declare(self, where: dict[int, _T], what: _T) -> Callable[[], None]:
         number = next(self._count)

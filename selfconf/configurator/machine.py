@@ -136,10 +136,10 @@ def _discovered(state: State, event: Discovered) -> Reaction:
     taken = {
         component: holder
         for component, holder in event.holders.items()
-        if holder.priority >= state.priority and component not in state.held
+        if holder.priority >= state.priority and component not in state.held and component not in state.free
     }
     lost = {component: loss for component, loss in state.lost.items() if not loss.busy}
-    return _compose(replace(state, taken=taken, lost=lost))
+    return _compose(replace(state, taken=taken, lost=lost, free=frozenset()))
 
 
 def _compose(state: State, despite: bool = False) -> Reaction:
@@ -371,7 +371,8 @@ def _free(state: State, component: IRI) -> Reaction:
     """No other task holds a component any more: it counts again for the search."""
     lost = {c: loss for c, loss in state.lost.items() if c != component or not loss.busy}
     taken = {c: holder for c, holder in state.taken.items() if c != component}
-    known = replace(state, lost=lost, taken=taken, queued=state.queued - {component}, news=True)
+    free, queued = state.free | {component}, state.queued - {component}
+    known = replace(state, lost=lost, taken=taken, free=free, queued=queued, news=True)
     return _discover(known) if state.phase is Phase.REFUSED else (known, ())
 
 

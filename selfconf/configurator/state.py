@@ -97,6 +97,8 @@ class State:
     lost: Mapping[IRI, Loss] = field(default_factory=dict)
     taken: Mapping[IRI, Holder] = field(default_factory=dict)
     """The components that tasks of the same or a higher priority hold, as of the last discovery."""
+    free: frozenset[IRI] = frozenset()
+    """The components that have said that they are free since the ecology was last asked: they know it first."""
     queued: frozenset[IRI] = frozenset()
     """The components that remember that this task waits for them."""
     despite: bool = False

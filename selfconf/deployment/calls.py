@@ -14,7 +14,7 @@ from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
 from selfconf.configurator.effects import ApplyTo, AwaitRelease, Decline, QueueFor, ReleaseFrom, ReserveOf, WakeUp
-from selfconf.configurator.events import Answered, Call, Event, WaitedLong
+from selfconf.configurator.events import Answered, Appeared, Call, Event, WaitedLong
 from selfconf.configurator.order import callers, parameter_values, wiring
 from selfconf.configurator.state import State
 from selfconf.deployment.identity import TaskIdentity
@@ -36,7 +36,7 @@ from selfconf.model.run_event import (
 )
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import owner_of
+from selfconf.protocol.keys import component_chunk, owner_of
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
@@ -324,6 +324,7 @@ class Calls:
             answer = self._answer_in(replies, message.life)
             if answer is not None:
                 self._answered(component, call, message, answer)
+                self._outlived(component, message.life, replies)
             elif replies.errors:
                 detail = replies.errors[0]
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
@@ -384,6 +385,17 @@ class Calls:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
         newest, epoch = answer.epoch, message.epoch
         self._step(Answered(component, call, epoch, answer.verdict, answer.life, newest, answer.detail, holder))
+
+    def _outlived(self, component: IRI, life: str, replies: Replies) -> None:
+        """Believe that a life has ended if all were asked, and only another one has answered.
+
+        The notices of its end, and of the beginning of the other, may have come before, or be lost with a link.
+        """
+        answer = self._answer_in(replies, life)
+        if answer is not None and answer.verdict is Verdict.OTHER_LIFE and replies.complete:
+            self.ecology.ended(component_chunk(component), life)
+            if self.ecology.lives_on(component, answer.life):
+                self._step(Appeared({component: answer.life}))
 
     def _unreachable(self, component: IRI, call: Call, epoch: int, detail: str) -> None:
         self._report(ComponentUnreachable(component, call.value, detail))

@@ -86,7 +86,8 @@ class Liveness:
     def discovered(self, discovery: Discovery) -> None:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
         self._names.update((component_chunk(component), component) for component in discovery.found)
-        self._sites.update(discovery.answered)
+        self._sites -= self._unseen_sites - discovery.site_tokens
+        self._sites |= discovery.answered
         if not self.ecology.followed:
             self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
             self._unseen_sites = set(discovery.answered)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from selfconf.bus.memory import Faults, MemoryBus, Network
+from selfconf.bus.memory import LEASE, Faults, MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Sample, Urgency
 
 
@@ -327,6 +327,23 @@ def test_events_and_lives_may_be_delayed_and_keep_their_order() -> None:
     assert here.network.time - began > 0.01
     here.let_pass(5.0)
     assert here.heard == [str(number) for number in range(20)]
+
+
+def test_a_life_that_is_ending_when_the_link_is_lost_has_ended() -> None:
+    network = Network(1, Faults(most_event_delay=20.0))
+    left, right = network.node(), network.node()
+    seen: list[tuple[str, bool]] = []
+    right.watch("a/*", lambda key, alive: seen.append((key, alive)))
+    left.announce("a/1")
+    network.run(lambda: False, 20.0)
+    left.close()
+    network.pause(right)
+    network.run(lambda: False, LEASE + 0.1)
+    assert seen == [("a/1", True)]
+    network.run(lambda: False, 20.0)
+    network.resume(right)
+    network.run(lambda: False, 20.0)
+    assert seen == [("a/1", True), ("a/1", False)]
 
 
 def test_each_node_has_a_clock_of_its_own() -> None:

@@ -385,6 +385,15 @@ def test_a_patient_task_waits_for_what_another_holds_and_begins_when_it_is_free(
     assert kinds(history.all_answer()) == [Running]
 
 
+def test_a_component_that_says_that_it_is_free_is_believed_more_than_its_last_holder() -> None:
+    history = waiting()
+    history.hear(Freed(TRACKER))
+    assert history.hear(Discovered({TRACKER: OTHERS})) == [Compose(3, frozenset(), None)]
+    history.composed(REFUSAL)
+    history.hear(Appeared({ODOMETRY: "1"}))
+    assert history.hear(Discovered({TRACKER: OTHERS}))[-1] == Compose(4, frozenset({TRACKER}), None)
+
+
 def test_a_patient_task_that_has_found_something_else_waits_no_more() -> None:
     history = waiting()
     history.hear(Appeared({ODOMETRY: "1"}), Discovered({TRACKER: OTHERS}))

@@ -14,6 +14,7 @@ from selfconf.deployment.liveness import SETTLING
 from selfconf.deployment.runner import TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import component_chunk
 from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Reserve, Verdict
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
@@ -212,6 +213,18 @@ def test_every_call_names_the_life_that_is_meant_so_that_no_other_life_obeys_it(
     assert decode(replies[0].samples[0].payload, CallAnswer).verdict is Verdict.OTHER_LIFE
     assert drive.said == []
     assert agent.state.phase is not Phase.RUNNING
+
+
+def test_a_life_whose_end_was_never_heard_of_has_ended_when_only_another_answers(lab: Lab) -> None:
+    lab.crash("tracker")
+    agent = lab.agent(patient=True)
+    assert lab.running(agent)
+    lab.component("tracker")
+    lab.let_pass(0.1)
+    agent.ecology.began(component_chunk(iri("person-tracker")), "0")
+    lab.crash("odometry")
+    assert lab.until(lambda: lab.active() == TASK | {"tracker"}, 1.0)
+    assert lab.running(agent)
 
 
 def test_nothing_acts_before_everything_is_reserved(lab: Lab) -> None:

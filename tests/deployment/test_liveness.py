@@ -391,7 +391,8 @@ def test_a_site_that_is_started_again_is_news_though_its_earlier_life_has_not_en
     assert lab.active() == TASK | {"tracker"}
 
 
-def test_a_site_that_is_cut_off_before_lives_are_followed_is_news_when_it_is_back(tmp_path: Path) -> None:
+@pytest.mark.parametrize("away", [SETTLING / 2, 2 * SETTLING])
+def test_a_site_that_is_cut_off_before_lives_are_followed_is_news_when_it_is_back(tmp_path: Path, away: float) -> None:
     lab = Lab(tmp_path)
     astrid, late = lab.site("astrid", "sonar", "encoder", "control", "drive"), lab.site("living-room", "tracker")
     assert isinstance(late.bus, MemoryBus)
@@ -400,7 +401,9 @@ def test_a_site_that_is_cut_off_before_lives_are_followed_is_news_when_it_is_bac
     lab.let_pass(0.01)
     lab.isolate(astrid)  # it has answered, and is not watched yet
     lab.network.resume(late.bus)
-    lab.let_pass(2 * SETTLING)
+    lab.let_pass(away)
+    lab.component("tracker")  # so that the ecology is asked once more, without the site
+    lab.let_pass(0.1)
     assert agent.state.phase is Phase.REFUSED
     asked = len(lab.acts("query"))
     lab.rejoin(astrid)
