@@ -262,8 +262,9 @@ def component_credentials(keys: Path | None, components: Sequence[IRI]) -> Crede
 def find(ecology: str | None, connect: Sequence[str], credentials: Credentials | None = None) -> tuple[str, list[str]]:
     """The ecology and the endpoints to connect to.
 
-    Each is what is given, else what the environment says, else that of the sites on this machine. Raises NetworkError,
-    saying what to try, if there are none, and AuthorError for what cannot name an ecology.
+    Each is what is given, else what the environment says, else that of the sites on this machine: where they are
+    reached, then where they will be if one that hangs has its place taken by another. Raises NetworkError, saying what
+    to try, if there are none, and AuthorError for what cannot name an ecology.
     """
     ecology, endpoints = asked_for(ecology, connect)
     if ecology is not None:
@@ -279,7 +280,8 @@ def find(ecology: str | None, connect: Sequence[str], credentials: Credentials |
         )
     if len(names) > 1:
         raise NetworkError(f"several ecologies run on this machine; say which with --ecology: {', '.join(names)}")
-    return names[0], list(dict.fromkeys(site.endpoint for site in found))
+    usual = usual_endpoints(names[0], secure=credentials is not None)
+    return names[0], list(dict.fromkeys([*(site.endpoint for site in found), *usual]))
 
 
 def _ecology_at(endpoints: list[str], credentials: Credentials | None) -> str:

@@ -12,7 +12,7 @@ import pytest
 
 from selfconf import rendezvous
 from selfconf.errors import AuthorError, NetworkError
-from selfconf.rendezvous import LocalSite
+from selfconf.rendezvous import LocalSite, usual_endpoints
 from selfconf.termination import start_time
 
 
@@ -32,7 +32,7 @@ def test_a_site_that_has_announced_itself_is_found(runtime_folder: Path) -> None
     path = rendezvous.announce(meeting())
     assert path.parent == runtime_folder
     assert rendezvous.local_sites() == [meeting()]
-    assert rendezvous.find(None, []) == ("home", [meeting().endpoint])
+    assert rendezvous.find(None, []) == ("home", [meeting().endpoint, *usual_endpoints("home")])
     path.unlink()
     assert rendezvous.local_sites() == []
 
@@ -41,7 +41,7 @@ def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:
     for ecology, site in (("home", "a"), ("home", "bb"), ("office", "ccc")):
         rendezvous.announce(meeting(ecology, site))
     assert [found.site for found in rendezvous.local_sites("home")] == ["a", "bb"]
-    assert rendezvous.find("office", []) == ("office", [meeting("office", "ccc").endpoint])
+    assert rendezvous.find("office", []) == ("office", [meeting("office", "ccc").endpoint, *usual_endpoints("office")])
 
 
 def test_of_several_ecologies_one_must_be_named() -> None:
@@ -60,11 +60,11 @@ def test_what_is_given_counts_before_what_the_environment_names(monkeypatch: pyt
 
 
 def test_the_usual_endpoints_of_an_ecology_are_the_same_each_time_and_its_own() -> None:
-    assert rendezvous.usual_endpoints("home") == rendezvous.usual_endpoints("home")
-    assert not set(rendezvous.usual_endpoints("home")) & set(rendezvous.usual_endpoints("office"))
+    assert usual_endpoints("home") == usual_endpoints("home")
+    assert not set(usual_endpoints("home")) & set(usual_endpoints("office"))
     for name in ("home", "office", "lab"):
-        assert len(set(rendezvous.usual_endpoints(name))) == rendezvous.PLACES
-        for endpoint in rendezvous.usual_endpoints(name):
+        assert len(set(usual_endpoints(name))) == rendezvous.PLACES
+        for endpoint in usual_endpoints(name):
             assert 1024 < int(endpoint.rpartition(":")[2]) < 32768
 
 
@@ -81,7 +81,7 @@ def test_an_endpoint_that_several_sites_share_is_found_once() -> None:
     shared = meeting(site="a")
     rendezvous.announce(shared)
     rendezvous.announce(LocalSite("home", "b", shared.endpoint, os.getpid(), relays=False))
-    assert rendezvous.find("home", []) == ("home", [shared.endpoint])
+    assert rendezvous.find("home", []) == ("home", [shared.endpoint, *usual_endpoints("home")])
 
 
 def test_a_site_whose_process_number_another_process_has_by_now_is_gone() -> None:
@@ -161,7 +161,7 @@ def test_an_environment_that_names_an_ecology_alone_has_its_sites_looked_for_her
     rendezvous.announce(meeting("office", "bb"))
     monkeypatch.setenv(rendezvous.ECOLOGY_VARIABLE, "office")
     monkeypatch.setenv(rendezvous.CONNECT_VARIABLE, "")
-    assert rendezvous.find(None, []) == ("office", [meeting("office", "bb").endpoint])
+    assert rendezvous.find(None, []) == ("office", [meeting("office", "bb").endpoint, *usual_endpoints("office")])
     monkeypatch.setenv(rendezvous.ECOLOGY_VARIABLE, "")
     with pytest.raises(NetworkError, match="several"):
         rendezvous.find(None, [])

@@ -18,7 +18,6 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.query import StandingDataset
-from selfconf.rendezvous import usual_endpoints
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
@@ -53,8 +52,7 @@ def serve_ecology(
     with bound(host, port) as place:
         record = Record(folder)
         try:
-            usual = usual_endpoints(ecology, secure=credentials is not None)  # the relay may move there
-            bus = member(ecology, list(dict.fromkeys((*endpoints, *usual))), credentials)
+            bus = member(ecology, endpoints, credentials)
             try:
                 asyncio.run(_serve(bus, ecology, record, place, seconds, listening))
             finally:
