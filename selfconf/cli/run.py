@@ -10,7 +10,6 @@ import threading
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,6 +26,7 @@ from selfconf.cli.options import (
     seconds_option,
     task_of,
 )
+from selfconf.cli.run_lines import TextLines
 from selfconf.cli.terminal import complain, silence
 from selfconf.errors import AuthorError, NetworkError
 
@@ -268,40 +268,6 @@ class LinePrinter:
                     silence(stream)
                 self._broken()
                 return
-
-
-class TextLines:
-    """Reports events to people, one line each on stderr, with the seconds since the first one; no failure twice."""
-
-    def __init__(self, task: TaskSpecification) -> None:
-        self._names = task.names
-        self._began: float | None = None
-        self.told: set[IRI] = set()
-        """The components of which it was told that they were lost, and why."""
-        self._trouble: dict[IRI, str] = {}
-        """What was told last of a component that declines or cannot be reached, which is then lost for that."""
-
-    def __call__(self, event: RunEvent) -> None:
-        """Raises OSError if the line cannot be written."""
-        from selfconf.model.run_event import CallDeclined, ComponentLost, ComponentUnreachable, TaskStopped, TaskWaiting
-        from selfconf.render.run_events import details, log_hint, sentence
-
-        self._began = event.time if self._began is None else self._began
-        for detail in details(event, self._names, self.told) if isinstance(event, TaskWaiting | TaskStopped) else ():
-            print(detail, file=sys.stderr, flush=True)
-        hint = ""
-        if isinstance(event, CallDeclined | ComponentUnreachable):
-            self._trouble[event.component] = event.detail
-        elif isinstance(event, ComponentLost):
-            hint = log_hint(event) if event.component not in self.told else ""
-            self.told.add(event.component)
-            if self._trouble.pop(event.component, None) == event.detail:
-                event = replace(event, detail="")
-        said = sentence(event, self._names)
-        if said:
-            print(f"{event.time - self._began:9.3f} s  {said}", file=sys.stderr, flush=True)
-        if hint:
-            print(f"{'':11}  {hint}", file=sys.stderr, flush=True)
 
 
 def json_lines(event: RunEvent) -> None:

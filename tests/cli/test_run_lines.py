@@ -1,0 +1,71 @@
+"""The lines of `selfconf run`: one for each event, and nothing twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import selfconf as sc
+from selfconf.cli.run_lines import TextLines
+from selfconf.model.configuration import Assignment, Configuration
+from selfconf.model.refusal import Refusal, TooFewEligible
+from selfconf.model.run_event import (
+    CallDeclined,
+    ComponentLost,
+    EcologyAsked,
+    EcologyDiscovered,
+    RunEvent,
+    SearchEnded,
+    TaskRunning,
+    TaskStopped,
+    TaskWaiting,
+)
+from selfconf.model.term import IRI
+
+CLOCK = Path(__file__).parents[2] / "examples" / "clock" / "tell-the-time.ttl"
+SCREEN, ROLE, TEMPLATE = IRI("urn:c:screen"), IRI("urn:r:screen"), IRI("urn:t:clock")
+REFUSAL = Refusal(TEMPLATE, (TooFewEligible(ROLE, 1, 0),))
+FOUND = Configuration(TEMPLATE, (Assignment(ROLE, (SCREEN,)),))
+LOOK = [EcologyAsked(), EcologyDiscovered(3, ("desk",), ()), SearchEnded(REFUSAL, 0.001), TaskWaiting(REFUSAL, {})]
+ELSEWHERE = [LOOK[0], EcologyDiscovered(4, ("desk",), ()), *LOOK[2:]]
+
+
+def told(capsys: pytest.CaptureFixture[str], events: Iterable[RunEvent]) -> list[str]:
+    """What is told of each of some events, one a second, without the times."""
+    report = TextLines(sc.template(CLOCK))
+    for second, event in enumerate(events):
+        report(replace(event, time=float(second)))
+    return [line.partition(" s  ")[2] or line for line in capsys.readouterr().err.splitlines()]
+
+
+def test_a_task_that_looks_in_vain_again_and_again_says_so_once(capsys: pytest.CaptureFixture[str]) -> None:
+    once = told(capsys, LOOK)
+    assert once[-1].strip() == "waiting for the ecology to change"
+    assert told(capsys, LOOK * 4) == once
+    assert told(capsys, [*LOOK * 3, TaskStopped()]) == [*once, "       taken down"]
+
+
+def test_what_a_look_comes_to_is_told_once_it_differs(capsys: pytest.CaptureFixture[str]) -> None:
+    once, other = told(capsys, LOOK), told(capsys, ELSEWHERE)
+    assert once != other
+    assert told(capsys, [*LOOK * 2, *ELSEWHERE * 2, *LOOK * 2]) == [*once, *other, *once]
+
+
+def test_a_task_that_runs_after_it_has_waited_tells_everything_since_it_looked(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    runs = [*LOOK[:2], SearchEnded(FOUND, 0.001), TaskRunning(FOUND, 1)]
+    assert told(capsys, [*LOOK * 2, *runs]) == [*told(capsys, LOOK), *told(capsys, runs)]
+    again = [*LOOK * 2, *runs, ComponentLost(SCREEN, "crash", ""), *LOOK * 2]
+    lines = told(capsys, again)
+    assert lines[-len(told(capsys, LOOK)) :] == told(capsys, LOOK)
+    assert sum("LOST" in line for line in lines) == 1
+
+
+def test_a_failure_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
+    declines = CallDeclined(SCREEN, "the cable is out")
+    lines = told(capsys, [declines, ComponentLost(SCREEN, "refused", "the cable is out")])
+    assert sum("the cable is out" in line for line in lines) == 1
