@@ -182,8 +182,8 @@ class Network:
     ) -> bool:
         """Have the receiver act on a message after the network's delay; False if it is lost.
 
-        What is `sure` is neither lost nor doubled, and keeps its order. What is on the way is lost with the link, unless
-        it `outlasts_link`: whoever has lost a link has seen all lives beyond it end, those that were ending included.
+        What is `sure` is neither lost nor doubled, and keeps its order. What is on the way is lost with the link unless
+        it `outlasts_link`: to a node that has lost a link all lives beyond it have ended, those that were ending too.
         """
         if not self.reaches(sender, receiver) or (not sure and self.loses()):
             return False

@@ -50,6 +50,23 @@ def test_the_experiment_and_a_component_that_is_killed(home: Home) -> None:
     assert home.active(*EVERYBODY) == set()
 
 
+def test_a_run_that_upgrades_changes_to_what_is_rather_had_and_back_when_that_is_lost(home: Home) -> None:
+    home.site("peis-home", "ads")
+    home.components(*REST)
+    run = home.run("--upgrade", "--settle", "0.2")
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"odometry"}
+    tracker = home.components("tracker")
+    better = run.act("running")["configuration"]
+    assert better["roles"][2]["components"] == [component_of("tracker")]
+    assert home.active(*EVERYBODY) == TASK | {"tracker"}
+    tracker.end(signal.SIGKILL)
+    assert run.act("lost")["component"] == component_of("tracker")
+    run.act("running")
+    assert home.active(*EVERYBODY) == TASK | {"odometry"}
+    assert run.end(signal.SIGINT) == 0
+
+
 def test_ctrl_c_takes_everything_down(inhabited: Home) -> None:
     run = inhabited.run()
     run.act("running")
