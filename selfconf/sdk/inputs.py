@@ -8,8 +8,8 @@ many are kept as events may need (`signal_queue`); `sc:depth` of the input says 
 promised periods, and again as long as none comes.
 
 *Blindness.* An input is unfed when the life of the last of its outputs has ended, or that output's component has raised
-FAIL or has fallen silent, or another output has taken its place and has not issued anything yet. It is fed again by
-the first signal that comes.
+FAIL, has fallen silent, or has let go of a task and acts for no other, or another output has taken its place and has
+not issued anything yet. It is fed again by the first signal that comes.
 
 *Latching.* An input asks each output that it begins to follow for its last signal, whoever else follows that output.
 """
@@ -385,8 +385,23 @@ class InputSubscription:
             fail = decode(sample.payload, Fail)
         except PeerError:
             return
-        if fail.component == self._wire.component and fail.life and fail.cause not in (Cause.YIELD, Cause.LET_GO):
+        if fail.component != self._wire.component or not fail.life or fail.cause is Cause.YIELD:
+            return
+        if fail.cause is Cause.LET_GO:
+            self._look_whether_it_acts(self._heard_at)
+        else:
             self._lose(self._heard_at)
+
+    def _look_whether_it_acts(self, heard: float) -> None:
+        """The component has let go of a task: it may act for another one, and then it answers with its last signal."""
+
+        def answered(replies: Replies) -> None:
+            if not replies.complete and not self._ended:
+                self._look_whether_it_acts(heard)
+            elif not replies.samples:
+                self._lose(heard)
+
+        self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, answered)
 
     def _lose(self, heard: float) -> None:
         """The output is lost, unless it has issued a signal after that time."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.memory import Network
+from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
@@ -19,8 +19,22 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.inputs import BEGINNING, JUST_COME, PATIENCE, InputEvents, Inputs
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.signal_queue import EVENTS
+from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
-from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, TRACKER_PROFILE, US, Stage, apply, follow, release
+from tests.sdk.stage import (
+    CAP,
+    CAP_PROFILE,
+    KEYS,
+    TASKS,
+    THEM,
+    TRACKER,
+    TRACKER_PROFILE,
+    US,
+    Stage,
+    apply,
+    follow,
+    release,
+)
 
 
 def test_rewiring_an_input_neither_stops_nor_starts_the_component() -> None:
@@ -161,6 +175,13 @@ def raise_fail(runtime: ComponentRuntime) -> None:
     runtime.fail("broken")
 
 
+def lose_sight(runtime: ComponentRuntime) -> None:
+    """Lose sight of the configurator, but not of those that follow it, and let go of the task."""
+    assert isinstance(runtime.bus, MemoryBus)
+    runtime.bus.network.cut(runtime.bus, runtime.bus.network.nodes[0])
+    runtime.bus.network.run(lambda: False, GRACE)
+
+
 @pytest.mark.parametrize("loss", [end, fall_silent, raise_fail])
 def test_an_input_that_has_lost_its_only_source_says_so_and_again_when_there_is_another(
     loss: Callable[[ComponentRuntime], None],
@@ -193,6 +214,29 @@ def test_an_input_that_follows_two_outputs_is_fed_while_one_of_them_is_left() ->
     end(odometry)
     stage.let_pass(1.0)
     assert stage.recorder.said == [("started",), ("unfed", "position")]
+
+
+def test_an_input_is_unfed_when_its_source_has_let_go_of_its_only_task() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", 1)
+    lose_sight(tracker)
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
+
+
+def test_an_input_is_fed_by_a_source_that_lets_go_of_a_task_and_acts_for_another() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.others.announce(THEM)
+    stage.caller.ask(KEYS.call(TRACKER, "apply"), encode(apply(1, THEM)), 1.0, lambda _: None)
+    stage.call(follow())
+    tracker.component.emit("pose", 1)
+    lose_sight(tracker)
+    stage.let_pass(1.0)
+    assert [hold.claim.task for hold in tracker.activation.holds] == [TASKS[THEM]]
+    assert stage.recorder.said == [("started",), ("position", 1)]
 
 
 ODOMETRY = IRI("urn:c:odometry")

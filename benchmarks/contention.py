@@ -1,0 +1,223 @@
+"""How soon tasks are settled that begin at once and want components that they share, in opposite order of their needs.
+
+    python -m benchmarks.contention [--rounds 20] [--smoke]
+
+All processes are real: a site, and a process with four sensors and three drives, of which no two tasks can share one.
+Two to eight tasks that wait begin at the same moment, each with a session of its own; half of them name what they need
+in the opposite order, and reserving goes by the order of the IRIs. A round is over when no task has begun to run for
+`QUIET` seconds.
+
+    alone      from the beginning of one task to `running`, when it is the only one: what its own calls take
+    settled    from the beginning of all tasks to the last `running`
+    beyond     the difference of the two: what the contention costs
+    run, wait  how many tasks run and wait then
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import os
+import queue
+import secrets
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+import selfconf as sc
+from benchmarks.live.__main__ import line, program, until
+from benchmarks.machine import described, quantile, table
+from selfconf import rendezvous
+from selfconf.sdk import Component, Signal
+from selfconf.sdk.program import open_host
+
+SENSORS, DRIVES = 4, 3
+TASKS = (2, 3, 4, 6, 8)
+QUIET = 1.0
+PATIENCE = 60.0
+FOLDER_VARIABLE = "CONTENTION_BENCHMARK_FOLDER"
+HEAD = """@prefix sc:  <https://w3id.org/selfconf#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix sh:  <http://www.w3.org/ns/shacl#> .
+@prefix :    <https://example.org/contention#> .
+"""
+
+
+class Actor(Component):
+    """A sensor that emits once when it is started, or a drive."""
+
+    output = ""
+
+    def started(self) -> None:
+        """Emit, if it is a sensor."""
+        if self.output:
+            self.emit(self.output, {"x": 1.0, "y": 2.0, "theta": 0.5, "frame": "home"})
+
+    def received(self, port: str, signal: Signal) -> None:
+        """Pass over what is heard."""
+
+
+class Round(NamedTuple):
+    """What came of some tasks that have begun at once; times in seconds."""
+
+    settled: float
+    running: int
+    waiting: int
+
+
+def written(folder: Path) -> list[Path]:
+    """The advertisements, a file each."""
+    paths = []
+    for number in range(SENSORS):
+        text = (
+            f":sensor{number} a sc:Component, :Sensor{number} ; sc:shareable false ;\n"
+            '    sc:hasOutput [ sc:name "pose" ; sc:signalType rob:PlanarPose2D ] .\n'
+        )
+        paths.append(folder / f"sensor{number}.ttl")
+        paths[-1].write_text(HEAD + text)
+    for number in range(DRIVES):
+        text = (
+            f':drive{number} a sc:Component, :Drive ; sc:hasInput [ sc:name "in" ; sc:signalType rob:PlanarPose2D ] .\n'
+        )
+        paths.append(folder / f"drive{number}.ttl")
+        paths[-1].write_text(HEAD + text)
+    return paths
+
+
+def task(number: int, sensors: Sequence[int]) -> str:
+    """A task that needs some sensors and a drive, in the order given."""
+    roles = " ".join([*(f":role{one}" for one in sensors), ":drive-role"])
+    lines = [f":task{number} a sc:Template ; sc:roles ( {roles} ) ."]
+    lines += [f":role{one} a sc:Role ; sh:class :Sensor{one} ; sc:feeds :drive-role ." for one in sensors]
+    return HEAD + "\n".join([*lines, ":drive-role a sc:Role ; sh:class :Drive .\n"])
+
+
+def needs(number: int) -> list[int]:
+    """The sensors of a task: two that its neighbours want as well, every other time in the opposite order."""
+    wanted = [number % SENSORS, (number + 1) % SENSORS]
+    return wanted if number % 2 else wanted[::-1]
+
+
+def act(folder: Path) -> None:
+    """Be all sensors and drives, in one process that ends with its stdin."""
+    host, over = open_host(), threading.Event()
+    threading.Thread(target=lambda: (sys.stdin.read(), over.set(), host.code.wake_up()), daemon=True).start()
+    for path in sorted(folder.glob("*.ttl")):
+        output = "pose" if path.stem.startswith("sensor") else ""
+        host.add(type("One", (Actor,), {"advertisement": str(path), "output": output})())
+    print("ready", flush=True)
+    host.run(over.is_set)
+    host.close()
+
+
+@contextmanager
+def ecology() -> Iterator[str]:
+    """A site and the actors, as processes; the name of the ecology."""
+    name = f"contention-{secrets.token_hex(3)}"
+    with tempfile.TemporaryDirectory() as path, ExitStack() as stack:
+        folder = Path(path) / "ads"
+        folder.mkdir()
+        written(folder)
+        os.environ |= {
+            "SELFCONF_RUNTIME_DIR": f"{path}/runtime",
+            rendezvous.ECOLOGY_VARIABLE: name,
+            FOLDER_VARIABLE: str(folder),
+        }
+        stack.enter_context(program("selfconf", "site", str(folder), "--name", "one"))
+        until(PATIENCE, lambda: bool(rendezvous.local_sites(name)))
+        assert line(stack.enter_context(program("benchmarks.contention", "--act"))) == "ready"
+        yield name
+
+
+def contend(name: str, numbers: Sequence[int]) -> Round:
+    """Let tasks begin at once, wait until they are settled, and take them down."""
+    heard: queue.SimpleQueue[tuple[str, float]] = queue.SimpleQueue()
+    gate = threading.Barrier(len(numbers) + 1)
+    ending = threading.Event()
+
+    def one(number: int) -> None:
+        with sc.join(name) as living, ExitStack() as stack:
+            wanted = sc.template(task(number, needs(number)))
+            gate.wait(PATIENCE)
+            run = stack.enter_context(living.run(wanted, wait=True, name=f"task{number}"))
+            threading.Thread(target=lambda: (ending.wait(PATIENCE), run.stop()), daemon=True).start()
+            for event in run.events():
+                heard.put((event.act, time.monotonic()))
+
+    threads = [threading.Thread(target=one, args=(number,)) for number in numbers]
+    for thread in threads:
+        thread.start()
+    gate.wait(PATIENCE)
+    began = last = time.monotonic()
+    running = waiting = 0
+    while True:
+        try:
+            said, moment = heard.get(timeout=QUIET)
+        except queue.Empty:
+            break
+        if said == "running":
+            running, last = running + 1, moment
+        waiting += said == "waiting"
+        if moment > last + QUIET and running:
+            break
+    ending.set()
+    for thread in threads:
+        thread.join(PATIENCE)
+    return Round(last - began, running, len(numbers) - running)
+
+
+def measure(sizes: Sequence[int], rounds: int) -> tuple[list[float], dict[int, list[Round]]]:
+    """What a task takes alone, and the rounds of each number of tasks."""
+    with ecology() as name:
+        contend(name, [0])  # modules are loaded, and the site is known
+        alone = [contend(name, [number % 8]).settled for number in range(rounds)]
+        shifts = itertools.count()
+        found = {
+            size: [contend(name, [(next(shifts) + one) % 8 for one in range(size)]) for _ in range(rounds)]
+            for size in sizes
+        }
+    return alone, found
+
+
+def report(alone: list[float], found: dict[int, list[Round]]) -> str:
+    """The table; times in milliseconds."""
+    own = median(alone)
+    rows = [
+        [
+            str(size),
+            str(len(rounds)),
+            f"{1000 * own:.0f}",
+            f"{1000 * median(one.settled for one in rounds):.0f}",
+            f"{1000 * (median(one.settled for one in rounds) - own):.0f}",
+            f"{1000 * (quantile([one.settled for one in rounds], 0.95) - own):.0f}",
+            f"{sum(one.running for one in rounds) / len(rounds):.1f}",
+            f"{sum(one.waiting for one in rounds) / len(rounds):.1f}",
+        ]
+        for size, rounds in found.items()
+    ]
+    head = ["tasks", "rounds", "alone ms", "settled ms", "beyond ms", "beyond, 95 %", "run", "wait"]
+    return f"{table(head, rows)}\n\nMedians; {described('eclipse-zenoh')}"
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="tasks that begin at once and want the same components")
+    parser.add_argument("--rounds", type=int, default=20)
+    parser.add_argument("--smoke", action="store_true", help="two tasks once, to see that it works")
+    parser.add_argument("--act", action="store_true", help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.act:
+        act(Path(os.environ[FOLDER_VARIABLE]))
+        return
+    sizes, rounds = ((2,), 1) if given.smoke else (TASKS, given.rounds)
+    print(report(*measure(sizes, rounds)))
+
+
+if __name__ == "__main__":
+    main()
