@@ -1,11 +1,21 @@
-"""Tasks that begin at once and want components that they share, in opposite order of their needs."""
+"""Tasks that begin at once and want components that they share, in opposite order of their needs.
+
+    python -m tests.faults.contention [--runs 1000]
+
+plays as many contentions in simulated time, of two to eight tasks that wait, half of them with priorities, and prints
+what they came to. The exit code is 1 if in one of them an actuator acted on a part of its configuration.
+"""
 
 from __future__ import annotations
 
+import argparse
 import random
+import sys
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 
 from selfconf.bus.memory import Faults
 from selfconf.configurator.state import Phase
@@ -145,3 +155,32 @@ class Contention:
                         self.wrong.append(
                             f"{self.network.time:.4f} {component.short} acts for {task} without {part.short}"
                         )
+
+
+def main() -> int:
+    """Play contentions, and print a row for each number of tasks; times in milliseconds of the simulated network."""
+    parser = argparse.ArgumentParser(prog="python -m tests.faults.contention", description="tasks that begin at once")
+    parser.add_argument("--runs", type=int, default=1000)
+    given = parser.parse_args()
+    found: dict[int, list[tuple[float, float, bool]]] = {size: [] for size in range(2, 9)}
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in range(given.runs):
+            size, ranked = 2 + seed % 7, seed % 2 == 0
+            alone = Contention(seed, Path(folder), 1, True, ranked).settle(1.0).seconds
+            contention = Contention(seed, Path(folder), size, True, ranked)
+            settled = contention.settle(4.0)
+            if contention.wrong or settled.undecided or not settled.running:
+                print(f"seed {seed}, {size} tasks: {settled} {contention.wrong[:3]}", file=sys.stderr, flush=True)
+            found[size].append((alone, settled.seconds, bool(contention.wrong)))
+    print("| tasks | runs | alone | settled | beyond that | beyond, 95 % | actuators on a part |")
+    print("|---|---|---|---|---|---|---|")
+    for size, runs in found.items():
+        beyond = sorted(settled - alone for alone, settled, _ in runs)
+        times = (median(one[0] for one in runs), median(one[1] for one in runs), median(beyond))
+        shown = [f"{1000 * seconds:.0f}" for seconds in (*times, beyond[int(0.95 * (len(beyond) - 1))])]
+        print(f"| {' | '.join([str(size), str(len(runs)), *shown, str(sum(one[2] for one in runs))])} |")
+    return 1 if any(wrong for runs in found.values() for *_, wrong in runs) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
