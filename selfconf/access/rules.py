@@ -148,7 +148,8 @@ def _reader(keys: Keys, principal: Principal) -> Access:
 
 def _configurator(keys: Keys, principal: Principal) -> Access:
     mine = keys.all_of_configurators(principal.name)
-    called = (keys.any_call(), keys.wake("*"), keys.end("*"), keys.keep("*"), keys.configurator_call("*"))
+    of_sites = (keys.wake("*"), keys.end("*"), keys.keep("*"), keys.log("*"))
+    called = (keys.any_call(), *of_sites, keys.configurator_call("*"))
     heard = (keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_moved())
     return Access(
         principal.common_name,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -19,6 +19,7 @@ from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
 from selfconf.api.membership import MEMBERS, check_may_run, member
 from selfconf.api.run import TAKING_DOWN, Run
+from selfconf.api.site_logs import LogSource
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies, Sample
@@ -32,7 +33,17 @@ from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk, owner_of, site_of, task_name
-from selfconf.protocol.messages import Access, End, Notice, RefusedAttempt, Status, TaskRecord, Wake
+from selfconf.protocol.messages import (
+    Access,
+    End,
+    LogPart,
+    LogQuestion,
+    Notice,
+    RefusedAttempt,
+    Status,
+    TaskRecord,
+    Wake,
+)
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
@@ -351,6 +362,27 @@ class LivingEcology(Ecology):
         return tuple(
             SiteAccess(site, tuple(found[site]), tuple(refused.get(site, ())), components) for site in sorted(found)
         )
+
+    def other_logs(self, known: Collection[str], complain: Callable[[str], None]) -> list[LogSource]:
+        """The logs of the sites that live, but for those that are known; `complain` hears once of each silent one."""
+        lives = self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL))
+        silent = set[str]()
+        return [partial(self._log_part, site, silent, complain) for site in sorted({*map(owner_of, lives)} - {*known})]
+
+    def _log_part(self, site: str, silent: set[str], complain: Callable[[str], None], question: LogQuestion) -> LogPart:
+        """What a site tells of its log; nothing new where it does not answer."""
+        replies = self._ask(self._view.keys.log(site), encode(question))
+        trouble = [*replies.errors, *(["that takes keys of conf.NAME"] if self._looks_on_only else [])]
+        try:
+            return decode(replies.samples[0].payload, LogPart)
+        except IndexError:
+            pass
+        except PeerError as error:
+            trouble.append(str(error))
+        if site not in silent:
+            silent.add(site)
+            complain(": ".join((f"the site {site} does not tell what its components have printed", *trouble)))
+        return LogPart((), question.position)
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
         """Whom each component of a deployed task hears, by what its configurator says; None if nobody runs it."""

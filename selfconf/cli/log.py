@@ -1,4 +1,4 @@
-"""`log`: what components have printed, as the sites of this machine have kept it, also of those that have died."""
+"""`log`: what components have printed, as their sites have kept it, also of those that have died."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.cli.terminal import display, paint
+from selfconf.cli.options import add_ecology_arguments
+from selfconf.cli.terminal import complain, display, paint
 
 if TYPE_CHECKING:
-    from selfconf.api.site_logs import LogLine
+    from selfconf.model.log_line import LogLine
 
 EXAMPLE = """  selfconf log person-tracker --follow"""
 LINES = 200
@@ -31,36 +32,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--log",
         metavar="DIR",
         type=Path,
-        help="where the logs are (default: where the sites of this machine say, and where they are kept usually)",
+        help="only the logs in this folder (default: where the sites of this machine keep them, also those that have"
+        " ended, and what the sites of other machines tell)",
     )
-    parser.add_argument(
-        "--ecology", metavar="NAME", help="the ecology (default: $SELFCONF_ECOLOGY, or else the only one with a log)"
-    )
+    add_ecology_arguments(parser)
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
 
 
 def run(given: argparse.Namespace) -> int:
     """0 with lines, and after Ctrl-C where lines are followed; 1 if there are none."""
-    from selfconf.api.site_logs import followed_lines, kept_lines, site_logs
-    from selfconf.rendezvous import asked_for
+    from selfconf.api.log_reader import log_reader
     from selfconf.termination import end_as_by_ctrl_c
 
     end_as_by_ctrl_c()
     show = _json if given.format == "json" else _text
     component = given.component.removeprefix("<").removesuffix(">").removeprefix(":")
-    paths = site_logs(asked_for(given.ecology, ())[0], given.log)
-    coming = followed_lines(paths, time.sleep, component)  # before what is kept is read, so that nothing is missed
-    found = kept_lines(paths, component, given.lines)
-    if found:
-        display("\n".join(map(show, found)))
-    if not given.follow:
-        return 0 if found or not given.lines else 1
     try:
-        for line in coming:
-            print(show(line), flush=True)
+        with log_reader(given.ecology, given.connect, given.keys, given.log, component, complain) as reader:
+            found = reader.latest(given.lines)
+            if found:
+                display("\n".join(map(show, found)))
+            if not given.follow:
+                return 0 if found or not given.lines else 1
+            while True:
+                time.sleep(reader.pause)  # nothing tells when a file has grown
+                for line in reader.added():
+                    print(show(line), flush=True)
     except KeyboardInterrupt:  # the way to end it
-        pass
-    return 0
+        return 0
 
 
 def _json(line: LogLine) -> str:

@@ -37,7 +37,7 @@ COMMANDS = {
     "access": "show who may do what in an ecology with keys, and who has tried what it may not",
     "why": "say why a role is played by whom: what failed, what was passed over, what would change it",
     "echo": "show what an output of a component issues, as it comes, with its rate",
-    "log": "show what components have printed, as the sites of this machine have kept it",
+    "log": "show what components have printed, as their sites have kept it",
     "top": "show who lives, held by which task, how much each issues, and how much memory it takes",
     "serve": "show the ecology in a browser, and answer SPARQL and the W3C directory of Things over HTTP",
     "demo": "run the paper's experiment: Astrid goes to the bedroom, the tracker loses her, odometry takes over",

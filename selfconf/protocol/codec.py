@@ -14,6 +14,7 @@ import math
 from typing import Any, TypeVar, get_args
 
 from selfconf.errors import PeerError
+from selfconf.model.log_line import LONGEST_LINE, LogLine
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.model.wording import is_one_line, one_line
 from selfconf.protocol.keys import is_task_identity
@@ -27,6 +28,8 @@ from selfconf.protocol.messages import (
     Free,
     Introduction,
     Known,
+    LogPart,
+    LogQuestion,
     Message,
     Moved,
     Notice,
@@ -60,6 +63,8 @@ KINDS: dict[type, str] = {
     Access: "access",
     RefusedAttempt: "refused",
     Known: "known",
+    LogQuestion: "lines",
+    LogPart: "log",
     Notice: "notice",
     Page: "page",
     Stamp: "stamp",
@@ -282,6 +287,22 @@ def _iris(value: object) -> tuple[IRI, ...]:
     return tuple(_iri(item) for item in _list(value))
 
 
+def _log_lines(value: object) -> tuple[LogLine, ...]:
+    return tuple(map(_log_line, _list(value)))
+
+
+def _log_line(value: object) -> LogLine:
+    parts = _list(value)
+    if len(parts) != 4:
+        raise PeerError("a line of a log is a time, a stream, the components of a process, and a text")
+    time, stream, components, text = parts
+    return LogLine(_printed(time), _printed(stream), _iris(components), _printed(text))
+
+
+def _printed(value: object) -> str:
+    return one_line(_text(value), LONGEST_LINE)
+
+
 def _cause(value: object) -> Cause:
     try:
         return Cause(_text(value))
@@ -352,6 +373,11 @@ _READERS: dict[tuple[type, str], Any] = {
     (RefusedAttempt, "number"): _whole,
     (RefusedAttempt, "latest"): _number,
     (Known, "revisions"): _revisions,
+    (LogQuestion, "component"): _label,
+    (LogQuestion, "lines"): _whole,
+    **{(kind, "position"): _label for kind in (LogQuestion, LogPart)},
+    (LogPart, "lines"): _log_lines,
+    (LogPart, "more"): _truth,
     (Notice, "configurator"): _label,
     (Notice, "sequence"): _whole,
     (Notice, "event"): _object,

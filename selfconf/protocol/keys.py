@@ -8,6 +8,7 @@
     selfconf/{ecology}/site/{site}/@ctl/keep                keep a task, or hear that it has ended (call)
     selfconf/{ecology}/site/{site}/@ctl/introduce           show a certificate, be shown that of the site (call)
     selfconf/{ecology}/site/{site}/@ctl/access              who may do what, and what was refused (call)
+    selfconf/{ecology}/site/{site}/@ctl/log                 what its components have printed (call)
     selfconf/{ecology}/site/{site}/tasks/{task}             a task that the site keeps (queryable, one reply each)
     selfconf/{ecology}/task/{task}                          what has become of a task that the sites keep (put)
     selfconf/{ecology}/c/{shard}/{component}/live/{life}    a component is alive (liveliness token)
@@ -104,6 +105,9 @@ class Keys:
 
     def access(self, site: str = "*") -> str:
         return self._site(site, "@ctl/access")
+
+    def log(self, site: str) -> str:
+        return self._site(site, "@ctl/log")
 
     def all_of_site(self, site: str) -> tuple[str, ...]:
         """What a site says, under whatever key."""

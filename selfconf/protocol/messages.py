@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, Term
 
 
@@ -200,6 +201,29 @@ class End:
 
 
 @dataclass(frozen=True, slots=True)
+class LogQuestion:
+    """What goes with the question for the log of a site: whose lines, how many of before, and from where on."""
+
+    component: str = ""
+    """An IRI or a local name: only the lines of the processes of this component; empty: all."""
+    lines: int = 0
+    """How many of the latest lines, where there is no position."""
+    position: str = ""
+    """That of an earlier answer: only what was added since is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class LogPart:
+    """The answer to a question for the log of a site, in the order in which the lines were printed."""
+
+    lines: tuple[LogLine, ...] = ()
+    position: str = ""
+    """Where the answer ends; only its site can read it."""
+    more: bool = False
+    """Whether more has been added already than one answer holds."""
+
+
+@dataclass(frozen=True, slots=True)
 class Page:
     """What goes with each advertisement that a site replies: which of how many, of which revision, from which file."""
 
@@ -372,6 +396,8 @@ Message = (
     | RefusedAttempt
     | End
     | Known
+    | LogQuestion
+    | LogPart
     | Notice
     | Page
     | Stamp

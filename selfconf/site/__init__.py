@@ -2,12 +2,13 @@
 
 `Shelf` reads the advertisements of the host from their files; `Site` serves them to an ecology, and starts and ends the
 processes of the host's dormant components. `programs_of` says which components share a process. `forget_oldest` removes
-logs of sites that have ended; `PUT_ASIDE` is how many files of a log that have become full are kept beside it.
+logs of sites that have ended; `log_part` reads one, while it is written.
 """
 
-from selfconf.site.log_file import PUT_ASIDE, forget_oldest
+from selfconf.site.kept_log import log_part
+from selfconf.site.log_file import forget_oldest
 from selfconf.site.processes import programs_of
 from selfconf.site.shelf import Shelf
 from selfconf.site.site import Site
 
-__all__ = ["PUT_ASIDE", "Shelf", "Site", "forget_oldest", "programs_of"]
+__all__ = ["Shelf", "Site", "forget_oldest", "log_part", "programs_of"]

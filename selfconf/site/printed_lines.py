@@ -23,11 +23,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timezone
 
+from selfconf.model.log_line import LONGEST_LINE
 from selfconf.model.wording import plain
 from selfconf.site.log_file import LogFile
 
-LONGEST_LINE = 8192
-"""A line of more bytes is broken."""
 CHUNK = 1 << 13
 """How many bytes are read at a time."""
 MOST_A_SECOND = 1 << 19

@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,9 +18,10 @@ from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
-from selfconf.protocol.messages import End, Known, Page, Wake
+from selfconf.protocol.messages import End, Known, LogQuestion, Page, Wake
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import ntriples
+from selfconf.site.kept_log import MOST_LINES, log_part
 from selfconf.site.processes import ComponentProcesses, Started, cannot_start, programs_of, started_once
 from selfconf.site.shelf import Shelf
 
@@ -66,7 +68,7 @@ class Site:
         """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
         self.processes = ComponentProcesses(bus, self.keys, environment, log_path, keys_of)
-        self._insecure = insecure
+        self._log_path, self._insecure = log_path, insecure
         self.life = life or secrets.token_hex(4)
         """Which life of the site this is: another site may have its name."""
         self.programs: dict[IRI, IRI] = {}
@@ -80,6 +82,7 @@ class Site:
         bus.serve(self.keys.advertisements(name), self._answer)
         bus.serve(self.keys.wake(name), self._wake)
         bus.serve(self.keys.end(name), self._end)
+        bus.serve(self.keys.log(name), self._tell_log)
         bus.announce(self.keys.site_life(name, self.life))  # last: from now on it is asked
         self._changed(shelf.advertisements)
         self._look()
@@ -176,6 +179,19 @@ class Site:
             self.processes.end(end.component, end.life, ended)
         except PeerError as error:
             request.refuse(str(error))
+            request.finish()
+
+    def _tell_log(self, request: Request) -> None:
+        """Reply a part of what the components of this site have printed."""
+        try:
+            question = decode(request.payload, LogQuestion)
+            if self._log_path is None:
+                raise PeerError(f"the site {self.name} keeps no log")
+            part = log_part(self._log_path, replace(question, lines=min(question.lines, MOST_LINES)))
+            request.reply(self.keys.log(self.name), encode(part))
+        except PeerError as error:
+            request.refuse(str(error))
+        finally:
             request.finish()
 
     def _wake(self, request: Request) -> None:

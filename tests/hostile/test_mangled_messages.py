@@ -18,6 +18,7 @@ from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.composition import Composer
 from selfconf.deployment import Keeper, RunRequest, TaskFolder, TaskRunner
 from selfconf.errors import PeerError
+from selfconf.model.log_line import LogLine
 from selfconf.protocol.codec import KINDS, decode, encode
 from selfconf.protocol.messages import (
     Access,
@@ -29,6 +30,8 @@ from selfconf.protocol.messages import (
     Free,
     Introduction,
     Known,
+    LogPart,
+    LogQuestion,
     Message,
     Moved,
     Notice,
@@ -81,6 +84,8 @@ WELL_FORMED: tuple[Message, ...] = (
     TaskRecord(
         "t~1", 1, False, 1, 1.0, NAVIGATE, "t.ttl", iri("navigate"), {}, (), {"policy": "repair"}, 1, CONFIGURATION
     ),
+    LogQuestion("wheels", 20, "7:100"),
+    LogPart((LogLine("2026-11-22T06:30:12.345Z", "stdout", (WHEELS,), "turns"),), "7:150", True),
 )
 ENCODED = tuple(map(encode, WELL_FORMED))
 EACH = 20
@@ -171,7 +176,7 @@ class Stranger:
         """The keys at which programs of others answer; taking the task down is not mangled."""
         keys = self.lab.keys
         yield from (keys.call(CONTROL, call) for call in ("reserve", "apply", "release", "state", "nothing"))
-        yield from (keys.wake("astrid"), keys.end("astrid"), keys.advertisements(), keys.keep())
+        yield from (keys.wake("astrid"), keys.end("astrid"), keys.log("astrid"), keys.advertisements(), keys.keep())
         yield from (keys.configurator_call(self.agent.name, "status"), keys.notices(), keys.kept_tasks())
 
     def speak(self) -> None:

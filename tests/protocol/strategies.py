@@ -6,6 +6,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.protocol.messages import (
     Access,
@@ -17,6 +18,8 @@ from selfconf.protocol.messages import (
     Free,
     Introduction,
     Known,
+    LogPart,
+    LogQuestion,
     Moved,
     Notice,
     Page,
@@ -65,6 +68,7 @@ plain: st.SearchStrategy[Any] = st.recursive(
     max_leaves=4,
 )
 values = st.dictionaries(names, terms, max_size=3)
+log_lines = st.builds(LogLine, texts, texts, st.lists(iris, max_size=2).map(tuple), texts)
 claim: dict[str, st.SearchStrategy[Any]] = {
     "epoch": numbers,
     "supervisor": supervisors,
@@ -107,6 +111,8 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
     RefusedAttempt: st.builds(RefusedAttempt, texts, texts, texts, numbers, seconds),
     Moved: st.builds(Moved, iris, texts, inputs),
     Known: st.builds(Known, st.dictionaries(names, numbers, max_size=3)),
+    LogQuestion: st.builds(LogQuestion, texts, numbers, texts),
+    LogPart: st.builds(LogPart, st.lists(log_lines, max_size=3).map(tuple), texts, st.booleans()),
     Wake: st.builds(Wake, iris),
     End: st.builds(End, iris, texts),
     Page: st.builds(Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans(), texts),
