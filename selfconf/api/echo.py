@@ -7,6 +7,7 @@ here, and counted: neither the component nor anybody else waits for it.
 from __future__ import annotations
 
 import json
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
@@ -18,6 +19,8 @@ from selfconf.protocol.stamps import StampReader
 
 SIGNALS_HELD = 256
 """How many signals may wait for the reader; then the oldest are passed over."""
+LONGEST_VALUE = 400
+"""Characters of a value that are shown, in text."""
 RATE_OVER = 2.0
 """Seconds over which the rate is taken."""
 
@@ -36,6 +39,18 @@ class HeardSignal(NamedTuple):
     passed_over: int = 0
     """How many signals before this one the reader has missed."""
 
+    def worded(self, longest: int = LONGEST_VALUE) -> str:
+        """The value as JSON, shortened to so many characters; bytes and arrays are described."""
+        encoding = self.stamp.encoding
+        if not self.raw:
+            text = json.dumps(self.value, ensure_ascii=False)
+            left_out = len(text) - longest
+            return text if left_out <= 0 else f"{text[:longest]}... ({left_out} characters more)"
+        what = f"{encoding.media} of " if encoding.media else ""
+        if not encoding.datatype:
+            return f"<{what}{self.size} bytes>"
+        return f"<{what}{encoding.datatype} {' x '.join(map(str, encoding.shape))}, {self.size} bytes>"
+
     def body(self) -> dict[str, Any]:
         """The signal as JSON; bytes and arrays are described."""
         stamp, encoding = self.stamp, self.stamp.encoding
@@ -52,6 +67,22 @@ class HeardSignal(NamedTuple):
             "passed_over": self.passed_over,
             **said,
         }
+
+
+def heard_signal(
+    stamps: StampReader, sample: Sample, rate: float = 0.0, passed_over: int = 0, largest: int = sys.maxsize
+) -> HeardSignal:
+    """A sample as the signal that it is; `stamps` reads those of its output.
+
+    JSON of more bytes than `largest` is not read, and described as bytes are. Raises PeerError for what is no signal.
+    """
+    raw, stamp = stamps.read(sample.attachment)
+    raw = raw or len(sample.payload) > largest
+    try:
+        value = None if raw else json.loads(sample.payload)
+    except (ValueError, RecursionError) as error:
+        raise PeerError(str(error)) from None
+    return HeardSignal(stamp, rate, len(sample.payload), raw, value, passed_over)
 
 
 def echo(bus: Bus, key: str, complain: Callable[[str], None] = lambda _: None) -> Iterator[HeardSignal]:
@@ -76,13 +107,10 @@ def echo(bus: Bus, key: str, complain: Callable[[str], None] = lambda _: None) -
             while moment - moments[0] > RATE_OVER:
                 moments.popleft()
             span = moments[-1] - moments[0]
-            try:
-                raw, stamp = stamps.read(sample.attachment)
-                value = None if raw else json.loads(sample.payload)
-            except (PeerError, ValueError, RecursionError) as error:
-                complain(f"passed over what is no signal: {error}")
-                continue
             rate = (len(moments) - 1) / span if span else 0.0
-            yield HeardSignal(stamp, rate, len(sample.payload), raw, value, missed)
+            try:
+                yield heard_signal(stamps, sample, rate, missed)
+            except PeerError as error:
+                complain(f"passed over what is no signal: {error}")
     finally:
         undo()

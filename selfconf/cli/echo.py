@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from selfconf.api.echo import HeardSignal
 
 EXAMPLE = """  selfconf echo person-tracker pose --count 5"""
-LONGEST_VALUE = 400
-"""Characters of a value that are shown, in text."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -57,20 +55,7 @@ def _text(signal: HeardSignal) -> str:
     stamp = signal.stamp
     moment = time.strftime("%H:%M:%S", time.localtime(stamp.time)) + f".{int(stamp.time % 1 * 1000):03}"
     missed = f" ({signal.passed_over} passed over)" if signal.passed_over else ""
-    return f"{paint(moment, 'dim')}  {signal.rate:6.1f}/s  {_value(signal)}{missed}"
-
-
-def _value(signal: HeardSignal) -> str:
-    """The value as JSON, shortened; bytes and arrays are described."""
-    encoding = signal.stamp.encoding
-    if not signal.raw:
-        text = json.dumps(signal.value, ensure_ascii=False)
-        left_out = len(text) - LONGEST_VALUE
-        return text if left_out <= 0 else f"{text[:LONGEST_VALUE]}... ({left_out} characters more)"
-    what = f"{encoding.media} of " if encoding.media else ""
-    if not encoding.datatype:
-        return f"<{what}{signal.size} bytes>"
-    return f"<{what}{encoding.datatype} {' x '.join(map(str, encoding.shape))}, {signal.size} bytes>"
+    return f"{paint(moment, 'dim')}  {signal.rate:6.1f}/s  {signal.worded()}{missed}"
 
 
 def _count(text: str) -> int:

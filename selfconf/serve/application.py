@@ -17,6 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from selfconf.serve.board import CHANGE, Board
 from selfconf.serve.directory import Directory, event_stream
+from selfconf.serve.looks import Looks
 from selfconf.serve.metrics import PROMETHEUS, Metrics
 from selfconf.serve.problems import problem
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
@@ -39,6 +40,7 @@ def application(
     board: Board,
     metrics: Metrics,
     sparql: SparqlEndpoint,
+    looks: Looks,
     linked: Callable[[], bool],
     hosts: Collection[str] = LOOPBACK,
 ) -> ASGIApp:
@@ -78,6 +80,7 @@ def application(
         Route("/page/{name}", file),
         Route("/state", state),
         Route("/changes", changes),
+        Route("/look", looks.respond),
         *(Route(path, sparql.respond, methods=METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
         Route("/.well-known/wot", directory.itself),
         Route("/things", directory.things),

@@ -18,12 +18,12 @@ _FACTS = {
 
 def checked_event(event: Any) -> Body:
     """An event of a run with its act, its time, and those facts that are of the expected form."""
-    body: Body = {"act": _text(event.get("act")), "time": _number(event.get("time"))}
+    body: Body = {"act": _text(event.get("act")), "time": finite_number(event.get("time"))}
     body |= {fact: event[fact] for fact in _TEXTS if isinstance(event.get(fact), str)}
     if body["act"] == "running":
         body |= {
             "configuration": checked_configuration(event.get("configuration")),
-            "epoch": _number(event.get("epoch")),
+            "epoch": finite_number(event.get("epoch")),
         }
     if body["act"] in ("waiting", "refused"):
         body["refusal"] = checked_refusal(event.get("refusal"))
@@ -68,7 +68,8 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
-def _number(value: Any) -> float:
+def finite_number(value: Any) -> float:
+    """A number that can be a time or a count; zero for what is none."""
     return value if isinstance(value, int | float) and math.isfinite(value) and abs(value) < 1e12 else 0.0
 
 

@@ -14,13 +14,13 @@ from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.board import THING_EVENTS, Board
+from selfconf.serve.event_stream import EVENT_STREAM
 from selfconf.serve.negotiation import acceptable
 from selfconf.serve.problems import problem
 from selfconf.serve.things import TD, directory_description, thing_description
 
 DISCOVERY_CONTEXT = "https://w3c.github.io/wot-discovery/context/discovery-context.jsonld"
 JSON_LD_MEDIA = "application/ld+json"
-EVENT_STREAM = "text/event-stream"
 
 
 class Directory:

@@ -14,6 +14,8 @@ from collections import deque
 from collections.abc import AsyncIterator, Callable, Collection
 from typing import NamedTuple
 
+EVENT_STREAM = "text/event-stream"
+"""The media type of such a stream."""
 EVENTS_KEPT = 2000
 """How many events are kept for clients that were away."""
 WAITING = 500

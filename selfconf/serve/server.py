@@ -22,6 +22,7 @@ from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.history import History
+from selfconf.serve.looks import Looks
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 from selfconf.serve.watcher import EcologyWatcher
@@ -108,7 +109,8 @@ async def _serve(
     sparql = SparqlEndpoint(record.dataset, metrics, seconds)
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
-    app = application(board, metrics, sparql, lambda: bool(bus.link), LOOPBACK if local else ())
+    looks = Looks(bus, board)
+    app = application(board, metrics, sparql, looks, lambda: bool(bus.link), LOOPBACK if local else ())
 
     def take(change: EcologyChange) -> None:
         record.note(change)
@@ -121,8 +123,9 @@ async def _serve(
     bus.run_aside()
     bus.wake_up(watcher.begin)
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))
-    server = _Server(uvicorn.Config(app, log_level="warning", access_log=False, lifespan="off", ws="none"), board)
-    server.config.timeout_graceful_shutdown = LAST_ANSWERS
+    config = uvicorn.Config(app, log_level="warning", access_log=False, lifespan="off", ws="none")
+    server = _Server(config, board, looks)
+    config.timeout_graceful_shutdown = LAST_ANSWERS
     listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
     await server.serve(sockets=[place])
 
@@ -130,9 +133,10 @@ async def _serve(
 class _Server(uvicorn.Server):
     """Ends its streams when it is ended, and ends when the program that has started it is gone."""
 
-    def __init__(self, config: uvicorn.Config, board: Board) -> None:
+    def __init__(self, config: uvicorn.Config, board: Board, looks: Looks) -> None:
         super().__init__(config)
-        self._board, self._parent, self._looked = board, os.getppid(), 0.0
+        self._board, self._looks = board, looks
+        self._parent, self._looked = os.getppid(), 0.0
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: None)  # uvicorn raises them again for who was there before it
 
@@ -147,6 +151,7 @@ class _Server(uvicorn.Server):
         ending = bool(await super().on_tick(counter))
         if ending:
             self._board.stream.close()
+            self._looks.close()
         return ending
 
 

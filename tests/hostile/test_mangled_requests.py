@@ -52,18 +52,18 @@ PATIENCE = 20.0
 def port() -> Iterator[int]:
     """Where a server listens that shows the ecology of the tests."""
     from selfconf.query import StandingDataset
-    from selfconf.serve.application import LOOPBACK, application
     from selfconf.serve.board import Board
     from selfconf.serve.metrics import Metrics
     from selfconf.serve.server import bound
-    from selfconf.serve.sparql_endpoint import SparqlEndpoint
+    from tests.serve.asgi import served
     from tests.serve.shown import advertised
 
-    metrics, dataset = Metrics(), StandingDataset()
-    board = Board("lab", metrics)
+    dataset = StandingDataset()
+    board = Board("lab", Metrics())
     board.apply(advertised(*ADVERTISEMENTS))
-    app = application(board, metrics, SparqlEndpoint(dataset, metrics, 2.0), lambda: True, LOOPBACK)
-    config = uvicorn.Config(app, log_level="warning", access_log=False, lifespan="off", ws="none")
+    config = uvicorn.Config(
+        served(board, dataset, 2.0), log_level="warning", access_log=False, lifespan="off", ws="none"
+    )
     config.timeout_graceful_shutdown = 1
     server = uvicorn.Server(config)
     with bound("127.0.0.1", 0) as place:

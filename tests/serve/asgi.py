@@ -4,10 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Collection
 from typing import Any, NamedTuple
 from urllib.parse import unquote
 
 from starlette.types import ASGIApp, Message
+
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Bus
+from selfconf.query import StandingDataset
+from selfconf.serve.application import LOOPBACK, application
+from selfconf.serve.board import Board
+from selfconf.serve.looks import Looks
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.sparql_endpoint import SparqlEndpoint
 
 
 class Answer(NamedTuple):
@@ -24,6 +34,20 @@ class Answer(NamedTuple):
     @property
     def media(self) -> str:
         return self.headers.get("content-type", "").partition(";")[0]
+
+
+def served(
+    board: Board,
+    dataset: StandingDataset | None = None,
+    seconds: float = 5.0,
+    linked: bool = True,
+    hosts: Collection[str] = LOOPBACK,
+    bus: Bus | None = None,
+) -> ASGIApp:
+    """The application over a board, a dataset, and a bus on which nobody else is, unless one is given."""
+    metrics = Metrics()
+    sparql = SparqlEndpoint(StandingDataset() if dataset is None else dataset, metrics, seconds)
+    return application(board, metrics, sparql, Looks(bus or Network().node(), board), lambda: linked, hosts)
 
 
 def ask(

@@ -3,20 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from starlette.types import ASGIApp
 
-from selfconf.query import StandingDataset
-from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
-from selfconf.serve.metrics import Metrics
-from selfconf.serve.sparql_endpoint import SparqlEndpoint
-from tests.serve.asgi import ask
-
-
-def served(board: Board, linked: bool = True, hosts: frozenset[str] = LOOPBACK) -> ASGIApp:
-    """The application over a board."""
-    metrics = Metrics()
-    return application(board, metrics, SparqlEndpoint(StandingDataset(), metrics, 5.0), lambda: linked, hosts)
+from tests.serve.asgi import ask, served
 
 
 def test_the_page_is_there_and_nothing_behind_it(board: Board) -> None:

@@ -8,23 +8,18 @@ from urllib.parse import quote
 import pytest
 from starlette.types import ASGIApp
 
-from selfconf.query import StandingDataset
-from selfconf.serve.application import application
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.directory import event_stream
-from selfconf.serve.metrics import Metrics
-from selfconf.serve.sparql_endpoint import SparqlEndpoint
 from tests.lab import ADVERTISEMENTS, iri
-from tests.serve.asgi import ask
+from tests.serve.asgi import ask, served
 
 TRACKER = f"/things/{quote(iri('person-tracker'), safe='')}"
 
 
 @pytest.fixture
 def app(board: Board) -> ASGIApp:
-    metrics = Metrics()
-    return application(board, metrics, SparqlEndpoint(StandingDataset(), metrics, 5.0), lambda: True)
+    return served(board)
 
 
 def test_all_things_are_listed(app: ASGIApp) -> None:

@@ -7,27 +7,17 @@ import time
 from urllib.parse import quote
 
 import pytest
-from starlette.types import ASGIApp
 
 from selfconf.query import StandingDataset
-from selfconf.serve.application import application
 from selfconf.serve.board import Board
-from selfconf.serve.metrics import Metrics
-from selfconf.serve.sparql_endpoint import SparqlEndpoint
 from tests.lab import ADVERTISEMENTS
-from tests.serve.asgi import ask, asked
+from tests.serve.asgi import ask, asked, served
 
 pytestmark = pytest.mark.process
 EVERYBODY = "/sparql?query=" + quote("SELECT ?c { ?c a sc:Component }")
 CROSS = "/sparql?query=" + quote(
     "SELECT (COUNT(*) AS ?n) { " + " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(9)) + "}"
 )
-
-
-def served(board: Board, dataset: StandingDataset, seconds: float = 5.0) -> ASGIApp:
-    """The application over a board and a dataset."""
-    metrics = Metrics()
-    return application(board, metrics, SparqlEndpoint(dataset, metrics, seconds), lambda: True)
 
 
 @pytest.mark.parametrize(

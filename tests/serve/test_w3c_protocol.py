@@ -18,12 +18,9 @@ from starlette.types import ASGIApp
 
 from selfconf.query import RESULT_TYPES, TRIPLE_TYPES, StandingDataset
 from selfconf.rdf.turtle import parse
-from selfconf.serve.application import application
 from selfconf.serve.board import Board
-from selfconf.serve.metrics import Metrics
 from selfconf.serve.service_description import SD
-from selfconf.serve.sparql_endpoint import SparqlEndpoint
-from tests.serve.asgi import Answer, ask
+from tests.serve.asgi import Answer, ask, served
 
 BESIDE = Path(__file__).parents[3] / "shared" / "data" / "w3c-sparql-protocol"
 SUITE = Path(os.environ.get("SELFCONF_W3C_PROTOCOL", BESIDE))
@@ -88,8 +85,7 @@ def store() -> Iterator[StandingDataset]:
 
 @pytest.fixture
 def app(board: Board, store: StandingDataset) -> ASGIApp:
-    metrics = Metrics()
-    return application(board, metrics, SparqlEndpoint(store, metrics, 10.0), lambda: True)
+    return served(board, store, 10.0)
 
 
 @pytest.mark.parametrize("case", list(cases()), ids=lambda case: case.partition("#")[2])

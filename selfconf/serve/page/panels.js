@@ -153,18 +153,22 @@ function fill(button, one, selected, held, lost, then) {
 
 // One component.
 
-let asked = "";
+let asked = "", detailSays = "";
 
-export function showDetail(model, iri, select, chooseTask) {
-  const place = by("detail"), one = model.components.get(iri);
+export function showDetail(model, iri, select, chooseTask, look) {
+  const place = by("detail"), one = model.components.get(iri), live = model.at === null;
   place.classList.toggle("open", Boolean(iri));
+  look.show(one && live ? iri : "", one?.outputs ?? []);
   if (!iri) {
-    asked = "";
+    asked = detailSays = "";
     place.replaceChildren(h("p", { class: "hint", text: "Choose a component, in the list or in the diagram, to see what it says of itself." }));
     return;
   }
   const { held, lost } = model.claims(), holders = held.get(iri) ?? [], loss = lost.get(iri);
   const state = loss ? "lost" : model.statesThen().get(iri) ?? one?.state ?? "not advertised";
+  const says = JSON.stringify([iri, one, state, loss, holders.map((task) => task.id), live]);
+  if (says === detailSays && asked === iri) return;
+  detailSays = says;
   const dt = (name, ...values) => (values.flat().filter(Boolean).length ? [h("dt", { text: name }), h("dd", {}, ...values.flat())] : []);
   const ports = (list) => list.map((port) => h("div", {}, h("b", { text: port.name }), h("span", { class: "soft", text: ` ${[port.signals.join(", "), port.unit, port.rate && `${port.rate} Hz`, port.optional && "optional"].filter(Boolean).join(" · ")}` })));
   const calls = (list) => list.map((each) => h("div", {}, h("b", { text: `${each.name}()` }), h("span", { class: "soft", text: ` ${[each.request, each.response && `→ ${each.response}`, each.optional && "optional"].filter(Boolean).join(" · ")}` })));
@@ -184,7 +188,10 @@ export function showDetail(model, iri, select, chooseTask) {
     h("h2", { class: "title", text: one?.name ?? short(iri) }),
     ...(one?.label ? [h("p", { class: "lead", text: one.label })] : []),
     h("p", { class: "types" }, ...(one?.types ?? []).map((type) => h("span", { class: "chip", text: type }))),
-    h("dl", {}, ...facts), h("h3", { text: "Advertisement" }), kept, h("p", { class: "iri", text: iri }));
+    h("dl", {}, ...facts),
+    ...(one?.outputs.length && live ? [h("h3", { text: "Last signals" }), look.signals] : []),
+    ...(one && live ? [h("h3", { text: "Log" }), look.log] : []),
+    h("h3", { text: "Advertisement" }), kept, h("p", { class: "iri", text: iri }));
   if (one && !turtle) {
     asked = iri;
     fetch(`/things/${encodeURIComponent(iri)}`, { headers: { Accept: "text/turtle" } })

@@ -1,0 +1,78 @@
+"""`/look`: what a component issues and prints, as server-sent events, as long as somebody looks at it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+from collections.abc import AsyncIterator
+
+from starlette.requests import Request
+from starlette.responses import Response, StreamingResponse
+
+from selfconf.bus.port import Bus
+from selfconf.discovery import FoundAdvertisement
+from selfconf.model.term import IRI
+from selfconf.serve.board import Board
+from selfconf.serve.change import Body
+from selfconf.serve.event_stream import EVENT_STREAM, STILL_THERE
+from selfconf.serve.onlooker import Onlooker
+from selfconf.serve.problems import problem
+
+MOST_LOOKS = 32
+"""How many may look at a component at the same time."""
+WAITING = 100
+"""How many events may wait for a client that reads slowly; then its stream ends, and it may begin anew."""
+_Told = tuple[str, Body] | None
+
+
+class Looks:
+    """Those who look at a component; used on the thread that serves, while its onlookers are on that of the bus."""
+
+    def __init__(self, bus: Bus, board: Board) -> None:
+        self._bus, self._board = bus, board
+        self._queues: set[asyncio.Queue[_Told]] = set()
+
+    def close(self) -> None:
+        """End every stream."""
+        for queue in self._queues:
+            queue.put_nowait(None)
+
+    async def respond(self, request: Request) -> Response:
+        """`/look?component=IRI`: a stream with the events `signals` and `log`."""
+        found = self._board.advertised.get(IRI(request.query_params.get("component", "")))
+        if found is None:
+            return problem(404, "no component of this IRI is advertised; /look?component=IRI takes one of /things")
+        if len(self._queues) >= MOST_LOOKS:
+            return problem(503, f"{MOST_LOOKS} look at a component already", {"Retry-After": "10"})
+        return StreamingResponse(self._stream(found), media_type=EVENT_STREAM, headers={"Cache-Control": "no-store"})
+
+    async def _stream(self, found: FoundAdvertisement) -> AsyncIterator[bytes]:
+        loop, queue = asyncio.get_running_loop(), asyncio.Queue[_Told]()
+
+        def put(told: _Told) -> None:
+            queue.put_nowait(told if queue.qsize() < WAITING else None)
+
+        def tell(kind: str, body: Body) -> None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended: so has the server
+                loop.call_soon_threadsafe(put, (kind, body))
+
+        onlooker = Onlooker(self._bus, self._board.keys, found, tell)
+        self._queues.add(queue)
+        self._bus.wake_up(onlooker.begin)
+        try:
+            yield b"retry: 2000\n\n"
+            while True:
+                told: _Told = ("", {})
+                with contextlib.suppress(asyncio.TimeoutError):
+                    told = await asyncio.wait_for(queue.get(), STILL_THERE)
+                if told is None:
+                    return
+                kind, body = told
+                text = (
+                    f"event: {kind}\ndata: {json.dumps(body, ensure_ascii=False)}\n\n" if kind else ": still there\n\n"
+                )
+                yield text.encode()
+        finally:
+            self._queues.discard(queue)
+            self._bus.wake_up(onlooker.end)

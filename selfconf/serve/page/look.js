@@ -1,0 +1,84 @@
+// What the chosen component issues and prints, as it comes; the server hears of it only while this is looked at.
+
+import { clock, h, keyed, say } from "/page/dom.js";
+
+const MOST_LINES = 300;
+
+export class Look {
+  #stream = null; #iri = ""; #signals = new Map(); #lines = []; #trouble = ""; #number = 0;
+  /** The elements, which stay, so that neither focus nor scrolling is lost. */
+  signals = h("ul", { class: "signals" });
+  log = h("ol", { class: "log", tabindex: 0, "aria-label": "What it has printed" });
+
+  constructor() {
+    document.addEventListener("visibilitychange", () => this.#follow());
+    setInterval(() => this.#iri && this.#showSignals(), 1000);  // so that their ages grow
+  }
+
+  /** Look at a component with these outputs; an empty IRI: at none. */
+  show(iri, outputs) {
+    if (iri === this.#iri) return;
+    this.#iri = iri;
+    this.#signals = new Map(outputs.map((port) => [port.name, null]));
+    [this.#lines, this.#trouble] = [[], ""];
+    this.#stream?.close();
+    this.#stream = null;
+    this.#showSignals();
+    this.#showLog("…");
+    this.#follow();
+  }
+
+  #follow() {
+    if (!this.#iri || document.hidden) {
+      this.#stream?.close();
+      this.#stream = null;
+    } else if (!this.#stream) {
+      this.#stream = new EventSource(`/look?component=${encodeURIComponent(this.#iri)}`);
+      this.#stream.addEventListener("signals", (event) => this.#heard(JSON.parse(event.data)));
+      this.#stream.addEventListener("log", (event) => this.#printed(JSON.parse(event.data)));
+    }
+  }
+
+  #heard(signals) {
+    const now = Date.now();
+    for (const [port, signal] of Object.entries(signals)) {
+      const before = this.#signals.get(port);
+      // A glance that has just begun knows no rate yet: that of the last one holds.
+      this.#signals.set(port, { ...signal, rate: signal.rate ?? before?.rate ?? null, at: now });
+    }
+    this.#showSignals();
+  }
+
+  #showSignals() {
+    keyed(this.signals, [...this.#signals], ([port]) => port,
+      ([port]) => h("li", {}, h("b", { text: port }), h("span", { class: "rate" }), h("code", {})),
+      (item, [, signal]) => {
+        const [, rate, text] = item.children, passed = signal ? Math.floor((Date.now() - signal.at) / 1000) : 0;
+        const quiet = passed > Math.max(3, 3 / (signal?.rate || 1));
+        item.classList.toggle("quiet", !signal || quiet);
+        say(rate, !signal ? "nothing yet" : quiet ? `${passed} s ago` : signal.rate ? `${signal.rate.toFixed(1)}/s` : "");
+        say(text, signal?.trouble ?? signal?.text ?? "");
+        text.classList.toggle("bad", Boolean(signal?.trouble));
+      });
+  }
+
+  #printed({ lines, anew, trouble }) {
+    this.#trouble = trouble ?? "";
+    if (anew) this.#lines = [];
+    for (const line of lines ?? []) this.#lines.push({ ...line, number: String((this.#number += 1)) });
+    this.#lines.splice(0, this.#lines.length - MOST_LINES);
+    this.#showLog("It has printed nothing that its site has kept.");
+  }
+
+  #showLog(nothing) {
+    const atEnd = this.log.scrollTop + this.log.clientHeight >= this.log.scrollHeight - 8;
+    const shown = this.#lines.length ? this.#lines : [{ number: "none", text: this.#trouble || nothing, stream: "none" }];
+    keyed(this.log, shown, (line) => line.number, () => h("li", {}, h("time", {}), h("span", {})),
+      (item, line) => {
+        item.className = line.stream;
+        say(item.firstElementChild, line.time ? clock(Date.parse(line.time) / 1000) : "");
+        say(item.lastElementChild, line.text);
+      });
+    if (atEnd) this.log.scrollTop = this.log.scrollHeight;
+  }
+}
