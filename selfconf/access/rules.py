@@ -133,6 +133,7 @@ def _looking(keys: Keys) -> tuple[str, ...]:
         keys.configuration(),
         keys.notices(),
         keys.configurator_call("*", "status"),
+        keys.configurator_call("*", "task"),
         keys.kept_tasks(),
         keys.task(),
     )

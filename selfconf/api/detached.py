@@ -11,7 +11,7 @@ from typing import Any
 
 from selfconf.api.answer import Method
 from selfconf.api.task import TaskSpecification
-from selfconf.composition import TimeLimit, composed
+from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator.state import Policy
 from selfconf.deployment import RunRequest
 from selfconf.model.configuration import Configuration
@@ -65,8 +65,8 @@ def _texts(path: Path) -> list[str]:
     return [file.read_text(encoding="utf-8") for file in files]
 
 
-def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
-    """The request by which a site runs a task that it keeps. Raises SelfconfError for what cannot be read."""
+def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Composer]:
+    """The task of a record, how it is to be composed, and what composes it. Raises SelfconfError for what is none."""
     options = record.options
     with tempfile.TemporaryDirectory(prefix="selfconf-task-") as folder:
         paths = []
@@ -83,7 +83,13 @@ def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
         )
         document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI(record.wanted))
         task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
-        composer = method.composer(task)
+        return task, method, method.composer(task)
+
+
+def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
+    """The request by which a site runs a task that it keeps. Raises SelfconfError for what cannot be read."""
+    task, method, composer = recorded_task(record)
+    options = record.options
 
     def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
         answer = composed(composer, found, lost, running, TimeLimit(method.seconds))
@@ -100,4 +106,5 @@ def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
         priority=record.priority,
         upgrade=options.get("upgrade"),
         aside=aside,
+        record=record,
     )

@@ -18,7 +18,7 @@ from selfconf.model.log_line import LogLine
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.rendezvous import asked_for, local_sites
 
-LOOK_AGAIN = 0.2
+FOLLOW_PAUSE = 0.2
 """Seconds after which a log that is followed is looked at again: nothing tells when a file has grown."""
 ASK_AGAIN = 1.0
 """Seconds after which sites of other machines are asked again."""
@@ -27,7 +27,7 @@ ASK_AGAIN = 1.0
 class LogReader:
     """Reads some logs as one, in the order of the times of their lines: the latest lines, then what is added."""
 
-    def __init__(self, sources: Iterable[LogSource], component: str = "", pause: float = LOOK_AGAIN) -> None:
+    def __init__(self, sources: Iterable[LogSource], component: str = "", pause: float = FOLLOW_PAUSE) -> None:
         """`component` is an IRI or a local name: only the lines of its processes are read; empty: all.
 
         `pause` is for how many seconds one who follows the logs is to wait between two looks.
@@ -95,4 +95,4 @@ def log_reader(
                 complain(f"only the logs of this machine are shown: {error}")
         if trouble is not None and not others:
             raise trouble
-        yield LogReader([*map(local_log, paths), *others], component, ASK_AGAIN if others else LOOK_AGAIN)
+        yield LogReader([*map(local_log, paths), *others], component, ASK_AGAIN if others else FOLLOW_PAUSE)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import TracebackType
 
 from selfconf.api.answer import Method, refusal_with_places
+from selfconf.api.detached import task_record
 from selfconf.api.membership import check_may_run, configurator_name, member
 from selfconf.api.places import Places
 from selfconf.api.task import TaskSpecification
@@ -87,6 +88,7 @@ class Run:
                 priority=self.task.document.task.priority if priority is None else priority,
                 upgrade=upgrade,
                 aside=self._work.work,
+                record=task_record(self.task, method, policy, name, priority, upgrade),
                 report=self._work.report,
                 ended=self._settle,
             ),

@@ -1,14 +1,15 @@
-"""What a configurator has deployed and lost, and the questions it answers: `status`, `stop`, and the configuration."""
+"""What a configurator has deployed and lost, and what it answers: `status`, `stop`, `task`, and the configuration."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from selfconf.bus.port import Bus, Request
 from selfconf.deployment.run_request import RunRequest
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import encode
+from selfconf.protocol.codec import LARGEST, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Status
 from selfconf.rdf.provenance import configuration_iri, configuration_triples
@@ -79,6 +80,17 @@ class DeploymentRecord:
         )
         return to_turtle(triples)
 
+    def _tell_task(self, request: Request) -> None:
+        """Reply the task as sites keep it, where it is known and not too large."""
+        status, record = self._status(), self._request.record
+        told = b""
+        if record is not None:
+            told = encode(replace(record, task=status.task, priority=status.priority, beginning=status.beginning))
+        if 0 < len(told) <= LARGEST:
+            request.reply(self._keys.configurator_call(self._name, "task"), told)
+        else:
+            request.refuse("this configurator does not tell which task it runs")
+
     def _serve_call(self, request: Request) -> None:
         try:
             call = request.key.rsplit("/", 1)[-1]
@@ -87,6 +99,8 @@ class DeploymentRecord:
                 self.bus.wake_up(self._stop)
             elif call in ("status", "*"):
                 request.reply(self._keys.configurator_call(self._name, "status"), encode(self._status()))
+            elif call == "task":
+                self._tell_task(request)
             else:
                 request.refuse(f"there is no call {call!r}")
         finally:

@@ -12,7 +12,7 @@ from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import RunEvent
 from selfconf.model.template import Task
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Wire
+from selfconf.protocol.messages import TaskRecord, Wire
 from selfconf.rdf.advertisements import Advertisement
 
 ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
@@ -52,6 +52,8 @@ class RunRequest:
     """For each role of a configuration, the candidates that came before the chosen ones."""
     aside: Callable[[Callable[[], None]], None] = lambda work: work()
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
+    record: TaskRecord | None = None
+    """The task as sites keep it, for those who ask which one it is; None: nobody is told."""
     report: EventListener = lambda event: None
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None

@@ -21,7 +21,7 @@
     selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
     selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (queryable)
     selfconf/{ecology}/conf/{name}/events                   what it does and notices (put; queryable: the latest)
-    selfconf/{ecology}/conf/{name}/@ctl/{call}              status, stop (call)
+    selfconf/{ecology}/conf/{name}/@ctl/{call}              status, task, stop (call)
 
 `{component}` is the base-32 of the ten-byte BLAKE2s of the component's IRI, `{shard}` the first byte of the same hash
 in hexadecimal: the cost of siblings under one chunk grows with the square of their number, so no chunk has thousands.

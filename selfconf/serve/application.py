@@ -17,8 +17,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from selfconf.serve.board import CHANGE, Board
 from selfconf.serve.directory import Directory, event_stream
-from selfconf.serve.looks import Looks
+from selfconf.serve.fits import Fits
 from selfconf.serve.metrics import PROMETHEUS, Metrics
+from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.problems import problem
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 
@@ -40,7 +41,8 @@ def application(
     board: Board,
     metrics: Metrics,
     sparql: SparqlEndpoint,
-    looks: Looks,
+    onlookers: Onlookers,
+    fits: Fits,
     linked: Callable[[], bool],
     hosts: Collection[str] = LOOPBACK,
 ) -> ASGIApp:
@@ -80,7 +82,8 @@ def application(
         Route("/page/{name}", file),
         Route("/state", state),
         Route("/changes", changes),
-        Route("/look", looks.respond),
+        Route("/look", onlookers.respond),
+        Route("/fit", fits.respond),
         *(Route(path, sparql.respond, methods=METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
         Route("/.well-known/wot", directory.itself),
         Route("/things", directory.things),

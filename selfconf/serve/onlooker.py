@@ -29,7 +29,7 @@ GLANCE_BYTES = 1 << 16
 """How many bytes end a glance, once its rate is known."""
 RATE_KNOWN = 3
 """From how many signals of a glance its rate is known: the first may be an old one, which is issued anew."""
-PAUSE = 0.5
+GLANCE_PAUSE = 0.5
 """Seconds between two glances, at least."""
 BYTES_A_SECOND = 1 << 18
 """How many bytes of one output are taken in a second, on average over a glance and its pause."""
@@ -37,13 +37,13 @@ TOLD_AFTER = 0.25
 """Seconds for which what has come is collected."""
 LARGEST_READ = 1 << 16
 """JSON of more bytes is described, as arrays are."""
-LINES = 100
+LOG_LINES = 100
 """How many lines of the log are told at once, at most: of more the latest."""
-LONGEST_LINE = 500
+LONGEST_TOLD = 500
 """How many characters of a line of the log are told."""
 LOG_PAUSE = 1.0
 """Seconds between two questions for the log."""
-PATIENCE = 3.0
+LOG_PATIENCE = 3.0
 """Seconds that a site may take to answer."""
 MOST_OUTPUTS = 64
 """How many outputs of one component are looked at."""
@@ -60,7 +60,7 @@ class _Glance:
 
 
 class Onlooker:
-    """Looks at one component until it is ended; runs on the thread of its bus."""
+    """Onlookers at one component until it is ended; runs on the thread of its bus."""
 
     def __init__(self, bus: Bus, keys: Keys, found: FoundAdvertisement, tell: Callable[[str, Body], None]) -> None:
         """`tell` receives `signals`, which is the latest by output, and `log`, which is lines or why there are none."""
@@ -108,7 +108,7 @@ class Onlooker:
         if many >= GLANCE or (many >= RATE_KNOWN and glance.size >= GLANCE_BYTES):
             glance.undo()
             glance.undo = None
-            self._bus.later(max(PAUSE, glance.size / BYTES_A_SECOND), lambda: self._look(output))
+            self._bus.later(max(GLANCE_PAUSE, glance.size / BYTES_A_SECOND), lambda: self._look(output))
 
     def _tell_soon(self) -> None:
         if not self._telling:
@@ -125,8 +125,8 @@ class Onlooker:
 
     def _ask_log(self, position: str) -> None:
         if not self._ended:
-            question = LogQuestion(self._component, LINES, position)
-            self._bus.ask(self._keys.log(self._site), encode(question), PATIENCE, partial(self._log_told, position))
+            question = LogQuestion(self._component, LOG_LINES, position)
+            self._bus.ask(self._keys.log(self._site), encode(question), LOG_PATIENCE, partial(self._log_told, position))
 
     def _log_told(self, position: str, replies: Replies) -> None:
         if self._ended:
@@ -139,9 +139,9 @@ class Onlooker:
             except PeerError as error:
                 trouble = str(error)
         if part is None:
-            self._tell("log", {"trouble": one_line(trouble, LONGEST_LINE)})
+            self._tell("log", {"trouble": one_line(trouble, LONGEST_TOLD)})
         elif part.lines or not position:
-            lines = [_line_body(*line) for line in part.lines[-LINES:]]
+            lines = [_line_body(*line) for line in part.lines[-LOG_LINES:]]
             self._tell("log", {"lines": lines, "anew": not position})
         # Who prints more than is told at once is followed from its present end on.
         after = position if part is None else "" if part.more else part.position
@@ -149,7 +149,7 @@ class Onlooker:
 
 
 def _line_body(time: str, stream: str, components: object, text: str) -> Body:
-    return {"time": time, "stream": stream, "text": one_line(text, LONGEST_LINE)}
+    return {"time": time, "stream": stream, "text": one_line(text, LONGEST_TOLD)}
 
 
 def _signal_body(stamps: StampReader, sample: Sample) -> Body:
@@ -157,5 +157,5 @@ def _signal_body(stamps: StampReader, sample: Sample) -> Body:
     try:
         signal = heard_signal(stamps, sample, largest=LARGEST_READ)
     except PeerError as error:
-        return {"trouble": one_line(f"this is no signal: {error}", LONGEST_LINE)}
+        return {"trouble": one_line(f"this is no signal: {error}", LONGEST_TOLD)}
     return {"text": signal.worded(), "time": finite_number(signal.stamp.time)}

@@ -21,9 +21,10 @@ from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
+from selfconf.serve.fits import Fits
 from selfconf.serve.history import History
-from selfconf.serve.looks import Looks
 from selfconf.serve.metrics import Metrics
+from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 from selfconf.serve.watcher import EcologyWatcher
 from selfconf.termination import PARENT_CHECK, orphaned, started_by_another
@@ -109,8 +110,10 @@ async def _serve(
     sparql = SparqlEndpoint(record.dataset, metrics, seconds)
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
-    looks = Looks(bus, board)
-    app = application(board, metrics, sparql, looks, lambda: bool(bus.link), LOOPBACK if local else ())
+    onlookers = Onlookers(bus, board)
+    app = application(
+        board, metrics, sparql, onlookers, Fits(bus, board), lambda: bool(bus.link), LOOPBACK if local else ()
+    )
 
     def take(change: EcologyChange) -> None:
         record.note(change)
@@ -124,7 +127,7 @@ async def _serve(
     bus.wake_up(watcher.begin)
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))
     config = uvicorn.Config(app, log_level="warning", access_log=False, lifespan="off", ws="none")
-    server = _Server(config, board, looks)
+    server = _Server(config, board, onlookers)
     config.timeout_graceful_shutdown = LAST_ANSWERS
     listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
     await server.serve(sockets=[place])
@@ -133,9 +136,9 @@ async def _serve(
 class _Server(uvicorn.Server):
     """Ends its streams when it is ended, and ends when the program that has started it is gone."""
 
-    def __init__(self, config: uvicorn.Config, board: Board, looks: Looks) -> None:
+    def __init__(self, config: uvicorn.Config, board: Board, onlookers: Onlookers) -> None:
         super().__init__(config)
-        self._board, self._looks = board, looks
+        self._board, self._onlookers = board, onlookers
         self._parent, self._looked = os.getppid(), 0.0
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: None)  # uvicorn raises them again for who was there before it
@@ -151,7 +154,7 @@ class _Server(uvicorn.Server):
         ending = bool(await super().on_tick(counter))
         if ending:
             self._board.stream.close()
-            self._looks.close()
+            self._onlookers.close()
         return ending
 
 

@@ -19,9 +19,9 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.site.log_file import PUT_ASIDE
 
-MOST_TOLD = 1 << 18
+MOST_LOG_BYTES = 1 << 18
 """How many bytes of a log one answer holds, so that it is well below the largest message."""
-MOST_LINES = 2000
+MOST_LOG_LINES = 2000
 """How many lines of a log one answer holds."""
 _NOT_THERE = "0:0"
 """The position in a log that has no file yet."""
@@ -41,7 +41,7 @@ class _LogFileText(NamedTuple):
         return f"{self.inode}:{self.start + len(self.text)}"
 
 
-def log_part(path: Path, question: LogQuestion, most_bytes: int = MOST_TOLD) -> LogPart:
+def log_part(path: Path, question: LogQuestion, most_bytes: int = MOST_LOG_BYTES) -> LogPart:
     """What is asked of the log of that path, in at most so many bytes. Raises PeerError for what is no position."""
     if question.position:
         return _added(path, question, most_bytes)

@@ -21,7 +21,7 @@ from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import End, Known, LogQuestion, Page, Wake
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import ntriples
-from selfconf.site.kept_log import MOST_LINES, log_part
+from selfconf.site.kept_log import MOST_LOG_LINES, log_part
 from selfconf.site.processes import ComponentProcesses, Started, cannot_start, programs_of, started_once
 from selfconf.site.shelf import Shelf
 
@@ -187,7 +187,7 @@ class Site:
             question = decode(request.payload, LogQuestion)
             if self._log_path is None:
                 raise PeerError(f"the site {self.name} keeps no log")
-            part = log_part(self._log_path, replace(question, lines=min(question.lines, MOST_LINES)))
+            part = log_part(self._log_path, replace(question, lines=min(question.lines, MOST_LOG_LINES)))
             request.reply(self.keys.log(self.name), encode(part))
         except PeerError as error:
             request.refuse(str(error))

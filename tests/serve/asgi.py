@@ -15,8 +15,9 @@ from selfconf.bus.port import Bus
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
-from selfconf.serve.looks import Looks
+from selfconf.serve.fits import Fits
 from selfconf.serve.metrics import Metrics
+from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 
 
@@ -47,7 +48,8 @@ def served(
     """The application over a board, a dataset, and a bus on which nobody else is, unless one is given."""
     metrics = Metrics()
     sparql = SparqlEndpoint(StandingDataset() if dataset is None else dataset, metrics, seconds)
-    return application(board, metrics, sparql, Looks(bus or Network().node(), board), lambda: linked, hosts)
+    bus = bus or Network().node()
+    return application(board, metrics, sparql, Onlookers(bus, board), Fits(bus, board), lambda: linked, hosts)
 
 
 def ask(

@@ -12,7 +12,7 @@ from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import LARGEST, decode, encode
 from selfconf.protocol.messages import LogPart, LogQuestion
-from selfconf.site.kept_log import MOST_LINES, log_part
+from selfconf.site.kept_log import MOST_LOG_LINES, log_part
 from selfconf.site.log_file import LogFile
 from tests.lab import write_advertisements
 from tests.site.served import KEYS, ask, serve
@@ -98,11 +98,11 @@ def test_what_is_no_position_is_refused(position: str, tmp_path: Path) -> None:
 
 def test_a_site_tells_its_log_over_the_bus_and_refuses_what_is_no_question(network: Network, tmp_path: Path) -> None:
     path = tmp_path / "lab@home.log"
-    path.write_text("".join(said(1, str(number)) for number in range(MOST_LINES + 1)))
+    path.write_text("".join(said(1, str(number)) for number in range(MOST_LOG_LINES + 1)))
     serve(network, write_advertisements(tmp_path / "ads", "tracker"), log_path=path)
     answer = ask(network, KEYS.log("home"), encode(LogQuestion("clock", 1 << 40)))
     part = decode(answer.samples[0].payload, LogPart)
-    assert (len(part.lines), part.lines[-1].text) == (MOST_LINES, str(MOST_LINES))
+    assert (len(part.lines), part.lines[-1].text) == (MOST_LOG_LINES, str(MOST_LOG_LINES))
     assert ask(network, KEYS.log("home"), b"?").errors[0].startswith("not a message")
     assert "is no position" in ask(network, KEYS.log("home"), encode(LogQuestion(position="?"))).errors[0]
 

@@ -3,6 +3,7 @@
 import { by, plain, say } from "/page/dom.js";
 import { Diagram } from "/page/diagram.js";
 import { Model, worded } from "/page/model.js";
+import { Fits } from "/page/fits.js";
 import { Look } from "/page/look.js";
 import { below, forget, showComponents, showDetail, showTasks, taskHead } from "/page/panels.js";
 import { prepareQuery } from "/page/query.js";
@@ -11,7 +12,8 @@ import { Timeline } from "/page/timeline.js";
 const model = new Model();
 let chosen = null, selected = "", drawing = false, belowSays = "";
 const diagram = new Diagram(by("canvas"), select);
-const look = new Look();
+const look = new Look(), fits = new Fits();
+fits.changed = draw;
 const timeline = new Timeline(model, draw);
 
 function draw() {
@@ -50,7 +52,7 @@ function render() {
     by("below").replaceChildren(...below(task, select));
   }
   showComponents(model, selected, select, by("filter").value);
-  showDetail(model, selected, select, choose, look);
+  showDetail(model, selected, select, choose, look, fits);
   timeline.show();
   const alive = [...model.components.values()].filter((one) => one.state === "alive").length;
   say(by("tally"), `${alive} of ${model.components.size} components alive · ${model.sites.size} ${model.sites.size === 1 ? "site" : "sites"}`);

@@ -54,9 +54,9 @@ export class Look {
       ([port]) => h("li", {}, h("b", { text: port }), h("span", { class: "rate" }), h("code", {})),
       (item, [, signal]) => {
         const [, rate, text] = item.children, passed = signal ? Math.floor((Date.now() - signal.at) / 1000) : 0;
-        const quiet = passed > Math.max(3, 3 / (signal?.rate || 1));
-        item.classList.toggle("quiet", !signal || quiet);
-        say(rate, !signal ? "nothing yet" : quiet ? `${passed} s ago` : signal.rate ? `${signal.rate.toFixed(1)}/s` : "");
+        const stale = passed > Math.max(3, 3 / (signal?.rate || 1));
+        item.classList.toggle("stale", !signal || stale);
+        say(rate, !signal ? "nothing yet" : stale ? `${passed} s ago` : signal.rate ? `${signal.rate.toFixed(1)}/s` : "");
         say(text, signal?.trouble ?? signal?.text ?? "");
         text.classList.toggle("bad", Boolean(signal?.trouble));
       });

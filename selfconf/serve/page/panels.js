@@ -155,10 +155,11 @@ function fill(button, one, selected, held, lost, then) {
 
 let asked = "", detailSays = "";
 
-export function showDetail(model, iri, select, chooseTask, look) {
+export function showDetail(model, iri, select, chooseTask, look, fits) {
   const place = by("detail"), one = model.components.get(iri), live = model.at === null;
   place.classList.toggle("open", Boolean(iri));
   look.show(one && live ? iri : "", one?.outputs ?? []);
+  fits.show(one && live ? iri : "", one, model.tasksSeen());
   if (!iri) {
     asked = detailSays = "";
     place.replaceChildren(h("p", { class: "hint", text: "Choose a component, in the list or in the diagram, to see what it says of itself." }));
@@ -189,6 +190,7 @@ export function showDetail(model, iri, select, chooseTask, look) {
     ...(one?.label ? [h("p", { class: "lead", text: one.label })] : []),
     h("p", { class: "types" }, ...(one?.types ?? []).map((type) => h("span", { class: "chip", text: type }))),
     h("dl", {}, ...facts),
+    ...(one && live ? [h("h3", { text: "Roles" }), fits.element] : []),
     ...(one?.outputs.length && live ? [h("h3", { text: "Last signals" }), look.signals] : []),
     ...(one && live ? [h("h3", { text: "Log" }), look.log] : []),
     h("h3", { text: "Advertisement" }), kept, h("p", { class: "iri", text: iri }));

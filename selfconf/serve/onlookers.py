@@ -21,12 +21,12 @@ from selfconf.serve.problems import problem
 
 MOST_LOOKS = 32
 """How many may look at a component at the same time."""
-WAITING = 100
+MOST_UNREAD = 100
 """How many events may wait for a client that reads slowly; then its stream ends, and it may begin anew."""
 _Told = tuple[str, Body] | None
 
 
-class Looks:
+class Onlookers:
     """Those who look at a component; used on the thread that serves, while its onlookers are on that of the bus."""
 
     def __init__(self, bus: Bus, board: Board) -> None:
@@ -51,7 +51,7 @@ class Looks:
         loop, queue = asyncio.get_running_loop(), asyncio.Queue[_Told]()
 
         def put(told: _Told) -> None:
-            queue.put_nowait(told if queue.qsize() < WAITING else None)
+            queue.put_nowait(told if queue.qsize() < MOST_UNREAD else None)
 
         def tell(kind: str, body: Body) -> None:
             with contextlib.suppress(RuntimeError):  # the loop has ended: so has the server

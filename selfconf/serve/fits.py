@@ -1,0 +1,115 @@
+"""`/fit`: which roles of the tasks that run a component could play, and what keeps it out of those that it nearly fits.
+
+The configurators say which tasks they run. Each is judged in a process of its own that has not long, and an answer is
+kept: it holds as long as the task and the advertisement do.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import sys
+from collections import OrderedDict
+from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import Response
+
+from selfconf.bus.port import Bus, Replies
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import task_name
+from selfconf.protocol.messages import TaskRecord
+from selfconf.rdf import turtle
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.serve.board import Board
+from selfconf.serve.problems import problem
+
+TASKS_PATIENCE = 2.0
+"""Seconds that the configurators may take to say which tasks they run."""
+JUDGING = 15.0
+"""Seconds that one task may take to be judged."""
+MOST_JUDGED = 20
+"""How many tasks are judged for one answer."""
+VERDICTS_KEPT = 500
+"""How many verdicts are kept."""
+
+
+class Fits:
+    """Judges components by the roles of the tasks that run, one task at a time; used on the thread that serves."""
+
+    def __init__(self, bus: Bus, board: Board) -> None:
+        self._bus, self._board = bus, board
+        self._one = asyncio.Semaphore(1)
+        self._verdicts: OrderedDict[tuple[bytes, IRI], tuple[Advertisement, Any]] = OrderedDict()
+
+    async def respond(self, request: Request) -> Response:
+        """`/fit?component=IRI`: for each task that runs, by its identity, the roles; or why they are not known."""
+        found = self._board.advertised.get(IRI(request.query_params.get("component", "")))
+        if found is None:
+            return problem(404, "no component of this IRI is advertised; /fit?component=IRI takes one of /things")
+        tasks = {}
+        for record in (await self._records())[:MOST_JUDGED]:
+            verdict = await self._verdict(record, found.advertisement)
+            body = {"roles": verdict} if isinstance(verdict, list) else verdict
+            tasks[record.task] = {"name": task_name(record.task), **body}
+        return Response(json.dumps({"tasks": tasks}, ensure_ascii=False), media_type="application/json")
+
+    async def _records(self) -> list[TaskRecord]:
+        """The tasks that run, as their configurators tell them, in their order."""
+        loop = asyncio.get_running_loop()
+        told: asyncio.Future[Replies] = loop.create_future()
+
+        def take(replies: Replies) -> None:
+            if not told.done():
+                told.set_result(replies)
+
+        def done(replies: Replies) -> None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended: so has the server
+                loop.call_soon_threadsafe(take, replies)
+
+        key = self._board.keys.configurator_call("*", "task")
+        self._bus.wake_up(lambda: self._bus.ask(key, b"", TASKS_PATIENCE, done))
+        found: dict[str, TaskRecord] = {}
+        with contextlib.suppress(asyncio.TimeoutError):
+            for sample in (await asyncio.wait_for(told, 2 * TASKS_PATIENCE)).samples:
+                with contextlib.suppress(PeerError):
+                    record = decode(sample.payload, TaskRecord)
+                    found[record.task] = record
+        return sorted(found.values(), key=lambda record: (-record.priority, record.beginning))
+
+    async def _verdict(self, record: TaskRecord, advertisement: Advertisement) -> Any:
+        """A list of roles, or an object that says why there is none."""
+        asked = encode(record), advertisement.profile.component
+        async with self._one:
+            judged, verdict = self._verdicts.pop(asked, (None, None))
+            if judged is not advertisement:  # it is another object where the site tells another one
+                verdict = await _judged(asked[0], turtle.ntriples(advertisement.triples))
+            self._verdicts[asked] = advertisement, verdict
+            while len(self._verdicts) > VERDICTS_KEPT:
+                self._verdicts.popitem(last=False)
+            return verdict
+
+
+async def _judged(record: bytes, advertisement: bytes) -> Any:
+    text = json.dumps({"record": record.decode(), "advertisement": advertisement.decode()}).encode()
+    process = await asyncio.create_subprocess_exec(
+        *(sys.executable, "-m", "selfconf.api.role_fits"),
+        stdin=asyncio.subprocess.PIPE,
+        stdout=asyncio.subprocess.PIPE,
+        stderr=asyncio.subprocess.DEVNULL,
+        start_new_session=True,  # Ctrl-C is for the program that serves, which ends this one
+    )
+    try:
+        told, _ = await asyncio.wait_for(process.communicate(text), JUDGING)
+        return json.loads(told)
+    except asyncio.TimeoutError:
+        return {"detail": f"what its roles ask for was not judged in {JUDGING:g} s"}
+    except ValueError:
+        return {"detail": "what its roles ask for cannot be judged"}
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()

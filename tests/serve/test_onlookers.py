@@ -1,0 +1,63 @@
+"""The stream of one who looks at a component: its events, its end, and how many there may be."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncGenerator
+from typing import cast
+from urllib.parse import quote
+
+from starlette.requests import Request
+from starlette.responses import StreamingResponse
+
+from selfconf.bus.memory import Network
+from selfconf.serve.board import Board
+from selfconf.serve.onlookers import MOST_LOOKS, Onlookers
+from tests.lab import iri
+from tests.serve.asgi import ask, served
+
+QUERY = f"component={quote(iri('person-tracker'), safe='')}"
+
+
+async def look(onlookers: Onlookers) -> AsyncGenerator[bytes, None]:
+    """The stream of one more who looks."""
+    response = await onlookers.respond(Request({"type": "http", "query_string": QUERY.encode(), "headers": []}))
+    assert isinstance(response, StreamingResponse), response
+    assert response.media_type == "text/event-stream"
+    stream = cast(AsyncGenerator[bytes, None], response.body_iterator)
+    assert (await anext(stream)).startswith(b"retry: ")
+    return stream
+
+
+def test_a_stream_tells_until_the_server_ends(board: Board) -> None:
+    async def play() -> None:
+        network = Network()
+        onlookers = Onlookers(network.node(), board)
+        stream = await look(onlookers)
+        network.run(lambda: False, 5.0)
+        kind, data = (await anext(stream)).decode().strip().split("\n")
+        assert kind == "event: log"
+        assert "does not tell" in json.loads(data.removeprefix("data: "))["trouble"]
+        onlookers.close()
+        assert [part async for part in stream if b"event: log" not in part] == []
+
+    asyncio.run(play())
+
+
+def test_no_more_may_look_than_the_ecology_can_bear_and_those_who_go_make_room(board: Board) -> None:
+    async def play() -> None:
+        onlookers = Onlookers(Network().node(), board)
+        streams = [await look(onlookers) for _ in range(MOST_LOOKS)]
+        refused = await onlookers.respond(Request({"type": "http", "query_string": QUERY.encode(), "headers": []}))
+        assert refused.status_code == 503
+        await streams[0].aclose()
+        await look(onlookers)
+
+    asyncio.run(play())
+
+
+def test_only_what_is_advertised_can_be_looked_at(board: Board) -> None:
+    for path in ("/look", "/look?component=urn:nobody", "/fit", "/fit?component=urn:nobody"):
+        answer = ask(served(board), path)
+        assert (answer.status, answer.media) == (404, "application/problem+json")
