@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from selfconf.discovery import FoundAdvertisement
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.change import Body, EcologyChange
 from selfconf.serve.event_stream import EventStream
 from selfconf.serve.metrics import Metrics
@@ -69,6 +70,7 @@ class Board:
         return {
             "ecology": self.keys.ecology,
             "last": self.stream.last,
+            "prefixes": QUERY_PREFIXES,
             "ready": self.ready,
             "components": self._components,
             "sites": self._sites,

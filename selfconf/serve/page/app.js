@@ -6,7 +6,7 @@ import { Model, worded } from "/page/model.js";
 import { Fits } from "/page/fits.js";
 import { Look } from "/page/look.js";
 import { below, forget, showComponents, showDetail, showTasks, taskHead } from "/page/panels.js";
-import { prepareQuery } from "/page/query.js";
+import { lend, prepareQuery } from "/page/query.js";
 import { Timeline } from "/page/timeline.js";
 
 const model = new Model();
@@ -68,6 +68,7 @@ async function begin() {
   const answer = await fetch("/state");
   const state = await answer.json();
   model.begin(state);
+  lend(state.prefixes);
   draw();
   const stream = new EventSource(`/changes?last=${encodeURIComponent(state.last)}`);
   stream.addEventListener("change", (event) => {
@@ -136,6 +137,9 @@ addEventListener("keydown", (event) => {
   if (event.key === "/" && !writing) { event.preventDefault(); view("ecology"); by("filter").focus(); }
 });
 setInterval(() => { if (model.at === null) draw(); }, 10000);
-prepareQuery();
+prepareQuery((iri) => model.components.has(iri), (iri) => {
+  selected = iri;
+  view("ecology");
+});
 if (location.hash === "#query") view("query");
 begin().catch(() => { linked(false); again(); });
