@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from functools import partial
 from typing import Any
 
@@ -150,14 +151,26 @@ class ComponentCode:
     def serve(self, operation: str, request: Signal) -> Any:
         """Return what the component answers to a call; raises Refused if it does not. On the thread of its code.
 
-        What breaks there is a failure of the component.
+        What breaks there is a failure of the component. The answer may be a future, whose outcome `outcome` tells.
         """
         if not self.active or self._resting:
             raise Refused(f"{self._name} {'is at rest' if self.active else 'does not act'}")
+        code = partial(self._component.called, operation, request)
+        return self._judged(operation, lambda: self._thread.limited(self, "called", self._deadline, code))
+
+    def outcome(self, operation: str, answer: Future[Any]) -> Any:
+        """Return what a future has come to that was the answer to a call; raises Refused like `serve`. On any thread.
+
+        A future that was cancelled is a refusal.
+        """
+        if answer.cancelled():
+            raise Refused(f"{self._name} was stopped before it answered")
+        return self._judged(operation, answer.result)
+
+    def _judged(self, operation: str, answer: Callable[[], Any]) -> Any:
+        """Return an answer; what it raises is a refusal, or else a failure of the component, which is one as well."""
         try:
-            return self._thread.limited(
-                self, "called", self._deadline, partial(self._component.called, operation, request)
-            )
+            return answer()
         except Refused:
             raise
         except Exception as error:

@@ -11,8 +11,11 @@ that the component acts for. Whoever else asks is refused.
 do what it was asked: so it is told what is known, and nothing is repeated on its behalf. A request that comes twice is
 served once.
 
+*Later.* The code of a component may return a future in the place of an answer: it then goes on with other things, and
+the request is answered when the future comes to something. Futures are cancelled when the component is stopped.
+
 *Bounds.* A request and an answer have at most `MOST_PAYLOAD` bytes; at most `MOST_CALLS` requests wait for the code of
-a component, and at most as many of its own calls for their answers.
+a component, or for its futures, and at most as many of its own calls for their answers.
 """
 
 from __future__ import annotations
@@ -22,6 +25,7 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -89,6 +93,8 @@ class Operations:
         """The latest requests, by caller, its life, and the number of the stamp: one that is doubled is not served."""
         self._requests = self._calls = 0
         """How many requests wait for the code, and how many calls for their answers."""
+        self._promised: set[Future[Any]] = set()
+        """The futures that the code has returned in the place of answers."""
         self._served = bus.serve(keys.operations(profile.component), self._asked) if self._offered else lambda: None
 
     def follow(self, message: Apply) -> None:
@@ -98,8 +104,10 @@ class Operations:
         }
 
     def end(self) -> None:
-        """Call nothing."""
+        """Call nothing, and wait for no answer that the code has promised."""
         self._wires = {}
+        for promise in list(self._promised):
+            promise.cancel()
 
     def close(self) -> None:
         """Serve nothing any more."""
@@ -136,8 +144,30 @@ class Operations:
 
     def _serve(self, request: Request, name: str, signal: Signal) -> None:
         """Have the code answer a request; on its thread."""
+
+        def served() -> Any:
+            answer = self._code.serve(name, signal)
+            if isinstance(answer, Future):
+                self._promised.add(answer)
+                answer.add_done_callback(partial(self._kept, request, name))
+                if not self._code.active:  # it was stopped while it returned the future
+                    answer.cancel()
+            return answer
+
+        self._answer(request, name, served)
+
+    def _kept(self, request: Request, name: str, promise: Future[Any]) -> None:
+        """Answer a request with what a future has come to; on whatever thread it does."""
+        self._promised.discard(promise)
+        self._answer(request, name, partial(self._code.outcome, name, promise))
+
+    def _answer(self, request: Request, name: str, answered: Callable[[], Any]) -> None:
+        """Answer a request with a value, or refuse it as `answered` does; nothing yet if the value is a future."""
         try:
-            answer = self._packed(name, self._code.serve(name, signal))
+            value = answered()
+            if isinstance(value, Future):
+                return
+            answer = self._packed(name, value)
         except Refused as refused:
             self._then(self._refuse, request, str(refused) or f"it refuses {name!r}", True)
         else:

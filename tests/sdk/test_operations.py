@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import itertools
 import json
+import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Any
 
 import pytest
@@ -203,6 +205,33 @@ def test_an_answer_that_is_too_large_is_a_failure_of_the_component_that_gives_it
     assert room.ecology.until(lambda: any(isinstance(event, ComponentLost) for event in room.run.events))
 
 
+def test_an_answer_may_come_later_from_any_thread() -> None:
+    promises: list[Future[Any]] = []
+
+    def later(request: Signal) -> Any:
+        promises.append(Future())
+        return promises[-1]
+
+    room = Darkroom(Camera(reply=later))
+    room.album.ask()
+    room.album.ask()
+    room.ecology.advance(0.1)
+    assert room.album.answers == []
+    threading.Thread(target=promises[1].set_result, args=({"by": "a thread"},)).start()
+    promises[1].result(PATIENCE)
+    assert room.ecology.until(lambda: len(room.album.answers) == 1, 5.0)
+    promises[0].set_exception(Refused("the film is used up"))
+    assert room.ecology.until(lambda: len(room.album.answers) == 2, 5.0)
+    assert room.album.answers[0]["by"] == "a thread"
+    assert room.album.answers[1].detail == "the film is used up"
+    room.album.ask()
+    room.ecology.advance(0.1)
+    promises[2].set_exception(KeyError("lens"))
+    assert room.ecology.until(lambda: len(room.album.answers) == 3, 5.0)
+    assert room.album.answers[2].detail == "camera broke: KeyError: 'lens'"
+    assert room.ecology.until(lambda: any(isinstance(event, ComponentLost) for event in room.run.events))
+
+
 # A component by itself, with peers that do what no component of this library would.
 
 ALBUM_PROFILE = Profile(ALBUM, ports=Ports((needed_operation("photo", None, IMAGE),)))
@@ -322,6 +351,18 @@ def test_only_who_is_connected_is_answered() -> None:
     refused = served.ask(request_of(IRI("urn:c:stranger")))
     assert refused.samples == ()
     assert refused.errors == ("stranger is not connected to the operation 'takePhoto' of camera",)
+
+
+def test_an_answer_that_was_promised_is_cancelled_when_the_component_is_stopped() -> None:
+    promise: Future[Any] = Future()
+    served = Served(Camera(reply=lambda request: promise))
+    replies: list[Replies] = []
+    served.stage.caller.ask(KEYS.operation(CAMERA, "takePhoto"), request_of(ALBUM), 5.0, replies.append)
+    served.stage.let_pass(0.1)
+    served.stage.call(release())
+    assert served.stage.network.run(lambda: bool(replies), 5.0)
+    assert promise.cancelled()
+    assert replies[0].errors == ("camera was stopped before it answered",)
 
 
 def test_a_component_that_is_released_is_connected_to_nobody() -> None:
