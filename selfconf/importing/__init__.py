@@ -7,9 +7,10 @@ each file and its `FileState`, an `Omission` for what is not in them, and a `Ren
 For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `document_at` makes one of what
 a URL has answered, asked for what is `ACCEPTED`, within `FETCH_SECONDS` and up to `LARGEST_SOURCE` bytes.
 `described_things` reads each `DescribedThing` of them and notes in an `ImportLedger` what it leaves out. An
-`ImportedComponent` with its `ImportedPort`s is a component; as an `ImportedDocument`, `described_text` writes it as
-Turtle, in which a `NestedNode` has no name and a `TermList` is a list. `NodeReader` makes a component of a ROS 2 node's
-`NodeInterface`s, each of an `InterfaceKind`; `ROS2` are the terms for them. `slug` makes a name of a text.
+`ImportedComponent` with its `ImportedPort`s and `ImportedOperation`s is a component; as an `ImportedDocument`,
+`described_text` writes it as Turtle, in which a `NestedNode` has no name and a `TermList` is a list. `NodeReader` makes
+a component of a ROS 2 node's `NodeInterface`s, each of an `InterfaceKind`; `ROS2` are the terms for them. `slug` makes
+a name of a text.
 """
 
 from selfconf.importing.conversion import IMPORT_FORMATS, ImportedFile, ImportReport, import_descriptions
@@ -17,6 +18,7 @@ from selfconf.importing.folder import FileState
 from selfconf.importing.imported import (
     ImportedComponent,
     ImportedDocument,
+    ImportedOperation,
     ImportedPort,
     NestedNode,
     Omission,
@@ -43,6 +45,7 @@ __all__ = [
     "ImportedComponent",
     "ImportedDocument",
     "ImportedFile",
+    "ImportedOperation",
     "ImportedPort",
     "InterfaceKind",
     "NestedNode",

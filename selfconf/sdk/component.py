@@ -113,9 +113,10 @@ class Component:
     def called(self, operation: str, request: Signal) -> Any:
         """An operation has been called by a component that may do so; what is returned is the answer.
 
-        Raise Refused to say why there is none. An answer is what JSON has, bytes, or an array, of 1 MiB at most. Where it
-        takes its time, return a `concurrent.futures.Future`, so that nothing else waits: its result is the answer, and
-        a Refused that it raises the reason why there is none. It is cancelled when the component is stopped.
+        Raise Refused to say why there is none. An answer is what JSON has, bytes, or an array, of 1 MiB at most. For
+        one that takes its time return a `concurrent.futures.Future`, so that nothing else waits: its result is the
+        answer, and a Refused that it raises the reason why there is none. It is cancelled when the component is
+        stopped.
         """
         raise Refused(f"{operation!r} is advertised, and not written yet")
 

@@ -32,6 +32,8 @@ class ThingServer:
         """What is answered as JSON to GET, by path; a PUT or POST changes it."""
         self.answers: dict[str, Callable[[BaseHTTPRequestHandler], None]] = {}
         """What answers to GET in another way, by path."""
+        self.posts: dict[str, Callable[[BaseHTTPRequestHandler], None]] = {}
+        """What answers to POST in another way, by path."""
         self.released = threading.Event()
         """Set at the end; what an answer that takes its time waits for."""
         self._open: set[socket.socket] = set()
@@ -67,7 +69,10 @@ class ThingServer:
                 owner._note(self, body)
                 if self.command == "PUT":
                     owner.values[self.path] = json.loads(body)
-                reply(self, b"", 204)
+                if self.command == "POST" and self.path in owner.posts:
+                    owner.posts[self.path](self)
+                else:
+                    reply(self, b"", 204)
 
             do_POST = do_PUT
 

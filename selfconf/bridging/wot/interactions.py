@@ -1,13 +1,13 @@
 """What a bridge does with each affordance of a thing, and the component that the thing therefore is.
 
 A property that can be read is an output: followed where a form offers that, else read at the rate of the bridge, which
-the output then promises. An event is an output. A property that can be written is an input, and so is an action: each
-signal calls it. An affordance without a form that can be used is not advertised. What the thing says of its operations
-is left out, because nothing can call them through a bridge yet.
+the output then promises. An event is an output. A property that can be written is an input. An action is an operation,
+and an input too, each signal of which calls it: so what issues signals alone, such as another thing, can command it. An
+affordance without a form that can be used is not advertised.
 
-*Values.* A signal is an object with the fields of its type. Where a type has one required field, and the value of a
-thing is no object, such as `true` for `rob:Switch`, the value becomes that field, and on the way back the field the
-value.
+*Values.* A signal, a request or a response is an object with the fields of its type. Where a type has one required
+field, and the value of a thing is no object, such as `true` for `rob:Switch`, the value becomes that field, and on the
+way back the field the value.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 
 from selfconf import files, library
 from selfconf.bridging.wot.forms import FOLLOWED, ThingForm, ThingForms
-from selfconf.importing import DescribedThing, ImportedComponent, ImportedPort, NestedNode
+from selfconf.importing import DescribedThing, ImportedComponent, ImportedOperation, ImportedPort, NestedNode
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, UNIT, XSD
@@ -55,12 +55,29 @@ class ThingInput:
 
 
 @dataclass(frozen=True, slots=True)
+class ThingOperation:
+    """How an operation is called: by the form of an action."""
+
+    name: str
+    form: ThingForm
+    request_field: str | None
+    """The field of a request that is sent alone."""
+    response_field: str | None
+    """The field of a response that a plain answer becomes."""
+    empty: bool
+    """Whether the action takes nothing, whatever a request says."""
+    answers: bool
+    """Whether the action answers something; else what comes back is not looked at."""
+
+
+@dataclass(frozen=True, slots=True)
 class ThingInteractions:
     """A thing as the component that it is on this side, with what its ports stand for."""
 
     component: ImportedComponent
     outputs: tuple[ThingOutput, ...]
     inputs: tuple[ThingInput, ...]
+    operations: tuple[ThingOperation, ...]
     probe: ThingForm | None
     """What is read, or only reached, to see whether the thing is there."""
     problems: tuple[str, ...] = field(default=())
@@ -79,12 +96,14 @@ def interactions(thing: DescribedThing, forms: ThingForms, rate: float) -> Thing
     outputs = {port: output for port, output in fed.items() if output is not None}
     written = {port: _write(port, affordances, forms, fields) for port in component.inputs}
     inputs = {port: taken for port, taken in written.items() if taken is not None}
-    inputs |= _calls(component, affordances, forms, fields, {port.name for port in inputs})
+    actions = {operation: _action(operation, affordances, forms, fields) for operation in component.operations}
+    operations = {operation: action for operation, action in actions.items() if action is not None}
+    inputs |= _commands(operations, {port.name for port in inputs})
     bridged = replace(
         component,
         outputs=tuple(_promised(port, rate) if output.polled else port for port, output in outputs.items()),
         inputs=tuple(inputs),
-        operations=(),
+        operations=tuple(operations),
     )
     probes = [
         *(output.read for output in outputs.values()),
@@ -92,7 +111,14 @@ def interactions(thing: DescribedThing, forms: ThingForms, rate: float) -> Thing
         *(output.follow for output in outputs.values()),
     ]
     probe = next((form for form in probes if form is not None), None)
-    return ThingInteractions(bridged, tuple(outputs.values()), tuple(inputs.values()), probe, tuple(forms.problems))
+    return ThingInteractions(
+        bridged,
+        tuple(outputs.values()),
+        tuple(inputs.values()),
+        tuple(operations.values()),
+        probe,
+        tuple(forms.problems),
+    )
 
 
 class _Affordances:
@@ -135,25 +161,29 @@ def _write(
     return ThingInput(port.name, form, False, _plain_field(affordance, port.types, fields))
 
 
-def _calls(
-    component: ImportedComponent,
-    affordances: _Affordances,
-    forms: ThingForms,
-    fields: Mapping[IRI, SignalFields],
-    taken: set[str],
+def _action(
+    operation: ImportedOperation, affordances: _Affordances, forms: ThingForms, fields: Mapping[IRI, SignalFields]
+) -> ThingOperation | None:
+    affordance = affordances.find("actions", operation.name)
+    form = forms.find(affordance, "invokeaction")
+    if form is None:
+        return None
+    asked, answered = (
+        _plain_field(_schema(affordance, member), () if kind is None else (kind,), fields)
+        for member, kind in (("input", operation.request), ("output", operation.response))
+    )
+    return ThingOperation(operation.name, form, asked, answered, "input" not in affordance, "output" in affordance)
+
+
+def _commands(
+    operations: Mapping[ImportedOperation, ThingOperation], taken: set[str]
 ) -> dict[ImportedPort, ThingInput]:
     """The actions as inputs; one with the name of a property that can be written too is called `call NAME`."""
     found = {}
-    for operation in component.operations:
-        affordance = affordances.find("actions", operation.name)
-        form = forms.find(affordance, "invokeaction")
-        if form is None:
-            continue
+    for operation, action in operations.items():
         name = f"call {operation.name}" if operation.name in taken else operation.name
-        types = () if operation.request is None else (operation.request,)
-        one = _plain_field(_schema(affordance, "input"), types, fields)
-        port = ImportedPort(name, types, optional=True)
-        found[port] = ThingInput(name, form, True, one, empty="input" not in affordance)
+        port = ImportedPort(name, () if operation.request is None else (operation.request,), optional=True)
+        found[port] = ThingInput(name, action.form, True, action.request_field, action.empty)
     return found
 
 
@@ -182,7 +212,8 @@ def _plain_field(schema: Mapping[str, Any], types: tuple[IRI, ...], fields: Mapp
 def _fields(component: ImportedComponent) -> Mapping[IRI, SignalFields]:
     """The fields of the signal types of a thing, as far as the ontologies of selfconf know them."""
     types = {kind for port in (*component.outputs, *component.inputs) for kind in port.types}
-    types |= {operation.request for operation in component.operations if operation.request is not None}
+    called = (kind for each in component.operations for kind in (each.request, each.response))
+    types |= {kind for kind in called if kind is not None}
     return _known_fields(frozenset(types)) if types else {}
 
 

@@ -39,6 +39,10 @@ class ThingError(Exception):
     """A thing has not answered as its description says; the text is a sentence."""
 
 
+class ThingRefusal(ThingError):
+    """A thing has answered that it does not, or cannot, do what it was asked: by a status of HTTP from 400 on."""
+
+
 class ThingAnswer(NamedTuple):
     """A value with the media type of what carried it; that is empty for JSON."""
 
@@ -74,12 +78,17 @@ class ThingClient:
             return _value(form, answer, await self._body(form, answer))
 
     async def send(self, form: ThingForm, value: Any, media: str = "", action: bool = False) -> None:
-        """Write a value, or call an action with it; None is sent as nothing. Raises ThingError."""
-        body = _encoded(form, value, media)
-        headers = {} if body is None else {"Content-Type": media or form.media}
-        seconds = self._limits.action if action else self._limits.answer
-        async with self._asked(form, seconds, body, headers) as answer:
+        """Write a value, or call an action with it, whatever is answered; None is sent as nothing. Raises ThingError.
+
+        `media` is the media type of bytes, by default that of the form.
+        """
+        async with self._sent(form, value, media, self._limits.action if action else self._limits.answer) as answer:
             await self._body(form, answer)
+
+    async def call(self, form: ThingForm, value: Any, media: str = "") -> ThingAnswer:
+        """What a thing answers to an action that is called with a value as by `send`. Raises ThingError."""
+        async with self._sent(form, value, media, self._limits.action) as answer:
+            return _value(form, answer, await self._body(form, answer))
 
     async def wait(self, form: ThingForm) -> ThingAnswer | None:
         """The next value of a long poll, however long that takes; None if the thing has let go of it for now."""
@@ -117,6 +126,16 @@ class ThingClient:
             raise ThingError(f"{url.origin()} does not answer: {_reason(error)}") from None
 
     @asynccontextmanager
+    async def _sent(
+        self, form: ThingForm, value: Any, media: str, seconds: float
+    ) -> AsyncIterator[aiohttp.ClientResponse]:
+        """A request that carries a value, and was answered without an error. Raises ThingError."""
+        body = _encoded(form, value, media)
+        headers = {} if body is None else {"Content-Type": media or form.media}
+        async with self._asked(form, seconds, body, headers) as answer:
+            yield answer
+
+    @asynccontextmanager
     async def _asked(
         self, form: ThingForm, seconds: float | None, body: bytes | None = None, more: dict[str, str] | None = None
     ) -> AsyncIterator[aiohttp.ClientResponse]:
@@ -141,7 +160,7 @@ class ThingClient:
         if where is not None and 300 <= answer.status < 400:
             raise ThingError(f"{form} answers {answer.status}, go to {where[:120]!r}; no redirect is followed")
         if answer.status >= 300:
-            raise ThingError(f"{form} answers {answer.status}")
+            raise (ThingRefusal if answer.status >= 400 else ThingError)(f"{form} answers {answer.status}")
         if answer.headers.get("Content-Encoding", "identity") != "identity":
             raise ThingError(f"{form} answers in a compressed form, though it was asked not to")
         if (answer.content_length or 0) > self._limits.size:

@@ -1,7 +1,8 @@
 """The component that stands for a thing: it reads, follows, writes and calls while it is active.
 
 The code of the component itself only hands over: requests are made on the event loop of the world, so that a thing that
-takes its time holds up nobody. A request that goes wrong is FAIL, with its sentence as the reason.
+takes its time holds up nobody. A request that goes wrong is FAIL, with its sentence as the reason. A call that the
+thing answers with an error of HTTP is refused, and no more: the thing is there, and does what its description says.
 """
 
 from __future__ import annotations
@@ -9,12 +10,13 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
+from concurrent.futures import Future
 from typing import Any
 
-from selfconf.bridging.wot.interactions import ThingInput, ThingInteractions, ThingOutput
-from selfconf.bridging.wot.thing_client import ThingAnswer, ThingClient, ThingError
+from selfconf.bridging.wot.interactions import ThingInput, ThingInteractions, ThingOperation, ThingOutput
+from selfconf.bridging.wot.thing_client import ThingAnswer, ThingClient, ThingError, ThingRefusal
 from selfconf.errors import ProgrammerError
-from selfconf.sdk import Component, Signal
+from selfconf.sdk import Component, Refused, Signal
 
 log = logging.getLogger(__name__)
 
@@ -62,6 +64,11 @@ class ThingComponent(Component):
         if queue is not None:
             self._loop.call_soon_threadsafe(self._append, port, queue, signal)
 
+    def called(self, operation: str, request: Signal) -> Future[Any]:
+        """Have an action called; the answer comes from the loop."""
+        called = next(each for each in self._thing.operations if each.name == operation)
+        return asyncio.run_coroutine_threadsafe(self._call(called, request), self._loop)
+
     # On the loop.
 
     def _begin(self, waiting: dict[str, asyncio.Queue[Signal]]) -> None:
@@ -89,8 +96,11 @@ class ThingComponent(Component):
         try:
             await work
         except (ThingError, ProgrammerError) as error:  # the latter for a value that no signal can carry
-            self.fail(str(error))
-            self._lost(str(error))
+            self._lose(error)
+
+    def _lose(self, error: Exception) -> None:
+        self.fail(str(error))
+        self._lost(str(error))
 
     async def _feed(self, output: ThingOutput) -> None:
         """Issue what the thing says on an output, for as long as this task runs."""
@@ -122,16 +132,32 @@ class ThingComponent(Component):
             await asyncio.sleep(max(0.0, began + pause - self._loop.time()))
 
     def _issue(self, output: ThingOutput, answer: ThingAnswer) -> None:
-        value = answer.value
-        if output.field is not None and not answer.media and not isinstance(value, dict):
-            value = {output.field: value}
-        self.emit(output.name, value, media=answer.media)
+        self.emit(output.name, _wrapped(answer, output.field), media=answer.media)
 
     async def _send(self, taken: ThingInput, queue: asyncio.Queue[Signal]) -> None:
         while True:
             signal = await queue.get()
             value = None if taken.empty else _unwrapped(signal.value, taken.field)
             await self._client.send(taken.form, value, signal.media, taken.action)
+
+    async def _call(self, called: ThingOperation, request: Signal) -> Any:
+        """What an action answers. Raises Refused."""
+        value = None if called.empty else _unwrapped(request.value, called.request_field)
+        try:
+            if called.answers:
+                return _wrapped(await self._client.call(called.form, value), called.response_field)
+            await self._client.send(called.form, value, action=True)
+        except ThingError as error:
+            if not isinstance(error, ThingRefusal):
+                self._lose(error)
+            raise Refused(str(error)) from None
+        return None
+
+
+def _wrapped(answer: ThingAnswer, field: str | None) -> Any:
+    """What a thing says as an object with a field, where it is no object and there is one that it stands for."""
+    plain = field is not None and not answer.media and not isinstance(answer.value, dict)
+    return {field: answer.value} if plain else answer.value
 
 
 def _unwrapped(value: Any, field: str | None) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -69,12 +69,12 @@ class Button(Component):
     """What commands a thing."""
 
 
-def active(found: Bridged, **inputs: tuple[Wire, ...]) -> None:
-    """Activate the lamp, with its inputs fed."""
+def active(found: Bridged, callers: Mapping[str, tuple[IRI, ...]] | None = None, **inputs: tuple[Wire, ...]) -> None:
+    """Activate the lamp, with its inputs fed; `callers` are who may call its operations."""
     assert until(lambda: found.lives("lamp")), found.complaints
     held = found.stage.call("urn:thing:lamp", "reserve", Reserve(1, found.stage.supervisor, "task~1"))
     assert until(lambda: held)
-    answers = found.stage.apply("urn:thing:lamp", inputs=inputs)
+    answers = found.stage.apply("urn:thing:lamp", inputs=inputs, callers=callers or {})
     assert until(lambda: answers)
     assert answers[0].active, answers
 

@@ -7,7 +7,7 @@ from typing import Any
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
 from selfconf.importing import ImportedDocument, described_text
 from selfconf.rdf.advertisements import read_advertisements
-from tests.bridging.thing_server import CONTEXT
+from tests.bridging.thing_server import CONTEXT, ROB
 from tests.bridging.wot.things import described, forms_of
 
 SWITCH = {"@type": "rob:Switch", "type": "boolean"}
@@ -57,11 +57,15 @@ def test_a_plain_value_is_the_one_field_of_its_type() -> None:
     assert {each.name: each.field for each in thing.inputs} == {"on": "on", "whole": None, "pose": None, "other": None}
 
 
-def test_an_action_is_an_input_that_calls_it() -> None:
+def test_an_action_is_an_operation_and_an_input_that_calls_it() -> None:
     thing = found(
         properties={"fade": {"type": "number", "forms": [{"href": "a"}]}},
         actions={
-            "fade": {"@type": "rob:Switch", "input": {"type": "boolean"}, "forms": [{"href": "b"}]},
+            "fade": {
+                "input": {"@type": "rob:Switch", "type": "boolean"},
+                "output": {"@type": "rob:Temperature", "type": "number"},
+                "forms": [{"href": "b"}],
+            },
             "blink": {"forms": [{"href": "c"}]},
         },
     )
@@ -72,7 +76,13 @@ def test_an_action_is_an_input_that_calls_it() -> None:
     ]
     assert [port.name for port in thing.component.inputs] == ["fade", "call fade", "blink"]
     assert all(port.optional for port in thing.component.inputs)
-    assert thing.component.operations == ()
+    assert [(each.name, each.request, each.response) for each in thing.component.operations] == [
+        ("fade", f"{ROB}Switch", f"{ROB}Temperature"),
+        ("blink", None, None),
+    ]
+    fade, blink = thing.operations
+    assert (fade.request_field, fade.response_field, fade.empty, fade.answers) == ("on", "temperature", False, True)
+    assert (blink.request_field, blink.response_field, blink.empty, blink.answers) == (None, None, True, False)
 
 
 def test_what_has_no_form_that_can_be_used_is_not_advertised_and_named() -> None:
@@ -83,7 +93,7 @@ def test_what_has_no_form_that_can_be_used_is_not_advertised_and_named() -> None
         },
         actions={"blink": {"forms": [{"href": "mqtt://192.0.2.7/x"}]}},
     )
-    assert thing.component.inputs == thing.component.outputs == ()
+    assert thing.component.inputs == thing.component.outputs == thing.component.operations == ()
     assert thing.probe is None
     assert thing.problems == (
         "the form 'coap://192.0.2.7/on' leads to no http or https URL",

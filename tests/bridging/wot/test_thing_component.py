@@ -6,12 +6,14 @@ import json
 from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler
 from pathlib import Path
+from typing import Any
 
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Wire
-from tests.bridging.thing_server import ThingServer, reply
+from selfconf.protocol.messages import Reserve, Wire
+from selfconf.sdk import Component, Response
+from tests.bridging.thing_server import ROB, ThingServer, reply
 from tests.bridging.wot.bridged import active, bridging, button, written
-from tests.sdk.living import LivingStage, until
+from tests.sdk.living import PATIENCE, LivingStage, until
 
 Start = Callable[[], ThingServer]
 SWITCH = {"@type": "rob:Switch", "type": "boolean"}
@@ -82,6 +84,56 @@ def test_a_signal_writes_a_property_and_calls_an_action(
         assert until(lambda: server.sent("PUT") and server.sent("POST"))
     assert server.values["/on"] is True
     assert server.sent("POST") == [b""]
+
+
+class Caller(Component):
+    """Calls the action of the lamp."""
+
+    def __init__(self) -> None:
+        self.answers: list[Response] = []
+
+    def ask(self, request: Any) -> Response:
+        """What comes of a call."""
+        known = len(self.answers)
+        self.call("fade", request, answered=self.answers.append, seconds=PATIENCE)
+        assert until(lambda: len(self.answers) > known)
+        return self.answers[-1]
+
+
+FADE = {
+    "input": {"@type": "rob:Switch", "type": "boolean"},
+    "output": {"@type": "rob:Temperature", "type": "number"},
+    "forms": [{"href": "fade"}],
+}
+
+
+def test_an_action_is_called_as_an_operation_and_each_way_to_fail_is_a_sentence(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server, name = thing_server(), "fade()"
+    server.posts["/fade"] = lambda handler: reply(handler, b"21.5")
+    switch, heat = f"sc:request <{ROB}Switch>", f"sc:response <{ROB}Temperature>"
+    kind = living.advertised(
+        Caller, f'<urn:c:caller> a sc:Component, :Caller ; sc:needsOperation [ sc:name "fade" ; {switch} ; {heat} ] .'
+    )
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe(actions={"fade": FADE}))) as found:
+        server.values["/on"] = False
+        active(found, callers={name: (IRI("urn:c:caller"),)})
+        caller = living.component(kind())
+        held = living.call("urn:c:caller", "reserve", Reserve(1, living.supervisor, "task~1"))
+        assert until(lambda: held)
+        answers = living.apply("urn:c:caller", inputs={name: (Wire(IRI("urn:thing:lamp"), name),)})
+        assert until(lambda: answers)
+        assert answers[0].active, answers
+        assert caller.ask({"on": True}).value == {"temperature": 21.5}
+        assert server.sent("POST") == [b"true"]
+        server.posts["/fade"] = lambda handler: reply(handler, b"too hot", 503)
+        assert caller.ask({"on": True}).detail == f"POST {server.url}/fade answers 503"
+        assert found.causes() == []
+        server.posts["/fade"] = lambda handler: reply(handler, b"<html>", media="text/html")
+        wrong = f"POST {server.url}/fade answers text/html, where application/json is expected"
+        assert caller.ask({"on": True}).detail == wrong
+        assert until(lambda: found.causes() == [wrong])
 
 
 def test_a_flood_of_signals_costs_a_slow_thing_the_newest_alone(
