@@ -1,5 +1,9 @@
 """A living node as a component: its topics as ports, with the quality of service that they have.
 
+A topic whose messages say what a kind of signals says (`signal_translations`) has that type too: a publisher is a
+second output, `TOPIC as KIND`, and the input of a subscription takes either. What was translated is not translated
+back: such an input accepts no second output of a node, for from node to node the messages themselves go.
+
 An output promises the rate that its deadline says. An input that is to be reliable, or is to receive what was published
 before, accepts no output that says it is otherwise (`sc:accepts`), as ROS 2 would not connect them; what comes from no
 node says nothing about that, and is accepted. What every node has, its log and its parameters, is left out.
@@ -7,9 +11,10 @@ node says nothing about that, and is accepted. What every node has, its log and 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+from selfconf.bridging.ros2.signal_translations import SignalTranslation, translation_of
 from selfconf.bridging.ros2.tokens import PUBLISHER, RosEndpoint, RosQuality, RosToken
 from selfconf.importing import (
     ROS2,
@@ -33,6 +38,11 @@ OF_EVERY_NODE = frozenset(("/rosout", "/parameter_events"))
 BRIDGE_NODE = "selfconf_bridge"
 """The name of the node as which a bridge is seen in ROS 2."""
 TopicPorts = dict[str, RosEndpoint]
+
+
+def translated_name(name: str, translation: SignalTranslation) -> str:
+    """The name of the second output of a publisher."""
+    return f"{name} as {translation.name}"
 
 
 def node_iri(token: RosToken) -> IRI:
@@ -69,8 +79,8 @@ def described_node(token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> 
     found = reader.component(node_iri(token), tuple(interfaces), facts)
     return replace(
         found,
-        outputs=tuple(_promised(port, outputs[port.name].quality) for port in found.outputs),
-        inputs=tuple(_demanding(port, inputs[port.name].quality) for port in found.inputs),
+        outputs=tuple(port for each in found.outputs for port in _issuing(each, outputs[each.name])),
+        inputs=tuple(_demanding(port, inputs[port.name]) for port in found.inputs),
     )
 
 
@@ -83,6 +93,16 @@ def _qualities(quality: RosQuality) -> tuple[tuple[str, str], ...]:
     )
 
 
+def _issuing(port: ImportedPort, endpoint: RosEndpoint) -> Iterator[ImportedPort]:
+    """The output of a publisher, and the second one where its messages are translated."""
+    yield _promised(port, endpoint.quality)
+    translation = translation_of(endpoint.type.name)
+    if translation is not None:
+        source = (ROS2.translatedFrom, Literal(port.name))
+        second = ImportedPort(translated_name(port.name, translation), (translation.signal,), properties=(source,))
+        yield _promised(second, endpoint.quality)
+
+
 def _promised(port: ImportedPort, quality: RosQuality) -> ImportedPort:
     if quality.period is None:
         return port
@@ -92,7 +112,9 @@ def _promised(port: ImportedPort, quality: RosQuality) -> ImportedPort:
     return replace(port, properties=(*port.properties, (SC.rate, rate)))
 
 
-def _demanding(port: ImportedPort, quality: RosQuality) -> ImportedPort:
+def _demanding(port: ImportedPort, endpoint: RosEndpoint) -> ImportedPort:
+    """The input of a subscription, with the kind of signal of which its messages are made, and what it accepts."""
+    quality, translation = endpoint.quality, translation_of(endpoint.type.name)
     wanted = [
         NestedNode(((SH.path, (term,)), (SH["in"], (TermList((Literal(value),)),))))
         for term, value, is_wanted in (
@@ -101,6 +123,10 @@ def _demanding(port: ImportedPort, quality: RosQuality) -> ImportedPort:
         )
         if is_wanted
     ]
+    if translation is not None and translation.write is not None:
+        port = replace(port, types=(*port.types, translation.signal))
+        none = Literal("0", XSD.integer)
+        wanted.append(NestedNode(((SH.path, (ROS2.translatedFrom,)), (SH.maxCount, (none,)))))
     if not wanted:
         return port
     return replace(port, properties=(*port.properties, (SC.accepts, NestedNode(((SH.property, tuple(wanted)),)))))

@@ -2,8 +2,9 @@
 
 What the node publishes is issued as CDR, with its type in the media type; what arrives on an input is published on the
 topic of it, by the bridge as a node of its own. A message goes to a topic only if its type has the same hash. An object
-is written as a message first. Where the message came from the very topic that it would go to, ROS 2 has brought it
-there already, and it is not brought twice.
+is written as a message first; and what is published is issued as a signal too, where `signal_translations` has a kind
+for it. Where a message came from the very topic that it would go to, ROS 2 has brought it there already, and it is not
+brought twice.
 """
 
 from __future__ import annotations
@@ -18,11 +19,13 @@ from typing import Any, NamedTuple
 
 from selfconf import ros_messages
 from selfconf.bridging.ros2.attachments import RosAttachment
-from selfconf.bridging.ros2.described_nodes import BRIDGE_NODE, TopicPorts
+from selfconf.bridging.ros2.described_nodes import BRIDGE_NODE, TopicPorts, translated_name
+from selfconf.bridging.ros2.signal_translations import translation_of
 from selfconf.bridging.ros2.tokens import PUBLISHER, RosEndpoint, RosNodeId, RosToken
 from selfconf.bridging.ros2.topic_sources import TopicSources
 from selfconf.bus.port import Bus, Publisher, Replies, Sample, Undo, Urgency
 from selfconf.errors import PeerError
+from selfconf.ros_messages import MessageType
 from selfconf.sdk import Component, Signal
 
 MOST_MESSAGES = 5000
@@ -155,9 +158,7 @@ class NodeComponent(Component):
     def _payload(self, endpoint: RosEndpoint, signal: Signal) -> bytes | None:
         """A signal as a message; None if the message has come over this topic. Raises MessageError."""
         if not isinstance(signal.value, bytes):
-            if not ros_messages.is_known(endpoint.type):
-                raise ros_messages.MessageError(f"is an object, and the fields of {endpoint.type.name} are not known")
-            return ros_messages.message(signal.value, endpoint.type)
+            return written(signal, endpoint.type)
         said = ros_messages.read_media(signal.media)
         if said is None:
             raise ros_messages.MessageError("is neither a message nor an object")
@@ -200,6 +201,7 @@ class RelayedOutput:
         self._media = endpoint.type.media(place_of(domain.number, endpoint))
         self._sources = domain.sources(self.key)
         self._checked = ros_messages.is_known(endpoint.type)
+        self._translation = translation_of(endpoint.type.name)
         self._second, self._in_second = 0, 0
 
     def ask_for_history(self) -> None:
@@ -225,17 +227,23 @@ class RelayedOutput:
                 f"{self._endpoint.topic}: {len(self._sources)} nodes publish there, and which message is whose"
                 " cannot be said; such messages are not relayed"
             )
-        elif node == self._token.node:
+        elif node == self._token.identity:
             self._issue(sample.payload, attachment)
 
     def _issue(self, payload: bytes, attachment: RosAttachment) -> None:
+        moment, signal = attachment.nanoseconds / 1e9, None
         if self._checked:
             try:
-                ros_messages.check_message(payload, self._endpoint.type)
+                if self._translation is None:
+                    ros_messages.check_message(payload, self._endpoint.type)
+                else:
+                    signal = self._translation.read(ros_messages.message_fields(payload, self._endpoint.type))
             except ros_messages.MessageError as error:
                 self._component.fail(f"what {self._token.full_name} publishes on {self._endpoint.topic} {error}")
                 return
-        self._component.emit(self._name, payload, attachment.nanoseconds / 1e9, self._media)
+        self._component.emit(self._name, payload, moment, self._media)
+        if self._translation is not None and signal is not None:
+            self._component.emit(translated_name(self._name, self._translation), signal, moment)
 
     def _is_flood(self) -> bool:
         """Whether the topic has had as many messages in this second as are relayed."""
@@ -248,6 +256,16 @@ class RelayedOutput:
                 f"{self._endpoint.topic}: more than {MOST_MESSAGES} messages a second; the rest is dropped"
             )
         return self._in_second > MOST_MESSAGES
+
+
+def written(signal: Signal, kind: MessageType) -> bytes:
+    """An object as a message: it has the fields of that, or of a signal that is translated. Raises MessageError."""
+    if not ros_messages.is_known(kind):
+        raise ros_messages.MessageError(f"is an object, and the fields of {kind.name} are not known")
+    translation, fields = translation_of(kind.name), signal.value
+    if translation is not None and translation.write is not None and translation.is_signal(fields):
+        fields = translation.write(fields, signal.time)
+    return ros_messages.message(fields, kind)
 
 
 def place_of(domain: int, endpoint: RosEndpoint) -> str:

@@ -16,7 +16,7 @@ from selfconf import ros_messages
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
 from selfconf.bridging.ros2.node_component import NodeComponent, RosDomain, bridge_token
-from selfconf.bridging.ros2.tokens import NODE, PUBLISHER, ROOT, RosEndpoint, RosNodeId, RosToken
+from selfconf.bridging.ros2.tokens import NODE, PUBLISHER, ROOT, NodeIdentity, RosEndpoint, RosToken
 from selfconf.bus.port import Bus, Undo
 from selfconf.errors import PeerError
 from selfconf.importing import ImportedDocument
@@ -55,8 +55,8 @@ class RosWorld:
     def __init__(self, connect: Callable[[], Bus], domain: int) -> None:
         """`connect` opens a node of the network of ROS 2; it may raise NetworkError."""
         self._connect, self._number = connect, domain
-        self._nodes: dict[RosNodeId, RosNode] = {}
-        self._by_name: dict[IRI, RosNodeId] = {}
+        self._nodes: dict[NodeIdentity, RosNode] = {}
+        self._by_name: dict[IRI, NodeIdentity] = {}
 
     def open(self, bridge: Bridge) -> None:
         """Begin to follow the tokens of the domain. Raises NetworkError."""
@@ -89,26 +89,26 @@ class RosWorld:
         if token.kind == PUBLISHER and token.endpoint is not None:
             sources, publisher = (
                 self._domain.sources(token.endpoint.key(self._number)),
-                (token.node, token.endpoint.entity),
+                (token.identity, token.endpoint.entity),
             )
             sources.add(publisher) if alive else sources.remove(publisher)
         if is_bridged(token):
             self._come(key, token) if alive else self._go(key, token)
 
     def _come(self, key: str, token: RosToken) -> None:
-        if token.node not in self._nodes and len(self._nodes) >= MOST_NODES:
+        if token.identity not in self._nodes and len(self._nodes) >= MOST_NODES:
             self._domain.tell(f"there are more than {MOST_NODES} nodes; a bridge stands for so many")
             return
-        node = self._nodes.setdefault(token.node, RosNode(token))
+        node = self._nodes.setdefault(token.identity, RosNode(token))
         node.tokens[key] = token
         self._settle(node, TOKENS_COMPLETE)
 
     def _go(self, key: str, token: RosToken) -> None:
-        node = self._nodes.get(token.node)
+        node = self._nodes.get(token.identity)
         if node is None:
             return
         node.tokens.pop(key, None)
-        if token.kind == NODE or not node.tokens:
+        if not node.tokens or (token.kind == NODE and all(one.kind != NODE for one in node.tokens.values())):
             name, domain = token.full_name, f"the domain {self._number} of ROS 2"
             lost = "the router of ROS 2 cannot be reached any more, so nothing is known of the node"
             self._end(node, f"the node {name} has left {domain}" if self._bus.link else f"{lost} {name}")
@@ -124,7 +124,7 @@ class RosWorld:
         endpoints, iri = node.endpoints, node_iri(node.token)
         if endpoints == node.advertised:
             return
-        if self._by_name.setdefault(iri, node.token.node) != node.token.node:
+        if self._by_name.setdefault(iri, node.token.identity) != node.token.identity:
             name = node.token.full_name
             self._domain.tell(f"two nodes are called {name}; the first one counts, as long as it is there")
             return
@@ -151,9 +151,9 @@ class RosWorld:
     def _end(self, node: RosNode, reason: str) -> None:
         """A node has gone: what it was held for has to know why, before it lives no more."""
         node.settle()
-        del self._nodes[node.token.node]
+        del self._nodes[node.token.identity]
         iri = node_iri(node.token)
-        if self._by_name.get(iri) != node.token.node:
+        if self._by_name.get(iri) != node.token.identity:
             return
         del self._by_name[iri]
         if node.code is not None and node.code.active:

@@ -79,6 +79,10 @@ class RosNodeId:
     number: int
 
 
+NodeIdentity = tuple[str, str]
+"""Which node it is: the session, and its name with namespace. A session may say the same node by several numbers."""
+
+
 @dataclass(frozen=True, slots=True)
 class RosEndpoint:
     """A topic that a node publishes, or is subscribed to."""
@@ -110,6 +114,11 @@ class RosToken:
     def full_name(self) -> str:
         """The name of the node with its namespace, such as `/front/lidar`."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    @property
+    def identity(self) -> NodeIdentity:
+        """Which node it is of."""
+        return self.node.session, self.full_name
 
     @classmethod
     def parse(cls, key: str) -> RosToken:

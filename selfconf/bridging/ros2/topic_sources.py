@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import threading
 
-from selfconf.bridging.ros2.tokens import RosNodeId
+from selfconf.bridging.ros2.tokens import NodeIdentity
 
-TopicPublisher = tuple[RosNodeId, int]
-"""A publisher: the node, and the number of the endpoint."""
+TopicPublisher = tuple[NodeIdentity, int]
+"""A publisher: the node, and the number of the endpoint in its session."""
 
 
 class TopicSources:
@@ -35,7 +35,7 @@ class TopicSources:
     def __len__(self) -> int:
         return len(self._identifiers)
 
-    def node(self, identifier: bytes) -> RosNodeId | None:
+    def node(self, identifier: bytes) -> NodeIdentity | None:
         """The node whose publisher has an identifier; None if that cannot be said."""
         with self._lock:
             unknown = []

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import selfconf
 from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
 from selfconf.bridging.ros2.tokens import RosEndpoint, RosNodeId, RosQuality, RosToken
 from selfconf.importing import ImportedDocument, described_text
 from selfconf.rdf.advertisements import read_advertisements
+from selfconf.rdf.vocabulary import ROB
 from selfconf.ros_messages import MessageType
 from tests.test_ros_messages import STRING_HASH
 
@@ -47,8 +51,9 @@ def test_a_node_is_a_component_that_can_be_advertised() -> None:
     text = described_text(ImportedDocument("", "", (component.described(),), {}))
     ((advertisement,), bad) = read_advertisements(text.encode(), "lidar.ttl", "file:///lidar.ttl")
     assert not bad
-    (scan,) = advertisement.profile.outputs
-    assert scan.rate == 10.0
+    scan, second = advertisement.profile.outputs
+    assert scan.rate == second.rate == 10.0
+    assert (second.name, [str(signal) for signal in second.signals]) == ("scan as Text", [f"{ROB.Text}"])
     assert [str(signal) for signal in scan.signals] == ["https://w3id.org/selfconf/ros2/std_msgs/msg/String"]
     assert {port.name: port.depth for port in advertisement.profile.inputs} == {"map": 42, "raw": 5}
     assert advertisement.profile.required == ()
@@ -56,6 +61,23 @@ def test_a_node_is_a_component_that_can_be_advertised() -> None:
     accepted = '[ sh:path ros2:durability ; sh:in ( "transient_local" ) ]'
     assert text.count(accepted) == 1
     assert text.count('[ sh:path ros2:reliability ; sh:in ( "reliable" ) ]') == 1
+    assert text.count("[ sh:path ros2:translatedFrom ; sh:maxCount 0 ]") == 2
+
+
+def test_what_was_translated_is_not_translated_back() -> None:
+    outputs, inputs = ports_of([endpoint(1, "MP", "/said"), endpoint(2, "MS", "/heard")])
+    nodes = [described_node(replace(LIDAR, name=name), outputs, inputs).described() for name in ("a", "b")]
+    home = selfconf.read(described_text(ImportedDocument("", "", tuple(nodes), {})))
+    task = selfconf.template(
+        """@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> .
+        @prefix ros2: <https://w3id.org/selfconf/ros2#> . @prefix : <urn:t:> .
+        :t a sc:Template ; sc:roles ( :from :to ) .
+        :from a sc:Role ; sh:class ros2:Node ; sc:feeds :to .
+        :to a sc:Role ; sh:class ros2:Node ."""
+    )
+    answer = selfconf.configure(task, home)
+    assert isinstance(answer, selfconf.Answer)
+    assert [(each.output, each.input) for each in answer.connections] == [("said", "heard")]
 
 
 def test_tools_and_bridges_are_no_components() -> None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from selfconf.bridging.ros2.tokens import RosNodeId
 from selfconf.bridging.ros2.topic_sources import TopicSources
 
-ONE, TWO = RosNodeId(0, "a", 0), RosNodeId(0, "b", 0)
+ONE, TWO = ("a", "/node"), ("b", "/node")
 
 
 def test_the_only_publisher_is_the_one() -> None:

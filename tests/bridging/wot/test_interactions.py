@@ -93,7 +93,8 @@ def test_what_has_no_form_that_can_be_used_is_not_advertised_and_named() -> None
         },
         actions={"blink": {"forms": [{"href": "mqtt://192.0.2.7/x"}]}},
     )
-    assert thing.component.inputs == thing.component.outputs == thing.component.operations == ()
+    assert thing.component.inputs == thing.component.outputs == ()
+    assert thing.component.operations == ()
     assert thing.probe is None
     assert thing.problems == (
         "the form 'coap://192.0.2.7/on' leads to no http or https URL",
