@@ -8,10 +8,9 @@ by which there are nodes without ROS 2 installed.
 from __future__ import annotations
 
 import secrets
-import socket
 from pathlib import Path
 
-from examples.players import Player, stage, until
+from examples.players import Player, free_port, stage, until
 
 HERE = Path(__file__).parent
 
@@ -46,14 +45,6 @@ def main() -> None:
 def heard(listener: Player, talker: str) -> bool:
     """Whether the listener has heard a talker."""
     return any(line.startswith(f"heard {talker} ") for line in listener.lines)
-
-
-def free_port() -> int:
-    """A port of this machine that nobody listens on."""
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        port: int = taken.getsockname()[1]
-        return port
 
 
 if __name__ == "__main__":

@@ -1,0 +1,44 @@
+"""The example of both bridges: a node that others have written, a Thing, and components of the SDK in one task."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = [pytest.mark.process, pytest.mark.slow]
+pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+pytest.importorskip("aiohttp", reason="the extra `wot` is not installed")
+pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk, whose node the example plays, is not installed")
+ROOT = Path(__file__).parent.parent
+
+
+def test_astrid_reaches_the_bedroom_though_her_tracker_sees_her_no_more(tmp_path: Path) -> None:
+    environment = {**os.environ, "SELFCONF_RUNTIME_DIR": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    played = subprocess.run(
+        [sys.executable, "-m", "examples.astrid"],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=240,
+    )
+    assert played.returncode == 0, played.stdout + played.stderr
+    told = [
+        "it is dark",
+        "the lamp is on",
+        "there is light",
+        "my position comes from tracker",
+        "my position comes from odometry",
+        "Astrid is in the bedroom",
+        "* that was all",
+    ]
+    lines = played.stdout.splitlines()
+    assert sorted(line for line in lines if line in told) == sorted(told)
+    assert [line for line in lines if line in told if line != "the lamp is on"] == [
+        line for line in told if line != "the lamp is on"
+    ]
+    assert any("silence" in line and "tracker" in line for line in lines)
