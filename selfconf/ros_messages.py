@@ -3,7 +3,8 @@
 A signal that is a message travels as CDR (XCDR1, as ROS 2 writes it) with the media type `application/cdr`, which says
 of which type it is, so that it goes from node to node as it is, and is read only where something else receives it.
 Which types there are is known by `rosbags`, the extra `ros2`, for the distributions jazzy, kilted and lyrical; a type
-is the one that is meant if its hash is (REP 2011).
+is the one that is meant if its hash is (REP 2011). So it is with services, of which `ros_services` knows some: what
+travels is a request or a response, and the hash is that of the service, which says that of both.
 """
 
 from __future__ import annotations
@@ -15,11 +16,17 @@ from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
+from selfconf import ros_services
+
 MEDIA = "application/cdr"
 HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 NAME = re.compile(r"[a-z][a-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
 _MEDIA = re.compile(rf'{re.escape(MEDIA)}; type="(?P<name>[^"]*)"; hash=(?P<hash>\w+)(?:; topic="(?P<topic>[^"]*)")?')
 _STORES = ("ROS2_JAZZY", "ROS2_KILTED", "ROS2_LYRICAL")
+_NO_FIELDS = frozenset(("__msgtype__", "structure_needs_at_least_one_member"))
+"""What the class of a message has besides its fields; the second stands in messages that have none."""
+_EVENT_INFO = "service_msgs/msg/ServiceEventInfo"
+"""What every service has in its hash, besides its parts."""
 _DTYPES = {"octet": "uint8", "byte": "uint8", "char": "uint8"}
 """The elements of arrays that NumPy calls otherwise."""
 
@@ -99,6 +106,23 @@ def message(fields: Mapping[str, Any], kind: MessageType) -> bytes:
         raise MessageError(f"is no {kind.name}: {error}") from None
 
 
+class ServiceParts(NamedTuple):
+    """The types of what a service is asked and of what it answers."""
+
+    request: MessageType
+    response: MessageType
+
+
+@lru_cache(maxsize=256)
+def service_parts(kind: MessageType) -> ServiceParts | None:
+    """The types of the parts of a service; None if it is not known."""
+    store = _store(kind)
+    if store is None or kind.name not in ros_services.SERVICES:
+        return None
+    names = (kind.name + ros_services.REQUEST, kind.name + ros_services.RESPONSE)
+    return ServiceParts(*(MessageType(name, store.hash_rihs01(name)) for name in names))
+
+
 def _read(payload: bytes, kind: MessageType) -> Any:
     try:
         return _store(kind).deserialize_cdr(payload, kind.name)
@@ -129,7 +153,32 @@ def _stores() -> tuple[Any, ...]:
         return ()
     from rosbags.typesys import Stores, get_typestore
 
-    return tuple(get_typestore(Stores[name]) for name in _STORES)
+    stores = tuple(get_typestore(Stores[name]) for name in _STORES)
+    for store in stores:
+        _add_services(store)
+    return stores
+
+
+def _add_services(store: Any) -> None:
+    """Make the services known to the types of a distribution: their parts, and what their hash is computed of."""
+    from rosbags.interfaces import Nodetype
+    from rosbags.typesys import get_types_from_msg
+
+    octet = (Nodetype.BASE, ("uint8", 0))
+    constants, fields = store.fielddefs[_EVENT_INFO]
+    # A `char` is an uint8 in ROS 2, and is hashed as one; rosbags takes it for the one of IDL.
+    fields = [(name, (Nodetype.ARRAY, (octet, 16)) if name == "client_gid" else kind) for name, kind in fields]
+    store.fielddefs[_EVENT_INFO] = constants, fields
+    found: dict[str, Any] = {}
+    for name in ros_services.SERVICES:
+        ends = (ros_services.REQUEST, ros_services.RESPONSE)
+        for end, text in zip(ends, ros_services.parts(name), strict=True):
+            (found[name + end],) = get_types_from_msg(text, "_/msg/_").values()
+        once = [(end[1:].lower(), (Nodetype.SEQUENCE, ((Nodetype.NAME, name + end), 1))) for end in ends]
+        found[name + ros_services.EVENT] = [], [("info", (Nodetype.NAME, _EVENT_INFO)), *once]
+        members = [(f"{end[1:].lower()}_message", (Nodetype.NAME, name + end)) for end in (*ends, ros_services.EVENT)]
+        found[name] = [], members
+    store.register(found)
 
 
 def usual_type(name: str) -> MessageType | None:
@@ -141,7 +190,7 @@ def usual_type(name: str) -> MessageType | None:
 def _plain(value: Any) -> Any:
     """A message as an object, with those that it holds."""
     if hasattr(value, "__msgtype__"):
-        return {name: _plain(getattr(value, name)) for name in value.__dataclass_fields__ if name != "__msgtype__"}
+        return {name: _plain(getattr(value, name)) for name in value.__dataclass_fields__ if name not in _NO_FIELDS}
     return [_plain(each) for each in value] if isinstance(value, list) else value
 
 

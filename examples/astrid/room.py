@@ -4,8 +4,8 @@
 
 It knows nothing of selfconf. The lamp describes itself at `/`, and shines when its action `shine` is called. The rest
 is no part of the Thing, but what lenses and wheels are subject to: `/picture` is what the camera on the ceiling would
-see, dark while the lamp does not shine; `/wheels` is how far the wheels have turned; what is posted to `/velocity` is what
-the motors do, for half a second at most.
+see, dark while the lamp does not shine; `/wheels` is how far the wheels have turned; what is posted to `/velocity` is
+what the motors do, for half a second at most.
 """
 
 from __future__ import annotations

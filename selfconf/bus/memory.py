@@ -350,17 +350,19 @@ class MemoryBus:
 
         return undone
 
-    def serve(self, key: str, answer: Callable[[_Request], None]) -> Callable[[], None]:
-        """Answer questions to a key."""
+    def serve(self, key: str, answer: Callable[[_Request], None], *, complete: bool = False) -> Callable[[], None]:
+        """Answer questions to a key; here everybody who does is asked."""
         return self._declare(self._queryables, (key, answer))
 
-    def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+    def ask(
+        self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None], attachment: bytes = b""
+    ) -> None:
         """Ask all queryables of a key; a question or a reply that is lost shows as a time-out."""
         question = _Question(self, done)
         for node in self.network.nodes:
             for served, answer in list(node._queryables.values()):
                 if self.network.reaches(self, node) and intersects(key, served):
-                    question.asked(node, key, payload, answer)
+                    question.asked(node, Sample(key, payload, attachment), answer)
         question.sent(seconds)
 
     def announce(self, key: str) -> Callable[[], None]:
@@ -534,9 +536,9 @@ class _Question:
         self._open = self._size = 0
         self._over = False
 
-    def asked(self, node: MemoryBus, key: str, payload: bytes, answer: Callable[[_Request], None]) -> None:
+    def asked(self, node: MemoryBus, said: Sample, answer: Callable[[_Request], None]) -> None:
         self._open += 1
-        request = _Request(self, node, key, payload)
+        request = _Request(self, node, said)
         self.bus.network.deliver(self.bus, node, lambda: answer(request), sure=False)
 
     def sent(self, seconds: float) -> None:
@@ -567,8 +569,9 @@ class _Question:
 class _Request:
     """A question as it arrived at a node."""
 
-    def __init__(self, question: _Question, node: MemoryBus, key: str, payload: bytes) -> None:
-        self._question, self._node, self.key, self.payload = question, node, key, payload
+    def __init__(self, question: _Question, node: MemoryBus, said: Sample) -> None:
+        self._question, self._node = question, node
+        self.key, self.payload, self.attachment = said
         self._finished = False
         self._lost = node.network.loses()
         """Whether the answer is lost: all of it, and its end, so that it shows as a time-out."""

@@ -78,6 +78,11 @@ class Request(Protocol):
         """What came with the question."""
         ...
 
+    @property
+    def attachment(self) -> bytes:
+        """What came beside that."""
+        ...
+
     def reply(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
         """One reply, on a concrete key of one's own."""
         ...
@@ -154,11 +159,16 @@ class Bus(Protocol):
         """
         ...
 
-    def serve(self, key: str, answer: Callable[[Request], None]) -> Undo:
-        """Answer questions to a key."""
+    def serve(self, key: str, answer: Callable[[Request], None], *, complete: bool = False) -> Undo:
+        """Answer questions to a key.
+
+        `complete` says that who answers has all there is below the key, which some others than this library ask for.
+        """
         ...
 
-    def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+    def ask(
+        self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None], attachment: bytes = b""
+    ) -> None:
         """Ask all queryables of a key; `done` receives all replies at once, when the last queryable has finished."""
         ...
 

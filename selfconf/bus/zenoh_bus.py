@@ -151,6 +151,7 @@ class _Request:
         self._query: Any = query
         self.key = str(query.key_expr)
         self.payload = bytes(query.payload) if query.payload is not None else b""
+        self.attachment = bytes(query.attachment) if query.attachment is not None else b""
 
     def reply(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
         """One reply, on a concrete key of one's own."""
@@ -312,17 +313,19 @@ class ZenohBus(Loop):
             )
         )
 
-    def serve(self, key: str, answer: Callable[[_Request], None]) -> Callable[[], None]:
+    def serve(self, key: str, answer: Callable[[_Request], None], *, complete: bool = False) -> Callable[[], None]:
         """Answer questions to a key."""
 
         receiver = _Receiver(self, answer)
         return receiver.open(
             self._session.declare_queryable(
-                key, Callback(lambda query: receiver.received(_Request(query)), indirect=False)
+                key, Callback(lambda query: receiver.received(_Request(query)), indirect=False), complete=complete
             )
         )
 
-    def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+    def ask(
+        self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None], attachment: bytes = b""
+    ) -> None:
         """Ask all queryables of a key."""
         samples: list[Sample] = []
         errors: list[str] = []
@@ -350,6 +353,7 @@ class ZenohBus(Loop):
             key,
             handler,
             payload=payload,
+            attachment=attachment or None,
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
             timeout=seconds,

@@ -130,6 +130,12 @@ class Component:
     def fed(self, port: str) -> None:
         """An input that had lost its last source has another, whose first signal is received next."""
 
+    def connected(self, operation: str) -> None:
+        """An operation that this component needs is connected to whoever offers it; called after `started`."""
+
+    def disconnected(self, operation: str) -> None:
+        """An operation that this component needs is connected to nobody any more, while the component goes on."""
+
     def parameter_set(self, name: str, value: Any) -> None:
         """An operational parameter has a value: text for strings and IRIs, else a number or a truth value.
 
@@ -146,15 +152,22 @@ class Component:
         self._attached().outputs.emit(port, value, time, media)
 
     def call(
-        self, operation: str, request: Any = None, *, answered: Callable[[Response], None], seconds: float = 2.0
+        self,
+        operation: str,
+        request: Any = None,
+        *,
+        answered: Callable[[Response], None],
+        seconds: float = 2.0,
+        media: str = "",
     ) -> None:
         """Call an operation that this component needs: whoever the configuration has connected to it is asked, once.
 
-        `request` is what is sent along, of what signals can carry, and of 1 MiB at most. `answered` is called with what
+        `request` is what is sent along, of what signals can carry, and of 1 MiB at most; `media` is the media type of
+        bytes. `answered` is called with what
         has come of it within that many seconds, unless the component was stopped meanwhile. Nothing happens while not
         active. Raises ProgrammerError for an operation that is not advertised, and for what no request can carry.
         """
-        self._attached().operations.call(operation, request, seconds, answered)
+        self._attached().operations.call(operation, request, seconds, answered, media)
 
     def fail(self, reason: str) -> None:
         """Raise FAIL: the component cannot act in its role any more. The configurator will turn it off."""

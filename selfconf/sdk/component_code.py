@@ -133,6 +133,14 @@ class ComponentCode:
         if self.active and self._blindness.begin(port):
             self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
 
+    def connection_changed(self, operation: str, connected: bool) -> None:
+        """Tell the component that an operation that it needs is connected, or is no more."""
+
+        def tell() -> None:
+            (self._component.connected if connected else self._component.disconnected)(operation)
+
+        self._thread.call(lambda: self._guarded("connected", tell))
+
     def tick(self, action: Callable[[], None]) -> None:
         """Run what the component wants done at intervals."""
         self._thread.call(lambda: None if self._resting else self._guarded("every", action))

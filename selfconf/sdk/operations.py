@@ -26,7 +26,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -76,14 +76,15 @@ class Operations:
         fields: Mapping[IRI, SignalFields],
         callers: Callable[[str], frozenset[IRI]],
         malformed: Callable[[str], None],
+        read_value: Callable[[Any, str], Any] = lambda value, media: value,
     ) -> None:
         """`callers` says who may call an operation, by the name of its output.
 
         `fields` are those of the kinds of requests and responses; `malformed` hears what is wrong with one of them that
-        this component has made.
+        this component has made. `read_value` makes of what is sent along, and its media type, what the code gets.
         """
         self._bus, self._keys, self._thread, self._profile, self._code = bus, keys, thread, profile, code
-        self._callers, self._malformed = callers, malformed
+        self._callers, self._malformed, self._read_value = callers, malformed, read_value
         self._offered = {port.name.removesuffix(CALL_MARK): _fields(port, fields) for port in profile.operations}
         self._needed = {port.name.removesuffix(CALL_MARK): _fields(port, fields) for port in profile.needed_operations}
         self._stamp = StampWriter(profile.component, life)
@@ -99,9 +100,16 @@ class Operations:
 
     def follow(self, message: Apply) -> None:
         """Call from now on what a call of the configurator names."""
-        self._wires = {
-            port.removesuffix(CALL_MARK): wires for port, wires in message.inputs.items() if port.endswith(CALL_MARK)
-        }
+        before, self._wires = (
+            self._wires,
+            {
+                port.removesuffix(CALL_MARK): wires
+                for port, wires in message.inputs.items()
+                if port.endswith(CALL_MARK) and wires
+            },
+        )
+        for name in sorted(before.keys() ^ self._wires.keys()):
+            self._code.connection_changed(name, name in self._wires)
 
     def end(self) -> None:
         """Call nothing, and wait for no answer that the code has promised."""
@@ -146,7 +154,11 @@ class Operations:
         """Have the code answer a request; on its thread."""
 
         def served() -> Any:
-            answer = self._code.serve(name, signal)
+            try:
+                value = self._read_value(signal.value, signal.media)
+            except ValueError as error:
+                raise Refused(f"what is sent along {error}") from None
+            answer = self._code.serve(name, replace(signal, value=value))
             if isinstance(answer, Future):
                 self._promised.add(answer)
                 answer.add_done_callback(partial(self._kept, request, name))
@@ -201,7 +213,9 @@ class Operations:
 
     # What this component asks for.
 
-    def call(self, name: str, value: Any, seconds: float, answered: Callable[[Response], None]) -> None:
+    def call(
+        self, name: str, value: Any, seconds: float, answered: Callable[[Response], None], media: str = ""
+    ) -> None:
         """Ask for an operation; may be called from any thread. The answer is heard on the thread of the code.
 
         Raises ProgrammerError for an operation that is not advertised, and for what no request can carry.
@@ -212,7 +226,7 @@ class Operations:
         if not self._code.active:
             return
         try:
-            payload, stamp = self._signal(value, self._needed[name].request)
+            payload, stamp = self._signal(value, self._needed[name].request, media)
         except _NotOfItsTypeError as error:
             self._malformed(f"what it sends along with {name!r} {error}")
             return
@@ -241,9 +255,9 @@ class Operations:
     def _heard(self, turn: int, answered: Callable[[Response], None], answer: Response) -> None:
         self._thread.signal(partial(self._code.answered, turn, partial(answered, answer)))
 
-    def _signal(self, value: Any, fields: SignalFields | None) -> tuple[bytes, bytes]:
+    def _signal(self, value: Any, fields: SignalFields | None, media: str = "") -> tuple[bytes, bytes]:
         """The payload and the stamp of a value. Raises UnsayableError for one that cannot be sent."""
-        packed = as_bytes(value)
+        packed = as_bytes(value, media)
         problem = None if fields is None else fields.problem_of_bytes() if packed else fields.problem(value)
         if problem is not None:
             raise _NotOfItsTypeError(problem)

@@ -125,6 +125,7 @@ class ComponentRuntime:
             fields or {},
             self._callers,
             partial(self.fail, cause=Cause.MALFORMED),
+            component.signal_value,
         )
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)

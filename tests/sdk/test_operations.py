@@ -53,6 +53,13 @@ class Album(Component):
 
     def __init__(self) -> None:
         self.answers: list[Response] = []
+        self.told: list[str] = []
+
+    def connected(self, operation: str) -> None:
+        self.told.append(f"{operation} is connected")
+
+    def disconnected(self, operation: str) -> None:
+        self.told.append(f"{operation} is not connected")
 
     def ask(self, request: Any = None, seconds: float = 2.0) -> None:
         """Ask for a photo."""
@@ -129,6 +136,21 @@ def test_code_that_breaks_in_a_call_is_a_failure_of_its_component() -> None:
     assert [event.component for event in room.run.events if isinstance(event, ComponentLost)] == [CAMERA]
 
 
+def test_a_component_hears_that_it_is_connected_once_as_long_as_it_is() -> None:
+    camera = Camera()
+    room = Darkroom(camera, Camera("spare"))
+    assert room.photo()["by"] == "camera"
+    room.ecology.crash(camera)
+    assert room.ecology.until(lambda: room.photo().status is CallStatus.ANSWERED)
+    assert room.album.told == ["photo is connected"]
+
+
+def test_an_operation_that_loses_whom_to_call_is_told() -> None:
+    peer = Peer(lambda request: None)
+    peer.stage.call(apply(2))
+    assert peer.album.told == ["photo is connected", "photo is not connected"]
+
+
 def test_the_next_call_goes_to_the_component_that_has_taken_the_place() -> None:
     camera = Camera()
     room = Darkroom(camera, Camera("spare"))
@@ -160,6 +182,7 @@ def test_an_operation_that_is_optional_may_be_connected_to_nobody() -> None:
     album = ecology.add(Album(), ALBUM_SAYS.replace("MORE", "; sc:optional true"))
     alone = ":t a sc:Template ; sc:roles ( :user ) . :user a sc:Role ; sh:class :Album ."
     ecology.run(template(PREFIXES + alone)).started()
+    assert album.told == []
     album.ask()
     ecology.advance(0.1)
     (answer,) = album.answers

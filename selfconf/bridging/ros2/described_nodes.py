@@ -6,16 +6,20 @@ back: such an input accepts no second output of a node, for from node to node th
 
 An output promises the rate that its deadline says. An input that is to be reliable, or is to receive what was published
 before, accepts no output that says it is otherwise (`sc:accepts`), as ROS 2 would not connect them; what comes from no
-node says nothing about that, and is accepted. What every node has, its log and its parameters, is left out.
+node says nothing about that, and is accepted. A service that the node serves is an operation that it offers, one that
+it is a client of an operation that it needs. What every node publishes, its log and the changes of its parameters, is
+left out, and so is what is hidden.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
+from selfconf.bridging.ros2.domain import BRIDGE_NODE
 from selfconf.bridging.ros2.signal_translations import SignalTranslation, translation_of
-from selfconf.bridging.ros2.tokens import PUBLISHER, RosEndpoint, RosQuality, RosToken
+from selfconf.bridging.ros2.tokens import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, RosEndpoint, RosQuality, RosToken
 from selfconf.importing import (
     ROS2,
     ImportedComponent,
@@ -35,9 +39,18 @@ from selfconf.rdf.vocabulary import SC, SH, UNIT, XSD
 NODE_NAMESPACE = "urn:selfconf:ros2:"
 """What the IRIs of nodes begin with; the domain and the name of the node follow."""
 OF_EVERY_NODE = frozenset(("/rosout", "/parameter_events"))
-BRIDGE_NODE = "selfconf_bridge"
-"""The name of the node as which a bridge is seen in ROS 2."""
-TopicPorts = dict[str, RosEndpoint]
+EndpointsByName = dict[str, RosEndpoint]
+
+
+class NodePorts(NamedTuple):
+    """What a node has, by the names of ports and operations."""
+
+    outputs: EndpointsByName
+    inputs: EndpointsByName
+    offered: EndpointsByName
+    """The services that it serves."""
+    needed: EndpointsByName
+    """The services that it is a client of."""
 
 
 def translated_name(name: str, translation: SignalTranslation) -> str:
@@ -56,22 +69,32 @@ def is_bridged(token: RosToken) -> bool:
     return not token.name.startswith("_") and not token.name.startswith(BRIDGE_NODE)
 
 
-def ports_of(endpoints: Iterable[RosEndpoint]) -> tuple[TopicPorts, TopicPorts]:
-    """The outputs and inputs of a node, by name; of two endpoints of one topic and kind the first counts."""
-    outputs: TopicPorts = {}
-    inputs: TopicPorts = {}
+def ports_of(endpoints: Iterable[RosEndpoint]) -> NodePorts:
+    """The ports and operations of a node; of two endpoints of one name and kind the first counts."""
+    found: dict[str, EndpointsByName] = {kind: {} for kind in (PUBLISHER, SUBSCRIPTION, SERVER, CLIENT)}
     for each in sorted(endpoints, key=lambda one: one.entity):
-        if each.topic not in OF_EVERY_NODE:
-            (outputs if each.kind == PUBLISHER else inputs).setdefault(each.topic.strip("/"), each)
-    return outputs, inputs
+        if each.topic not in OF_EVERY_NODE and not is_hidden(each.topic):
+            found[each.kind].setdefault(each.topic.strip("/"), each)
+    return NodePorts(*found.values())
 
 
-def described_node(token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> ImportedComponent:
+def is_hidden(name: str) -> bool:
+    """Whether a topic or service is hidden, as the parts of actions are: by an underscore that a name begins with."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+def described_node(token: RosToken, ports: NodePorts) -> ImportedComponent:
     """A node as the component that it is."""
+    outputs, inputs, offered, needed = ports
     interfaces = [
-        NodeInterface(kind, name, each.type.name, _qualities(each.quality))
-        for kind, ports in ((InterfaceKind.PUBLISHER, outputs), (InterfaceKind.SUBSCRIBER, inputs))
-        for name, each in ports.items()
+        NodeInterface(kind, name, each.type.name, qualities(each.quality))
+        for kind, named, qualities in (
+            (InterfaceKind.PUBLISHER, outputs, _qualities),
+            (InterfaceKind.SUBSCRIBER, inputs, _qualities),
+            (InterfaceKind.SERVICE_SERVER, offered, _no_qualities),
+            (InterfaceKind.SERVICE_CLIENT, needed, _no_qualities),
+        )
+        for name, each in named.items()
     ]
     source = SourceDocument(f"the domain {token.node.domain} of ROS 2", "", b"")
     reader = NodeReader(ImportLedger(NODE_NAMESPACE, lambda error: None), source)
@@ -82,6 +105,11 @@ def described_node(token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> 
         outputs=tuple(port for each in found.outputs for port in _issuing(each, outputs[each.name])),
         inputs=tuple(_demanding(port, inputs[port.name]) for port in found.inputs),
     )
+
+
+def _no_qualities(_: RosQuality) -> tuple[tuple[str, str], ...]:
+    """A service is reliable by being one; nobody chooses by the quality of it."""
+    return ()
 
 
 def _qualities(quality: RosQuality) -> tuple[tuple[str, str], ...]:

@@ -4,26 +4,26 @@ What the node publishes is issued as CDR, with its type in the media type; what 
 topic of it, by the bridge as a node of its own. A message goes to a topic only if its type has the same hash. An object
 is written as a message first; and what is published is issued as a signal too, where `signal_translations` has a kind
 for it. Where a message came from the very topic that it would go to, ROS 2 has brought it there already, and it is not
-brought twice.
+brought twice. Services are the affair of `services`, and what a lifecycle node is in that of `lifecycle`.
 """
 
 from __future__ import annotations
 
-import itertools
-import secrets
-import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
 from typing import Any, NamedTuple
 
 from selfconf import ros_messages
 from selfconf.bridging.ros2.attachments import RosAttachment
-from selfconf.bridging.ros2.described_nodes import BRIDGE_NODE, TopicPorts, translated_name
+from selfconf.bridging.ros2.described_nodes import NodePorts, translated_name
+from selfconf.bridging.ros2.domain import OwnPublisher, RosDomain, bridge_token, place_of
+from selfconf.bridging.ros2.lifecycle import NodeLifecycle, lifecycle_of
+from selfconf.bridging.ros2.services import ServedService, call_service
 from selfconf.bridging.ros2.signal_translations import translation_of
-from selfconf.bridging.ros2.tokens import PUBLISHER, RosEndpoint, RosNodeId, RosToken
-from selfconf.bridging.ros2.topic_sources import TopicSources
-from selfconf.bus.port import Bus, Publisher, Replies, Sample, Undo, Urgency
+from selfconf.bridging.ros2.tokens import PUBLISHER, RosEndpoint, RosToken
+from selfconf.bus.port import Publisher, Replies, Sample, Undo, Urgency
 from selfconf.errors import PeerError
 from selfconf.ros_messages import MessageType
 from selfconf.sdk import Component, Signal
@@ -38,52 +38,6 @@ HISTORY = 1.0
 """Seconds that the publishers of a topic may take to say what they published before."""
 
 
-class OwnPublisher(NamedTuple):
-    """As whom the bridge publishes on a topic, and the numbers of its messages."""
-
-    identifier: bytes
-    numbers: itertools.count[int]
-
-
-class RosDomain:
-    """What the components of one bridge share: the network of the domain, and what is known of its topics."""
-
-    def __init__(self, bus: Bus, number: int, complain: Callable[[str], None]) -> None:
-        self.bus, self.number = bus, number
-        self.session = secrets.token_hex(16)
-        """The name of this bridge in the tokens that it declares."""
-        self.entities = itertools.count(1)
-        self._own: dict[str, OwnPublisher] = {}
-        self._complain = complain
-        self._topics: dict[str, TopicSources] = {}
-        self._told: set[str] = set()
-        self._lock = threading.Lock()
-
-    def sources(self, key: str) -> TopicSources:
-        """Who publishes on the key of a topic."""
-        with self._lock:
-            return self._topics.setdefault(key, TopicSources())
-
-    def own(self, key: str) -> OwnPublisher:
-        """As whom the bridge publishes on the key of a topic, for as long as it is there."""
-        with self._lock:
-            return self._own.setdefault(key, OwnPublisher(secrets.token_bytes(16), itertools.count(1)))
-
-    def is_own(self, key: str, identifier: bytes) -> bool:
-        """Whether a message on the key of a topic is the bridge's own: what it publishes is heard here as well."""
-        own = self._own.get(key)
-        return own is not None and own.identifier == identifier
-
-    def tell(self, sentence: str) -> None:
-        """Complain of something once; a message that is wrong comes a hundred times a second."""
-        with self._lock:
-            new = sentence not in self._told and len(self._told) < MOST_MESSAGES
-            if new:
-                self._told.add(sentence)
-        if new:
-            self._complain(sentence)
-
-
 class RelayedTopic(NamedTuple):
     """A topic that the bridge publishes on, in place of what feeds an input."""
 
@@ -95,12 +49,16 @@ class RelayedTopic(NamedTuple):
 class NodeComponent(Component):
     """A node as a component."""
 
-    def __init__(self, domain: RosDomain, token: RosToken, outputs: TopicPorts, inputs: TopicPorts) -> None:
-        self._domain, self._token, self._outputs, self._inputs = domain, token, outputs, inputs
+    def __init__(self, domain: RosDomain, token: RosToken, ports: NodePorts) -> None:
+        self._domain, self._token, self._ports = domain, token, ports
         self._outgoing: deque[tuple[RosEndpoint, bytes, float]] = deque(maxlen=MOST_OUTGOING)
         """The messages that are to be published, with their times."""
         self._declared: list[Undo] = []
         self._relayed: dict[str, RelayedTopic] = {}
+        self._served: dict[str, ServedService] = {}
+        """The services that the bridge serves for the clients of the node, by the names of operations."""
+        endpoints = lifecycle_of(token.full_name, ports.offered, ports.outputs)
+        self._lifecycle = endpoints and NodeLifecycle(domain, token.full_name, endpoints, self.fail)
 
     @staticmethod
     def signal_value(value: Any, media: str) -> Any:
@@ -119,7 +77,7 @@ class NodeComponent(Component):
 
     def received(self, port: str, signal: Signal) -> None:
         """Publish a signal on the topic of an input."""
-        endpoint = self._inputs[port]
+        endpoint = self._ports.inputs[port]
         try:
             payload = self._payload(endpoint, signal)
         except ros_messages.MessageError as error:
@@ -129,19 +87,47 @@ class NodeComponent(Component):
             self._outgoing.append((endpoint, payload, signal.time))
             self._domain.bus.wake_up(self._publish_next)
 
+    def called(self, operation: str, request: Signal) -> Future[Any]:
+        """Ask the service that an operation is; the response comes from the network."""
+        return call_service(self._domain, self._ports.offered[operation], request)
+
+    def connected(self, operation: str) -> None:
+        """Serve the service that the node is a client of."""
+        self._domain.bus.wake_up(partial(self._serve, operation))
+
+    def disconnected(self, operation: str) -> None:
+        """Serve it no more."""
+        self._domain.bus.wake_up(partial(self._end_service, operation))
+
     # On the thread of the bus of the domain.
 
+    def _serve(self, operation: str) -> None:
+        if self.active and operation not in self._served:
+            service = ServedService(self._domain, self._ports.needed[operation], operation, self)
+            self._served[operation] = service
+
+    def _end_service(self, operation: str) -> None:
+        service = self._served.pop(operation, None)
+        if service is not None:
+            service.end()
+
     def _begin(self) -> None:
-        for name, endpoint in self._outputs.items():
+        for name, endpoint in self._ports.outputs.items():
             output = RelayedOutput(self, name, endpoint, self._domain, self._token)
             self._declared.append(self._domain.bus.subscribe(output.key, output.received, direct=True))
             if endpoint.quality.transient_local:
                 output.ask_for_history()
+        if self._lifecycle is not None:
+            self._lifecycle.activate()
 
     def _end(self) -> None:
         for undo in (*self._declared, *(topic.leave for topic in self._relayed.values())):
             undo()
         self._declared, self._relayed = [], {}
+        for operation in list(self._served):
+            self._end_service(operation)
+        if self._lifecycle is not None:
+            self._lifecycle.rest()
 
     def _publish_next(self) -> None:
         """Publish the message that has waited longest; none is left where too many had to wait."""
@@ -170,7 +156,7 @@ class NodeComponent(Component):
     def _relay_to(self, endpoint: RosEndpoint) -> RelayedTopic:
         """Declare in ROS 2 that the bridge publishes on the topic of an input, as whoever is subscribed asks for."""
         bus, key = self._domain.bus, endpoint.key(self._domain.number)
-        token = bridge_token(self._domain, endpoint)
+        token = bridge_token(self._domain, PUBLISHER, endpoint)
         # Like rmw_zenoh: only where everything is kept does a publisher wait for a network that is short of room.
         waits = endpoint.quality.keep_all and endpoint.quality.reliable
         publisher = bus.publisher(key, Urgency.EVENT if waits else Urgency.SIGNAL)
@@ -266,17 +252,3 @@ def written(signal: Signal, kind: MessageType) -> bytes:
     if translation is not None and translation.write is not None and translation.is_signal(fields):
         fields = translation.write(fields, signal.time)
     return ros_messages.message(fields, kind)
-
-
-def place_of(domain: int, endpoint: RosEndpoint) -> str:
-    """Where messages of an endpoint are published: the domain and the topic, as the media type says it."""
-    return f"{domain}{endpoint.topic}"
-
-
-def bridge_token(domain: RosDomain, endpoint: RosEndpoint | None = None) -> RosToken:
-    """The token of the bridge as a node, or of a topic on which it publishes what an endpoint takes."""
-    node = RosNodeId(domain.number, domain.session, 0)
-    if endpoint is None:
-        return RosToken(node, "", BRIDGE_NODE)
-    own = RosEndpoint(next(domain.entities), PUBLISHER, endpoint.topic, endpoint.type, endpoint.quality)
-    return RosToken(node, "", BRIDGE_NODE, PUBLISHER, own)

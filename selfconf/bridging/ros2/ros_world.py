@@ -15,8 +15,9 @@ from dataclasses import dataclass, field
 from selfconf import ros_messages
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
-from selfconf.bridging.ros2.node_component import NodeComponent, RosDomain, bridge_token
-from selfconf.bridging.ros2.tokens import NODE, PUBLISHER, ROOT, NodeIdentity, RosEndpoint, RosToken
+from selfconf.bridging.ros2.domain import RosDomain, bridge_token
+from selfconf.bridging.ros2.node_component import NodeComponent
+from selfconf.bridging.ros2.tokens import NODE, PUBLISHER, ROOT, SERVER, NodeIdentity, RosEndpoint, RosToken
 from selfconf.bus.port import Bus, Undo
 from selfconf.errors import PeerError
 from selfconf.importing import ImportedDocument
@@ -92,6 +93,8 @@ class RosWorld:
                 (token.identity, token.endpoint.entity),
             )
             sources.add(publisher) if alive else sources.remove(publisher)
+        if token.kind == SERVER and token.endpoint is not None:
+            self._domain.server_changed(token.endpoint.key(self._number), key, alive)
         if is_bridged(token):
             self._come(key, token) if alive else self._go(key, token)
 
@@ -134,10 +137,10 @@ class RosWorld:
                 return
             node.code.fail(f"the node {node.token.full_name} offers less than before")
         node.advertised = endpoints
-        outputs, inputs = ports_of(endpoints)
-        component = described_node(node.token, outputs, inputs)
+        ports = ports_of(endpoints)
+        component = described_node(node.token, ports)
         self._bridge.advertise(iri, ImportedDocument("", _place(node.token), (component.described(),), {}))
-        code = node.code = NodeComponent(self._domain, node.token, outputs, inputs)
+        code = node.code = NodeComponent(self._domain, node.token, ports)
         self._bridge.begin_life(iri, code).add_done_callback(lambda outcome: self._begun(node, outcome))
 
     def _begun(self, node: RosNode, outcome: Future[str | None]) -> None:

@@ -16,7 +16,7 @@ from selfconf.errors import PeerError
 from selfconf.ros_messages import HASH, NAME, MessageType
 
 ROOT = "@ros2_lv"
-NODE, PUBLISHER, SUBSCRIPTION = "NN", "MP", "MS"
+NODE, PUBLISHER, SUBSCRIPTION, SERVER, CLIENT = "NN", "MP", "MS", "SS", "SC"
 _KINDS = "NN|MP|MS|SS|SC"
 _PART = "[^/*$?#]+"
 _TOKEN = re.compile(
@@ -85,7 +85,7 @@ NodeIdentity = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class RosEndpoint:
-    """A topic that a node publishes, or is subscribed to."""
+    """A topic that a node publishes or is subscribed to, or a service that it serves or is a client of."""
 
     entity: int
     kind: str
@@ -95,14 +95,14 @@ class RosEndpoint:
     quality: RosQuality = RosQuality()
 
     def key(self, domain: int) -> str:
-        """The key on which messages of the topic travel."""
+        """The key on which messages of the topic travel, or calls of the service."""
         package, segment, name = self.type.name.split("/")
         return f"{domain}/{self.topic.strip('/')}/{package}::{segment}::dds_::{name}_/{self.type.hash}"
 
 
 @dataclass(frozen=True, slots=True)
 class RosToken:
-    """A liveliness token: of a node, or of one of its endpoints; what is said of services is not read."""
+    """A liveliness token: of a node, or of one of its endpoints."""
 
     node: RosNodeId
     namespace: str
@@ -128,7 +128,7 @@ class RosToken:
             raise PeerError(f"{key[:160]!r} is no token of rmw_zenoh")
         node = RosNodeId(int(found["domain"]), found["session"], int(found["node"]))
         namespace, name, kind = found["namespace"].replace("%", "/"), found["name"].replace("%", "/"), found["kind"]
-        if kind not in (PUBLISHER, SUBSCRIPTION):
+        if kind == NODE:
             return cls(node, namespace, name, kind)
         if not HASH.fullmatch(found["hash"]):
             raise PeerError(
@@ -138,7 +138,7 @@ class RosToken:
         dds = _DDS_NAME.fullmatch(found["type"].replace("%", "/"))
         kind_name = "/".join(dds.groups()) if dds else ""
         if not NAME.fullmatch(kind_name):
-            raise PeerError(f"{found['type'][:80]!r} is no type of messages")
+            raise PeerError(f"{found['type'][:80]!r} is no type of messages or services")
         quality = RosQuality.parse(found["quality"])
         topic = found["topic"].replace("%", "/")
         message_type = MessageType(kind_name, found["hash"])

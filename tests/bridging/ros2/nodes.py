@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.ros_world import RosWorld
-from selfconf.bus.port import Publisher, Sample, Urgency
+from selfconf.bus.port import Publisher, Replies, Request, Sample, Urgency
 from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Apply, Reserve, Wire
+from selfconf.protocol.messages import Apply, CallAnswer, Reserve, Wire
 from selfconf.sdk import Component, Signal
 from tests.sdk.living import LivingStage, until
 from tests.test_ros_messages import STRING_HASH
 
 DOMAIN = 42
 STRING_KEY = f"std_msgs::msg::dds_::String_/{STRING_HASH}"
+ADD_HASH = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
+"""Of example_interfaces/srv/AddTwoInts, as the design of rmw_zenoh says it."""
+ADD_KEY = f"example_interfaces::srv::dds_::AddTwoInts_/{ADD_HASH}"
 USUAL = "::,10:,:,:,,"
 STRING = "<https://w3id.org/selfconf/ros2/std_msgs/msg/String>"
 
@@ -65,6 +68,23 @@ class StandIn:
         self.token("MS", topic, quality, key)
         return heard
 
+    def serves(self, service: str, answer: Callable[[bytes, bytes], tuple[bytes, bytes]], key: str = ADD_KEY) -> None:
+        """Have the node serve a service: from the payload and attachment of a request to those of the response."""
+
+        def asked(request: Request) -> None:
+            request.reply(f"{DOMAIN}{service}/{key}", *answer(request.payload, request.attachment))
+            request.finish()
+
+        self.bus.serve(f"{DOMAIN}{service}/{key}", asked, complete=True)
+        self.token("SS", service, USUAL, key)
+
+    def asks(self, service: str, payload: bytes, key: str = ADD_KEY) -> list[Replies]:
+        """Call a service, as its client does; the list receives what comes of it."""
+        found: list[Replies] = []
+        attachment = struct.pack("<qqB16s", 7, 10**9, 16, b"c" * 16)
+        self.bus.wake_up(lambda: self.bus.ask(f"{DOMAIN}{service}/{key}", payload, 10.0, found.append, attachment))
+        return found
+
     def close(self) -> None:
         """Be gone, as a process is that was killed."""
         self.bus.close()
@@ -97,15 +117,24 @@ class BridgedDomain:
         """The reasons of the FAILs so far."""
         return [fail.detail for _, fail in self.stage.fails]
 
-    def activate(self, name: str, **inputs: tuple[Wire, ...]) -> None:
-        """Activate a node, with its inputs fed."""
+    def activate(
+        self, name: str, callers: Mapping[str, tuple[IRI, ...]] | None = None, **inputs: tuple[Wire, ...]
+    ) -> None:
+        """Activate a node, with its inputs fed; `callers` are who may call its operations."""
+        answer = self.called_for(name, callers, **inputs)
+        assert answer.active, answer
+
+    def called_for(
+        self, name: str, callers: Mapping[str, tuple[IRI, ...]] | None = None, **inputs: tuple[Wire, ...]
+    ) -> CallAnswer:
+        """What a node answers that is to be activated."""
         assert until(lambda: self.lives(name)), self.complaints
         held = self.stage.call(node(name), "reserve", Reserve(1, self.stage.supervisor, "task~1"))
         assert until(lambda: held)
-        apply = Apply(1, self.stage.supervisor, "task~1", inputs=inputs)
+        apply = Apply(1, self.stage.supervisor, "task~1", inputs=inputs, callers=callers or {})
         answers = self.stage.call(node(name), "apply", apply)
         assert until(lambda: answers)
-        assert answers[0].active, answers
+        return answers[0]
 
     def advertised(self) -> str:
         """All that is advertised."""

@@ -5,13 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import selfconf
+from selfconf.api.answer import Answer
 from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
 from selfconf.bridging.ros2.tokens import RosEndpoint, RosNodeId, RosQuality, RosToken
 from selfconf.importing import ImportedDocument, described_text
 from selfconf.rdf.advertisements import read_advertisements
 from selfconf.rdf.vocabulary import ROB
 from selfconf.ros_messages import MessageType
+from tests.bridging.ros2.nodes import ADD_HASH
 from tests.test_ros_messages import STRING_HASH
+
+ADD = "https://w3id.org/selfconf/ros2/example_interfaces/srv/AddTwoInts"
 
 LIDAR = RosToken(RosNodeId(7, "a1", 0), "/front", "lidar")
 USUAL = RosQuality()
@@ -23,8 +27,11 @@ def endpoint(number: int, kind: str, topic: str, quality: RosQuality = USUAL) ->
 
 
 def test_topics_are_ports_and_what_every_node_has_is_left_out() -> None:
-    outputs, inputs = ports_of(
+    outputs, inputs, offered, needed = ports_of(
         [
+            endpoint(7, "SS", "/front/reset"),
+            endpoint(8, "SC", "/add"),
+            endpoint(9, "SS", "/dock/_action/send_goal"),
             endpoint(4, "MP", "/front/scan"),
             endpoint(3, "MP", "/rosout"),
             endpoint(2, "MS", "/parameter_events"),
@@ -34,29 +41,39 @@ def test_topics_are_ports_and_what_every_node_has_is_left_out() -> None:
     )
     assert {name: each.entity for name, each in outputs.items()} == {"front/scan": 4}
     assert {name: each.entity for name, each in inputs.items()} == {"front/scan": 5}
+    assert (list(offered), list(needed)) == (["front/reset"], ["add"])
 
 
 def test_a_node_is_a_component_that_can_be_advertised() -> None:
     best_effort = RosQuality(reliable=False, depth=5, period=0.1)
     latched = RosQuality(transient_local=True)
-    outputs, inputs = ports_of(
+    ports = ports_of(
         [
             endpoint(1, "MP", "/scan", best_effort),
             endpoint(2, "MS", "/map", latched),
             endpoint(3, "MS", "/raw", best_effort),
+            RosEndpoint(4, "SS", "/front/add", MessageType("example_interfaces/srv/AddTwoInts", ADD_HASH)),
+            RosEndpoint(5, "SC", "/add", MessageType("example_interfaces/srv/AddTwoInts", ADD_HASH)),
         ]
     )
-    component = described_node(LIDAR, outputs, inputs)
+    component = described_node(LIDAR, ports)
     assert component.iri == node_iri(LIDAR) == "urn:selfconf:ros2:7/front/lidar"
     text = described_text(ImportedDocument("", "", (component.described(),), {}))
     ((advertisement,), bad) = read_advertisements(text.encode(), "lidar.ttl", "file:///lidar.ttl")
     assert not bad
-    scan, second = advertisement.profile.outputs
+    scan, second = advertisement.profile.signal_outputs
     assert scan.rate == second.rate == 10.0
     assert (second.name, [str(signal) for signal in second.signals]) == ("scan as Text", [f"{ROB.Text}"])
     assert [str(signal) for signal in scan.signals] == ["https://w3id.org/selfconf/ros2/std_msgs/msg/String"]
-    assert {port.name: port.depth for port in advertisement.profile.inputs} == {"map": 42, "raw": 5}
+    assert {port.name: port.depth for port in advertisement.profile.inputs if not port.is_operation} == {
+        "map": 42,
+        "raw": 5,
+    }
     assert advertisement.profile.required == ()
+    (offered,), (needed,) = advertisement.profile.operations, advertisement.profile.needed_operations
+    assert (offered.name, needed.name) == ("front/add()", "add()")
+    assert str(offered.response) == f"{ADD}_Response"
+    assert str(needed.request) == f"{ADD}_Request"
     assert 'ros2:reliability "best_effort"' in text
     accepted = '[ sh:path ros2:durability ; sh:in ( "transient_local" ) ]'
     assert text.count(accepted) == 1
@@ -65,8 +82,8 @@ def test_a_node_is_a_component_that_can_be_advertised() -> None:
 
 
 def test_what_was_translated_is_not_translated_back() -> None:
-    outputs, inputs = ports_of([endpoint(1, "MP", "/said"), endpoint(2, "MS", "/heard")])
-    nodes = [described_node(replace(LIDAR, name=name), outputs, inputs).described() for name in ("a", "b")]
+    ports = ports_of([endpoint(1, "MP", "/said"), endpoint(2, "MS", "/heard")])
+    nodes = [described_node(replace(LIDAR, name=name), ports).described() for name in ("a", "b")]
     home = selfconf.read(described_text(ImportedDocument("", "", tuple(nodes), {})))
     task = selfconf.template(
         """@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> .
@@ -76,7 +93,7 @@ def test_what_was_translated_is_not_translated_back() -> None:
         :to a sc:Role ; sh:class ros2:Node ."""
     )
     answer = selfconf.configure(task, home)
-    assert isinstance(answer, selfconf.Answer)
+    assert isinstance(answer, Answer)
     assert [(each.output, each.input) for each in answer.connections] == [("said", "heard")]
 
 

@@ -18,23 +18,28 @@ from tests.sdk.living import LivingStage, until
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk, whose nodes are the judges, is not installed")
 pytestmark = pytest.mark.process
-NODE = Path(__file__).parents[3] / "examples" / "ros2" / "node.py"
+ROOT = Path(__file__).parents[3]
+NODE = ROOT / "examples" / "ros2" / "node.py"
 STARTS = 40.0
 """Seconds that a process with a node may take to be there."""
 
 
 @pytest.fixture
 def judges(living: LivingStage) -> Iterator[dict[str, subprocess.Popen[str]]]:
-    """A talker on `/one` and a listener on `/two`, each a process."""
-    port = living.endpoint.rpartition(":")[2]
+    """A talker on `/one`, a listener on `/two`, a server of `/three` and a client of `/four`, each a process."""
+    port, domain = living.endpoint.rpartition(":")[2], str(DOMAIN)
+    adding = ("-m", "tests.bridging.ros2.adding_node")
+    commands = {
+        "talker": (str(NODE), "talker", "/one", "--port", port, "--domain", domain),
+        "listener": (str(NODE), "listener", "/two", "--port", port, "--domain", domain),
+        "server": (*adding, "server", "/three", port, domain),
+        "client": (*adding, "client", "/four", port, domain),
+    }
     found = {
         kind: subprocess.Popen(
-            [sys.executable, "-u", str(NODE), kind, topic, "--port", port, "--domain", str(DOMAIN)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
+            [sys.executable, "-u", *command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, cwd=ROOT
         )
-        for kind, topic in (("talker", "/one"), ("listener", "/two"))
+        for kind, command in commands.items()
     }
     yield found
     for process in found.values():
@@ -42,6 +47,13 @@ def judges(living: LivingStage) -> Iterator[dict[str, subprocess.Popen[str]]]:
         process.wait()
         if process.stdout is not None:
             process.stdout.close()
+
+
+def lines_of(judge: subprocess.Popen[str]) -> list[str]:
+    """What a judge says; the list grows."""
+    found: list[str] = []
+    threading.Thread(target=lambda: found.extend(judge.stdout or ()), daemon=True).start()
+    return found
 
 
 def test_components_and_foreign_nodes_feed_each_other(
@@ -54,8 +66,7 @@ def test_components_and_foreign_nodes_feed_each_other(
         found.activate("listener", two=(Wire(IRI("urn:c:reader"), "text"),))
         assert until(lambda: len(component.heard) > 2)
         assert component.heard[0][0]["data"].startswith("talker ")
-        heard: list[str] = []
-        threading.Thread(target=lambda: heard.extend(judges["listener"].stdout or ()), daemon=True).start()
+        heard, answered = lines_of(judges["listener"]), lines_of(judges["client"])
 
         def arrives() -> bool:  # what is issued before a subscription is known is lost, as in ROS 2
             component.emit("text", {"data": "hello"})
@@ -63,6 +74,10 @@ def test_components_and_foreign_nodes_feed_each_other(
 
         assert until(arrives)
         assert heard[0] == "heard hello\n"
+        assert until(lambda: found.lives("server") and found.lives("client"), STARTS), found.complaints
+        found.activate("server", callers={"three()": (node("client"),)})
+        found.activate("client", **{"four()": (Wire(node("server"), "three()"),)})
+        assert until(lambda: "answered 42\n" in answered, STARTS), found.complaints
         judges["talker"].kill()
         assert until(lambda: found.causes() == [f"the node /talker has left the domain {DOMAIN} of ROS 2"])
         assert until(lambda: not found.lives("talker"))

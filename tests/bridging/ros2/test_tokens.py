@@ -38,9 +38,14 @@ def test_a_token_of_a_topic_says_where_messages_travel() -> None:
     assert token.key() == key
 
 
-def test_what_is_said_of_services_is_passed_over() -> None:
-    key = f"@ros2_lv/7/{SESSION}/0/3/SS/%/%/lidar/%reset/std_srvs::srv::dds_::Empty_/{STRING_HASH}/::,10:,:,:,,"
-    assert RosToken.parse(key).endpoint is None
+def test_a_service_and_its_client_are_read_and_written() -> None:
+    for kind in ("SS", "SC"):
+        key = f"@ros2_lv/7/{SESSION}/0/3/{kind}/%/%/lidar/%reset/std_srvs::srv::dds_::Empty_/{STRING_HASH}/::,10:,:,:,,"
+        token = RosToken.parse(key)
+        assert token.endpoint is not None
+        assert (token.endpoint.kind, token.endpoint.type.name) == (kind, "std_srvs/srv/Empty")
+        assert token.endpoint.key(7) == f"7/reset/std_srvs::srv::dds_::Empty_/{STRING_HASH}"
+        assert token.key() == key
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,89 @@
+"""What the components of a bridge to ROS 2 share: the network of the domain, and what is known of its topics."""
+
+from __future__ import annotations
+
+import itertools
+import secrets
+import threading
+from collections.abc import Callable
+from typing import NamedTuple
+
+from selfconf.bridging.ros2.tokens import NODE, RosEndpoint, RosNodeId, RosToken
+from selfconf.bridging.ros2.topic_sources import TopicSources
+from selfconf.bus.port import Bus
+
+BRIDGE_NODE = "selfconf_bridge"
+"""The name of the node as which a bridge is seen in ROS 2."""
+MOST_SENTENCES = 5000
+"""How many different complaints are told; what causes them may have any number of names."""
+
+
+class OwnPublisher(NamedTuple):
+    """As whom the bridge publishes on a topic or calls a service, and the numbers of its messages."""
+
+    identifier: bytes
+    numbers: itertools.count[int]
+
+
+class RosDomain:
+    """What the components of one bridge share: the network of the domain, and what is known of its topics."""
+
+    def __init__(self, bus: Bus, number: int, complain: Callable[[str], None]) -> None:
+        self.bus, self.number = bus, number
+        self.session = secrets.token_hex(16)
+        """The name of this bridge in the tokens that it declares."""
+        self.entities = itertools.count(1)
+        self._own: dict[str, OwnPublisher] = {}
+        self._complain = complain
+        self._topics: dict[str, TopicSources] = {}
+        self._servers: dict[str, set[str]] = {}
+        self._told: set[str] = set()
+        self._lock = threading.Lock()
+
+    def sources(self, key: str) -> TopicSources:
+        """Who publishes on the key of a topic."""
+        with self._lock:
+            return self._topics.setdefault(key, TopicSources())
+
+    def server_changed(self, key: str, token: str, alive: bool) -> None:
+        """A server of a service, by the key of its token, has come or gone."""
+        with self._lock:
+            servers = self._servers.setdefault(key, set())
+            servers.add(token) if alive else servers.discard(token)
+
+    def has_server(self, key: str) -> bool:
+        """Whether a node serves the key of a service."""
+        return bool(self._servers.get(key))
+
+    def own(self, key: str) -> OwnPublisher:
+        """As whom the bridge publishes on the key of a topic, or calls a service, for as long as it is there."""
+        with self._lock:
+            return self._own.setdefault(key, OwnPublisher(secrets.token_bytes(16), itertools.count(1)))
+
+    def is_own(self, key: str, identifier: bytes) -> bool:
+        """Whether a message on the key of a topic is the bridge's own: what it publishes is heard here as well."""
+        own = self._own.get(key)
+        return own is not None and own.identifier == identifier
+
+    def tell(self, sentence: str) -> None:
+        """Complain of something once; a message that is wrong comes a hundred times a second."""
+        with self._lock:
+            new = sentence not in self._told and len(self._told) < MOST_SENTENCES
+            if new:
+                self._told.add(sentence)
+        if new:
+            self._complain(sentence)
+
+
+def place_of(domain: int, endpoint: RosEndpoint) -> str:
+    """Where messages of an endpoint are published: the domain and the topic, as the media type says it."""
+    return f"{domain}{endpoint.topic}"
+
+
+def bridge_token(domain: RosDomain, kind: str = NODE, endpoint: RosEndpoint | None = None) -> RosToken:
+    """The token of the bridge as a node, or of its counterpart of a kind to an endpoint of another node."""
+    node = RosNodeId(domain.number, domain.session, 0)
+    if endpoint is None:
+        return RosToken(node, "", BRIDGE_NODE)
+    own = RosEndpoint(next(domain.entities), kind, endpoint.topic, endpoint.type, endpoint.quality)
+    return RosToken(node, "", BRIDGE_NODE, kind, own)

@@ -1,0 +1,153 @@
+"""A lifecycle node is really configured and activated by its activation here, and deactivated when its task ends.
+
+The state of such a node is asked for, and changed step by step, by the services that every one of them has (the design
+"Managed nodes" of ROS 2; `lifecycle_msgs`). A transition that fails or is not answered is FAIL of the node, and so is
+one out of the active state that nobody here has asked for. A node that was active already stays so in the end.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any, NamedTuple
+
+from selfconf import ros_messages
+from selfconf.bridging.ros2.attachments import RosAttachment
+from selfconf.bridging.ros2.domain import RosDomain
+from selfconf.bridging.ros2.tokens import RosEndpoint
+from selfconf.bus.port import Replies, Sample, Undo
+from selfconf.ros_messages import MessageError
+
+CHANGE, STATE, EVENT = "change_state", "get_state", "transition_event"
+"""The names of the services and of the topic, below that of the node."""
+TYPES = {CHANGE: "lifecycle_msgs/srv/ChangeState", STATE: "lifecycle_msgs/srv/GetState"}
+INACTIVE, ACTIVE = 2, 3
+STEPS = {1: (1, "configure"), INACTIVE: (3, "activate")}
+"""The transition towards the active state from unconfigured and inactive, by the number of the state."""
+DEACTIVATE = (4, "deactivate")
+PASSING = range(10, 16)
+"""The states that a node is in only while it makes a transition."""
+TRANSITION_SECONDS = 30.0
+"""How long a transition may take; `on_configure` may load a map."""
+LOOK_AGAIN = 0.2
+"""Seconds after which a node is asked again that makes a transition already."""
+
+
+class LifecycleEndpoints(NamedTuple):
+    """What a lifecycle node is asked by, and what it tells; the topic may be missing."""
+
+    change: RosEndpoint
+    state: RosEndpoint
+    event: RosEndpoint | None
+
+
+def lifecycle_of(
+    name: str, services: Mapping[str, RosEndpoint], topics: Mapping[str, RosEndpoint]
+) -> LifecycleEndpoints | None:
+    """By what a node of a full name is a lifecycle node; None if it is none."""
+    below = name.strip("/")
+    change, state = (services.get(f"{below}/{service}") for service in (CHANGE, STATE))
+    if change is None or state is None or (change.type.name, state.type.name) != (TYPES[CHANGE], TYPES[STATE]):
+        return None
+    return LifecycleEndpoints(change, state, topics.get(f"{below}/{EVENT}"))
+
+
+class NodeLifecycle:
+    """Brings one node into the active state and out of it; on the thread of the bus of the domain."""
+
+    def __init__(self, domain: RosDomain, name: str, endpoints: LifecycleEndpoints, fail: Callable[[str], None]):
+        """`fail` raises FAIL of the node of this full name."""
+        self._domain, self._name, self._endpoints, self._fail = domain, name, endpoints, fail
+        self._turn = 0
+        """Counts activations and their ends: an answer that belongs to an earlier one is passed over."""
+        self._activated = self._active = False
+        """Whether the node was activated here; whether it is active, as far as is known."""
+        self._unfollow: Undo = lambda: None
+
+    def activate(self) -> None:
+        """Have the node be active."""
+        self._turn += 1
+        self._activated = self._active = False
+        event = self._endpoints.event
+        if event is not None:
+            key = event.key(self._domain.number)
+            self._unfollow = self._domain.bus.subscribe(key, partial(self._transition, event))
+        self._look()
+
+    def rest(self) -> None:
+        """Have the node be inactive again, if it was activated here; what comes of that is only told."""
+        self._turn += 1
+        self._unfollow()
+        if self._activated:
+            self._activated = self._active = False
+            self._change(DEACTIVATE, lambda: None, self._domain.tell)
+
+    def _look(self) -> None:
+        self._ask(self._endpoints.state, {}, self._in_state, self._fail)
+
+    def _in_state(self, answer: Mapping[str, Any]) -> None:
+        state, label = answer["current_state"]["id"], answer["current_state"]["label"]
+        if state == ACTIVE:
+            self._active = True
+        elif state in PASSING:
+            turn = self._turn
+            self._domain.bus.later(LOOK_AGAIN, lambda: self._look() if turn == self._turn else None)
+        elif state in STEPS:
+            self._change(STEPS[state], partial(self._changed, state), self._fail)
+        else:
+            self._fail(f"the lifecycle node {self._name} is {label or state}, from where it cannot be activated")
+
+    def _changed(self, before: int) -> None:
+        self._activated = before == INACTIVE
+        self._look()
+
+    def _change(self, transition: tuple[int, str], changed: Callable[[], None], failed: Callable[[str], None]) -> None:
+        number, label = transition
+
+        def heard(answer: Mapping[str, Any]) -> None:
+            if answer["success"]:
+                changed()
+            else:
+                failed(f"the transition {label!r} of the lifecycle node {self._name} has failed")
+
+        self._ask(self._endpoints.change, {"transition": {"id": number, "label": label}}, heard, failed)
+
+    def _ask(
+        self,
+        endpoint: RosEndpoint,
+        fields: Mapping[str, Any],
+        heard: Callable[[Mapping[str, Any]], None],
+        failed: Callable[[str], None],
+    ) -> None:
+        """Ask one of the services; what is answered after this turn is passed over."""
+        # By the name alone: these definitions are older than hashes, and some implementations hash them in their way.
+        kind = ros_messages.usual_type(endpoint.type.name)
+        parts = None if kind is None else ros_messages.service_parts(kind)
+        assert parts is not None, "the services of lifecycle nodes are known"
+        turn, key, answered = self._turn, endpoint.key(self._domain.number), parts.response
+
+        def done(replies: Replies) -> None:
+            if turn != self._turn:
+                return
+            try:
+                heard(ros_messages.message_fields(replies.samples[0].payload, answered))
+            except IndexError:
+                failed(f"the service {endpoint.topic} of a lifecycle node does not answer")
+            except MessageError as error:
+                failed(f"what the service {endpoint.topic} answers {error}")
+
+        own = self._domain.own(key)
+        attachment = RosAttachment(next(own.numbers), time.time_ns(), own.identifier).pack()
+        payload = ros_messages.message(fields, parts.request)
+        self._domain.bus.ask(key, payload, TRANSITION_SECONDS, done, attachment)
+
+    def _transition(self, event: RosEndpoint, sample: Sample) -> None:
+        """The node has told of a transition."""
+        try:
+            goal = ros_messages.message_fields(sample.payload, event.type)["goal_state"]
+        except (MessageError, AttributeError):  # the latter for a definition of the message that is not known
+            return
+        if self._active and goal["id"] != ACTIVE:
+            self._active = self._activated = False
+            self._fail(f"the lifecycle node {self._name} has become {goal['label'] or goal['id']}")

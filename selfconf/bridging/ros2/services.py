@@ -1,0 +1,168 @@
+"""Services of ROS 2 as operations, in both directions: a call is a query on the key of the service, with an attachment.
+
+What the server of a service answers is the answer of an operation that its node offers. What the client of one asks is
+answered by whatever the configuration has connected to the operation that its node needs: for that long the bridge is
+a server of the service, as itself. Requests and responses travel as CDR from node to node, as messages do; where the
+other end is no node they are objects with the fields of the `.srv` definition, if that is known.
+
+Nobody answers in place of a server that ROS 2 has: a client that finds one there is not connected to another one too.
+"""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import Future
+from typing import Any
+
+from selfconf import ros_messages
+from selfconf.bridging.ros2.attachments import RosAttachment
+from selfconf.bridging.ros2.domain import RosDomain, bridge_token
+from selfconf.bridging.ros2.tokens import SERVER, RosEndpoint
+from selfconf.bus.port import Replies, Request, Undo
+from selfconf.errors import PeerError, ProgrammerError
+from selfconf.ros_messages import MessageError, MessageType
+from selfconf.sdk import Component, Refused, Response, Signal
+
+SERVICE_SECONDS = 60.0
+"""How long a service may take; whoever calls an operation that it is may wait for less."""
+
+
+def call_service(domain: RosDomain, endpoint: RosEndpoint, request: Signal) -> Future[Any]:
+    """Ask the server of a service; may be called from any thread. Raises Refused for what is no request of it.
+
+    The future comes to the response, as an object or as CDR as the request was, or to Refused.
+    """
+    payload, answer = _request(endpoint.type, request), Future[Any]()
+    key = endpoint.key(domain.number)
+    own = domain.own(key)
+    attachment = RosAttachment(next(own.numbers), time.time_ns(), own.identifier).pack()
+
+    def heard(replies: Replies) -> None:
+        if not answer.set_running_or_notify_cancel():
+            return
+        try:
+            answer.set_result(_response(endpoint, replies, isinstance(request.value, bytes)))
+        except Refused as refused:
+            answer.set_exception(refused)
+
+    domain.bus.wake_up(lambda: domain.bus.ask(key, payload, SERVICE_SECONDS, heard, attachment))
+    return answer
+
+
+def _request(kind: MessageType, request: Signal) -> bytes:
+    """A request as CDR. Raises Refused."""
+    parts = ros_messages.service_parts(kind)
+    if not isinstance(request.value, bytes):
+        if parts is None:
+            raise Refused(f"the fields of {kind.name} are not known, so that no object can be a request")
+        try:
+            return ros_messages.message({} if request.value is None else request.value, parts.request)
+        except MessageError as error:
+            raise Refused(f"what {request.source.short} asks {error}") from None
+    said = ros_messages.read_media(request.media)
+    if said is None or said.type != (kind if parts is None else parts.request):
+        raise Refused(f"what {request.source.short} asks is no request of {kind.name} by its hash")
+    return request.value
+
+
+def _response(endpoint: RosEndpoint, replies: Replies, as_bytes: bool) -> Any:
+    """What a server has answered. Raises Refused."""
+    who = f"the service {endpoint.topic}"
+    if not replies.samples:
+        late = f"has not answered within {SERVICE_SECONDS:g} s" if not replies.complete else "does not answer"
+        raise Refused(f"{who} refuses: {replies.errors[0][:200]}" if replies.errors else f"{who} {late}")
+    payload, parts = replies.samples[0].payload, ros_messages.service_parts(endpoint.type)
+    if parts is None:
+        return payload
+    try:
+        fields = ros_messages.message_fields(payload, parts.response)
+    except MessageError as error:
+        raise Refused(f"what {who} answers {error}") from None
+    return payload if as_bytes else _listed(fields)
+
+
+def _listed(value: Any) -> Any:
+    """An object with arrays of NumPy as lists, as JSON has them."""
+    if isinstance(value, dict):
+        return {name: _listed(each) for name, each in value.items()}
+    if isinstance(value, list):
+        return [_listed(each) for each in value]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+class ServedService:
+    """The bridge as the server of a service that a node is a client of; on the thread of the bus of the domain."""
+
+    def __init__(self, domain: RosDomain, endpoint: RosEndpoint, name: str, component: Component) -> None:
+        """`name` is that of the operation that the component of the node calls for its client."""
+        self._domain, self._endpoint, self._name, self._component = domain, endpoint, name, component
+        self._open: set[Request] = set()
+        """The requests that wait for an answer."""
+        self._declared: list[Undo] = []
+        key = endpoint.key(domain.number)
+        if domain.has_server(key):
+            domain.tell(f"{endpoint.topic}: a node of ROS 2 serves it, which its clients reach; no other is connected")
+            return
+        self._declared.append(domain.bus.serve(key, self._asked, complete=True))
+        self._declared.append(domain.bus.announce(bridge_token(domain, SERVER, endpoint).key()))
+
+    def end(self) -> None:
+        """Serve no more; who waits for an answer is told so."""
+        for undo in self._declared:
+            undo()
+        for request in list(self._open):
+            self._refuse(request, "what was connected to it is so no more")
+
+    def _asked(self, request: Request) -> None:
+        self._open.add(request)
+        try:
+            attachment = RosAttachment.unpack(request.attachment)
+        except PeerError as error:
+            self._refuse(request, str(error))
+            return
+        parts = ros_messages.service_parts(self._endpoint.type)
+        media = (self._endpoint.type if parts is None else parts.request).media()
+
+        def answered(answer: Response) -> None:  # on the thread of the components' code
+            self._domain.bus.wake_up(lambda: self._answer(request, attachment, answer))
+
+        if not self._component.active:
+            self._refuse(request, "what was connected to it is so no more")
+            return
+        try:
+            self._component.call(self._name, request.payload, answered=answered, seconds=SERVICE_SECONDS, media=media)
+        except ProgrammerError as error:  # it is longer than a request may be
+            self._refuse(request, str(error))
+
+    def _answer(self, request: Request, asked: RosAttachment, answer: Response) -> None:
+        if request not in self._open:
+            return
+        try:
+            payload = self._payload(answer)
+        except MessageError as error:
+            self._refuse(request, str(error))
+            return
+        self._open.discard(request)
+        attachment = RosAttachment(asked.sequence, time.time_ns(), asked.publisher)
+        request.reply(self._endpoint.key(self._domain.number), payload, attachment.pack())
+        request.finish()
+
+    def _payload(self, answer: Response) -> bytes:
+        """An answer as CDR. Raises MessageError."""
+        if not answer:
+            raise MessageError(answer.detail)
+        if isinstance(answer.value, bytes):
+            return answer.value
+        parts = ros_messages.service_parts(self._endpoint.type)
+        if parts is None:
+            raise MessageError(f"the fields of {self._endpoint.type.name} are not known")
+        try:
+            return ros_messages.message({} if answer.value is None else answer.value, parts.response)
+        except MessageError as error:
+            raise MessageError(f"what is answered {error}") from None
+
+    def _refuse(self, request: Request, reason: str) -> None:
+        self._domain.tell(f"{self._endpoint.topic}: a call came to nothing: {reason}")
+        self._open.discard(request)
+        request.refuse(reason)
+        request.finish()

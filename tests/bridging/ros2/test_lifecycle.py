@@ -1,0 +1,109 @@
+"""A lifecycle node is configured and activated by its activation, and deactivated after; what goes wrong is FAIL."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import pytest
+
+from selfconf import ros_messages
+from selfconf.bus.port import Urgency
+from selfconf.protocol.messages import Release
+from tests.bridging.ros2.nodes import DOMAIN, BridgedDomain, StandIn, bridging_domain, node
+from tests.sdk.living import LivingStage, until
+
+pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+LABELS = {1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized"}
+NEXT = {(1, 1): 2, (2, 3): 3, (3, 4): 2}
+"""The state that a transition leads to from another one."""
+
+
+def key_of(name: str) -> str:
+    """The end of the keys of a type."""
+    kind = ros_messages.usual_type(name)
+    assert kind is not None
+    package, segment, local = name.split("/")
+    return f"{package}::{segment}::dds_::{local}_/{kind.hash}"
+
+
+class Managed:
+    """A lifecycle node that does what it is told, but for one transition."""
+
+    def __init__(self, stand_in: StandIn, state: int = 1, fails: int = 0) -> None:
+        self.state, self.made, self._fails = state, list[int](), fails
+        name = stand_in.name
+        event = key_of("lifecycle_msgs/msg/TransitionEvent")
+        stand_in.serves(f"/{name}/change_state", self.change, key_of("lifecycle_msgs/srv/ChangeState"))
+        stand_in.serves(f"/{name}/get_state", self.say, key_of("lifecycle_msgs/srv/GetState"))
+        stand_in.token("MP", f"/{name}/transition_event", key=event)
+        self._events = stand_in.bus.publisher(f"{DOMAIN}/{name}/transition_event/{event}", Urgency.EVENT)
+
+    def change(self, payload: bytes, attachment: bytes) -> tuple[bytes, bytes]:
+        """Make the transition of a request."""
+        transition = payload[4]
+        self.made.append(transition)
+        after = NEXT.get((self.state, transition))
+        done = after is not None and transition != self._fails
+        if after is not None and done:
+            self.state = after
+        return b"\x00\x01\x00\x00" + bytes([done]), attachment
+
+    def say(self, payload: bytes, attachment: bytes) -> tuple[bytes, bytes]:
+        """Say the state."""
+        label = LABELS[self.state].encode() + b"\0"
+        return b"\x00\x01\x00\x00" + struct.pack("<BxxxI", self.state, len(label)) + label, attachment
+
+    def leave(self) -> None:
+        """Leave the active state by itself, and tell so."""
+        kind = ros_messages.usual_type("lifecycle_msgs/msg/TransitionEvent")
+        assert kind is not None
+        self.state = 1
+        told = ros_messages.message({"goal_state": {"id": 1, "label": LABELS[1]}}, kind)
+        self._events.put(told, struct.pack("<qqB16s", 1, 10**9, 16, b"m" * 16))
+
+
+@pytest.mark.parametrize(("state", "made"), [(1, [1, 3, 4]), (2, [3, 4]), (3, [])])
+def test_a_node_is_made_active_and_put_back(living: LivingStage, tmp_path: Path, state: int, made: list[int]) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        managed = Managed(found.node("map"), state)
+        found.activate("map")
+        assert until(lambda: managed.state == 3), found.complaints
+        released = found.stage.call(node("map"), "release", Release(2, living.supervisor, "task~1"))
+        assert until(lambda: released)
+        assert until(lambda: managed.made == made), managed.made
+        assert found.causes() == []
+
+
+def failed(found: BridgedDomain, managed: Managed) -> str:
+    """The reason of the FAIL of a node after its activation."""
+    found.called_for("map")
+    assert until(found.causes), managed.made
+    return found.causes()[0]
+
+
+def test_a_transition_that_fails_is_a_failure(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        managed = Managed(found.node("map"), fails=3)
+        assert failed(found, managed) == "the transition 'activate' of the lifecycle node /map has failed"
+
+
+def test_a_node_that_is_finalized_cannot_be_activated(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        managed = Managed(found.node("map"), state=4)
+        assert failed(found, managed).startswith("the lifecycle node /map is finalized, from where")
+
+
+def test_a_node_that_leaves_the_active_state_by_itself_has_failed(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        managed = Managed(found.node("map"))
+        found.activate("map")
+        assert until(lambda: managed.state == 3), found.complaints
+
+        def fails() -> bool:  # what is published before the state is known to be active is nothing new
+            managed.leave()
+            managed.state = 3
+            return bool(found.causes())
+
+        assert until(fails)
+        assert found.causes() == ["the lifecycle node /map has become unconfigured"]

@@ -1,0 +1,50 @@
+"""The services that are known: their hashes are those that other implementations compute."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf import ros_messages
+from selfconf.ros_messages import MessageType, ServiceParts
+from selfconf.ros_services import SERVICES, parts
+
+pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+# Of AddTwoInts as the design of rmw_zenoh says it, of the others as hiroz 0.2.1, a native implementation, has them.
+HASHES = {
+    "example_interfaces/srv/AddTwoInts": "e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a",
+    "rcl_interfaces/srv/DescribeParameters": "845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
+    "rcl_interfaces/srv/GetParameters": "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc",
+    "rcl_interfaces/srv/GetParameterTypes": "da199c878688b3e530bdfe3ca8f74cb9fa0c303101e980a9e8f260e25e1c80ca",
+    "rcl_interfaces/srv/ListParameters": "3e6062bfbb27bfb8730d4cef2558221f51a11646d78e7bb30a1e83afac3aad9d",
+    "rcl_interfaces/srv/SetParameters": "56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0",
+    "rcl_interfaces/srv/SetParametersAtomically": "0e192ef259c07fc3c07a13191d27002222e65e00ccec653ca05e856f79285fcd",
+}
+
+
+def found(name: str) -> ServiceParts:
+    """The parts of a service that is known."""
+    kind = ros_messages.usual_type(name)
+    assert kind is not None
+    known = ros_messages.service_parts(kind)
+    assert known is not None
+    return known
+
+
+@pytest.mark.parametrize("name", HASHES)
+def test_a_service_has_the_hash_that_others_compute(name: str) -> None:
+    assert ros_messages.usual_type(name) == MessageType(name, f"RIHS01_{HASHES[name]}")
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_the_parts_of_a_service_are_written_and_read(name: str) -> None:
+    for kind, text in zip(found(name), parts(name), strict=True):
+        fields = ros_messages.message_fields(ros_messages.message({}, kind), kind)
+        assert list(fields) == [line.split()[1] for line in text.split("\n") if line]
+
+
+def test_a_request_without_fields_has_an_octet() -> None:
+    assert ros_messages.message({}, found("std_srvs/srv/Trigger").request) == b"\x00\x01\x00\x00\x00"
+
+
+def test_a_service_of_another_hash_is_not_known() -> None:
+    assert ros_messages.service_parts(MessageType("std_srvs/srv/Trigger", "RIHS01_" + "0" * 64)) is None
