@@ -324,8 +324,10 @@ class MemoryBus:
         """Call `action` soon."""
         self.network._at(self.network.time, _again(self, action, timer=False))
 
-    def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
-        """Declare a key to put on."""
+    def publisher(
+        self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None, *, kept: int = 0
+    ) -> _Publisher:
+        """Declare a key to put on; here nobody asks for what was put before."""
         number = next(self._count)
         declared = _Publisher(self, number, key, urgency, matched)
         self._publishers[number] = declared

@@ -137,8 +137,14 @@ class Bus(Protocol):
         """Call `action` on the bus's thread, soon; may be called from any thread."""
         ...
 
-    def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> Publisher:
-        """Declare a key to put on; `matched` is called when there begins to be, or ceases to be, a subscriber."""
+    def publisher(
+        self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None, *, kept: int = 0
+    ) -> Publisher:
+        """Declare a key to put on; `matched` is called when there begins to be, or ceases to be, a subscriber.
+
+        `kept` is how many of the newest samples stay at hand for subscribers that come later and ask for them, as
+        those of other programs than selfconf's do.
+        """
         ...
 
     def subscribe(

@@ -25,6 +25,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import zenoh
+import zenoh.ext
 from zenoh.handlers import Callback, FifoChannel
 
 from selfconf.bus.credentials import Credentials
@@ -281,9 +282,23 @@ class ZenohBus(Loop):
     def _turned(self, _: Any) -> None:
         self._turns += 1
 
-    def publisher(self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None) -> _Publisher:
-        """Declare a key to put on."""
-        declared = self._session.declare_publisher(key, **_QUALITY[urgency])
+    def publisher(
+        self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None, *, kept: int = 0
+    ) -> _Publisher:
+        """Declare a key to put on; what is kept is asked for as Zenoh's advanced subscribers do."""
+        declared: Any
+        if kept:
+            cache = zenoh.ext.CacheConfig(max_samples=kept)
+            declared = zenoh.ext.declare_advanced_publisher(
+                self._session,
+                key,
+                cache=cache,
+                sample_miss_detection=zenoh.ext.MissDetectionConfig(),  # so that samples have numbers, and no clock
+                publisher_detection=True,
+                **_QUALITY[urgency],
+            )
+        else:
+            declared = self._session.declare_publisher(key, **_QUALITY[urgency])
         if matched is not None:
             changed = matched
 

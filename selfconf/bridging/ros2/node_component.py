@@ -32,6 +32,8 @@ MOST_MESSAGES = 5000
 """How many messages a second of one topic are relayed; an inertial sensor publishes a thousand."""
 MOST_OUTGOING = 1000
 """How many messages wait for the network to take them; beyond that the oldest are dropped."""
+MOST_KEPT = 100
+"""How many messages of a topic are kept at most for those that are subscribed later, where that is asked for."""
 LATEST_TIME = 9e9
 """The latest time that an attachment can say, in seconds of the Unix epoch: that of the year 2255."""
 HISTORY = 1.0
@@ -159,7 +161,11 @@ class NodeComponent(Component):
         token = bridge_token(self._domain, PUBLISHER, endpoint)
         # Like rmw_zenoh: only where everything is kept does a publisher wait for a network that is short of room.
         waits = endpoint.quality.keep_all and endpoint.quality.reliable
-        publisher = bus.publisher(key, Urgency.EVENT if waits else Urgency.SIGNAL)
+        quality = endpoint.quality
+        depth = MOST_KEPT if quality.keep_all else min(quality.depth, MOST_KEPT)
+        publisher = bus.publisher(
+            key, Urgency.EVENT if waits else Urgency.SIGNAL, kept=depth if quality.transient_local else 0
+        )
         leave = bus.announce(token.key())
 
         def end() -> None:

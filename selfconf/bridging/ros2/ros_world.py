@@ -14,10 +14,19 @@ from dataclasses import dataclass, field
 
 from selfconf import ros_messages
 from selfconf.bridging.bridge import Bridge
-from selfconf.bridging.ros2.described_nodes import described_node, is_bridged, node_iri, ports_of
+from selfconf.bridging.ros2.described_nodes import OF_EVERY_NODE, described_node, is_bridged, node_iri, ports_of
 from selfconf.bridging.ros2.domain import RosDomain, bridge_token
 from selfconf.bridging.ros2.node_component import NodeComponent
-from selfconf.bridging.ros2.tokens import NODE, PUBLISHER, ROOT, SERVER, NodeIdentity, RosEndpoint, RosToken
+from selfconf.bridging.ros2.tokens import (
+    NODE,
+    PUBLISHER,
+    ROOT,
+    SERVER,
+    SUBSCRIPTION,
+    NodeIdentity,
+    RosEndpoint,
+    RosToken,
+)
 from selfconf.bus.port import Bus, Undo
 from selfconf.errors import PeerError
 from selfconf.importing import ImportedDocument
@@ -58,6 +67,8 @@ class RosWorld:
         self._connect, self._number = connect, domain
         self._nodes: dict[NodeIdentity, RosNode] = {}
         self._by_name: dict[IRI, NodeIdentity] = {}
+        self._on_topic: dict[str, dict[str, RosToken]] = {}
+        """The tokens of the publishers and subscriptions of each topic and type, by their keys."""
 
     def open(self, bridge: Bridge) -> None:
         """Begin to follow the tokens of the domain. Raises NetworkError."""
@@ -87,6 +98,8 @@ class RosWorld:
             return
         if token.node.session == self._domain.session:
             return
+        if token.kind in (PUBLISHER, SUBSCRIPTION) and token.endpoint is not None:
+            self._compare_quality(key, token, token.endpoint, alive)
         if token.kind == PUBLISHER and token.endpoint is not None:
             sources, publisher = (
                 self._domain.sources(token.endpoint.key(self._number)),
@@ -97,6 +110,26 @@ class RosWorld:
             self._domain.server_changed(token.endpoint.key(self._number), key, alive)
         if is_bridged(token):
             self._come(key, token) if alive else self._go(key, token)
+
+    def _compare_quality(self, key: str, token: RosToken, endpoint: RosEndpoint, alive: bool) -> None:
+        """Say which publishers and subscriptions of one topic ROS 2 does not connect, as their qualities differ."""
+        if endpoint.topic in OF_EVERY_NODE:
+            return
+        known = self._on_topic.setdefault(endpoint.key(self._number), {})
+        if not alive:
+            known.pop(key, None)
+            return
+        for other in known.values():
+            if other.kind != token.kind and other.endpoint is not None:
+                publisher, subscription = (token, other) if token.kind == PUBLISHER else (other, token)
+                offered, wanted = (endpoint, other.endpoint) if publisher is token else (other.endpoint, endpoint)
+                why = offered.quality.falls_short_of(wanted.quality)
+                if why is not None:
+                    self._domain.tell(
+                        f"{endpoint.topic}: {publisher.full_name} publishes {why} as {subscription.full_name} asks;"
+                        " ROS 2 does not connect them"
+                    )
+        known[key] = token
 
     def _come(self, key: str, token: RosToken) -> None:
         if token.identity not in self._nodes and len(self._nodes) >= MOST_NODES:

@@ -58,6 +58,17 @@ class RosQuality:
         except ValueError:
             raise PeerError(f"{text[:80]!r} is no quality of service of rmw_zenoh") from None
 
+    def falls_short_of(self, wanted: RosQuality) -> str | None:
+        """In words why ROS 2 connects no publisher of this quality to a subscription of another; None if it does."""
+        if wanted.reliable and not self.reliable:
+            return "best_effort, not reliable"
+        if wanted.transient_local and not self.transient_local:
+            return "volatile, not transient_local"
+        if wanted.period is not None and (self.period is None or self.period > wanted.period):
+            promised = "no deadline" if self.period is None else f"a deadline of {self.period:g} s"
+            return f"with {promised}, not one of {wanted.period:g} s"
+        return None
+
     def __str__(self) -> str:
         seconds = "" if self.period is None else str(int(self.period))
         nanoseconds = "" if self.period is None else str(round(self.period % 1 * 1e9))

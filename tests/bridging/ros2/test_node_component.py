@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import struct
 from pathlib import Path
 
 import pytest
+import zenoh
+import zenoh.ext
 
 from selfconf.bridging.ros2 import node_component
 from selfconf.bus.port import Request, Urgency
@@ -213,3 +216,36 @@ def test_what_a_publisher_keeps_is_asked_for(living: LivingStage, tmp_path: Path
         found.activate("talker")
         assert until(lambda: component.heard)
         assert component.heard[0] == ({"data": "the map"}, 1.0)
+
+
+def joining(stage: LivingStage) -> zenoh.Config:
+    """How a session of somebody else joins the network of a stage."""
+    found = zenoh.Config()
+    found.insert_json5("mode", '"client"')
+    found.insert_json5("connect/endpoints", json.dumps([stage.endpoint]))
+    return found
+
+
+def test_who_comes_late_to_a_topic_gets_what_was_relayed_before(living: LivingStage, tmp_path: Path) -> None:
+    latched = ":1:,1:,:,:,,"
+    with bridging_domain(living, tmp_path / "ads") as found, zenoh.open(joining(living)) as late:
+        publish, heard = found.node("server").publishes("/map", latched), found.node("viewer").hears("/shown", latched)
+        found.activate("server")
+        found.activate("viewer", shown=(Wire(node("server"), "map"),))
+
+        def arrives() -> bool:
+            publish(text("the map"))
+            return bool(heard)
+
+        assert until(arrives)
+        got: list[bytes] = []
+        history = zenoh.ext.HistoryConfig(detect_late_publishers=True)  # as rmw_zenoh's subscriptions of this kind do
+        zenoh.ext.declare_advanced_subscriber(
+            late,
+            f"{DOMAIN}/shown/{STRING_KEY}",
+            lambda sample: got.append(bytes(sample.payload)),
+            history=history,
+            subscriber_detection=True,
+        )
+        assert until(lambda: got)
+        assert got[0] == text("the map")

@@ -80,6 +80,17 @@ def test_of_two_nodes_of_one_name_the_first_counts(living: LivingStage, tmp_path
         assert until(lambda: 'sc:name "two"' in found.advertised() and found.lives("talker"))
 
 
+def test_qualities_that_ros_does_not_connect_are_named(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        found.node("camera").token("MP", "/image", "2::,5:,:,:,,")
+        found.node("viewer").token("MS", "/image")
+        found.node("recorder").token("MS", "/image", "2::,5:,:,:,,")
+        assert until(lambda: all(found.lives(name) for name in ("camera", "viewer", "recorder")))
+        sentence = "/image: /camera publishes best_effort, not reliable as /viewer asks; ROS 2 does not connect them"
+        assert until(lambda: found.complained(sentence))
+        assert not found.complained("/recorder asks")
+
+
 def test_humble_and_what_is_no_token_are_named_and_hinder_nothing(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
         old = found.node("old")

@@ -97,3 +97,21 @@ def test_humble_is_refused_by_a_sentence_of_its_own() -> None:
 def test_what_is_no_token_is_refused(key: str) -> None:
     with pytest.raises(PeerError):
         RosToken.parse(key)
+
+
+@pytest.mark.parametrize(
+    ("offered", "wanted", "why"),
+    [
+        (RosQuality(), RosQuality(), None),
+        (RosQuality(transient_local=True), RosQuality(reliable=False), None),
+        (RosQuality(reliable=False), RosQuality(), "best_effort, not reliable"),
+        (RosQuality(), RosQuality(transient_local=True), "volatile, not transient_local"),
+        (RosQuality(), RosQuality(period=0.1), "with no deadline, not one of 0.1 s"),
+        (RosQuality(period=0.2), RosQuality(period=0.1), "with a deadline of 0.2 s, not one of 0.1 s"),
+        (RosQuality(period=0.1), RosQuality(period=0.2), None),
+    ],
+)
+def test_a_publisher_is_connected_that_offers_what_a_subscription_asks(
+    offered: RosQuality, wanted: RosQuality, why: str | None
+) -> None:
+    assert offered.falls_short_of(wanted) == why
