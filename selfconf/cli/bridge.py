@@ -6,7 +6,7 @@ import argparse
 import importlib.util
 from pathlib import Path
 
-from selfconf.cli.options import add_keys_argument
+from selfconf.cli.options import add_keys_argument, domain
 from selfconf.cli.terminal import complain
 from selfconf.errors import InstallationError
 
@@ -15,8 +15,6 @@ WOT_EXAMPLE = """  selfconf bridge wot examples/imports/lamp.td.json --ecology h
 ROS2_EXAMPLE = """  selfconf bridge ros2 --connect tcp/127.0.0.1:7447 --domain 0 --ecology home"""
 EXAMPLE = f"{WOT_EXAMPLE}\n{ROS2_EXAMPLE}"
 MOST_HERTZ = 100.0
-MOST_DOMAIN = 232
-"""The greatest ROS_DOMAIN_ID that ROS 2 takes."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,7 +71,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where the router of ROS 2 listens (default: %(default)s)",
     )
     ros2.add_argument(
-        "--domain", metavar="N", type=_domain, default=0, help="the ROS_DOMAIN_ID of the nodes (default: %(default)s)"
+        "--domain", metavar="N", type=domain, default=0, help="the ROS_DOMAIN_ID of the nodes (default: %(default)s)"
     )
     _add_site_arguments(ros2)
 
@@ -113,12 +111,6 @@ def run(given: argparse.Namespace) -> int:
     else:
         serve_things(given.sources, given.rate, given.credentials, given.host, site, complain)
     return 0
-
-
-def _domain(text: str) -> int:
-    if not text.isdecimal() or int(text) > MOST_DOMAIN:
-        raise argparse.ArgumentTypeError(f"{text!r} is no domain; it takes a number from 0 to {MOST_DOMAIN}")
-    return int(text)
 
 
 def _rate(text: str) -> float:

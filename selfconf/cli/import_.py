@@ -7,14 +7,17 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from selfconf.cli.options import domain
 from selfconf.cli.terminal import complain
+from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
     from selfconf.importing import ImportedFile, ImportReport
 
 EXAMPLE = """  selfconf import wot examples/imports/lamp.td.json --out ads
   selfconf import ros2 examples/imports --out ads
-  selfconf import wot http://192.0.2.7/.well-known/wot --out ads"""
+  selfconf import wot http://192.0.2.7/.well-known/wot --out ads
+  selfconf import ros2 --connect tcp/127.0.0.1:7447 --domain 0 --out ads"""
 FORM_NAMES = ("wot", "ros2", "owl-s", "peis", "rdf")
 # Those of `selfconf.importing.IMPORT_FORMATS`, which is not loaded to parse arguments; a test compares them.
 
@@ -25,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "sources",
         metavar="SOURCE",
-        nargs="+",
+        nargs="*",
         help="a file, a folder with all files of the format below it, or an http or https URL, which is fetched",
     )
     parser.add_argument(
@@ -40,14 +43,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="IRI",
         help="what the IRIs begin with of components to which their source gives none (default: urn:selfconf:FORMAT:)",
     )
+    parser.add_argument(
+        "--connect",
+        metavar="ENDPOINT",
+        help="for ros2, in the place of sources: where the router of ROS 2 listens; what lives now is imported",
+    )
+    parser.add_argument(
+        "--domain", metavar="N", type=domain, default=0, help="the ROS_DOMAIN_ID of these nodes (default: %(default)s)"
+    )
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
 
 
 def run(given: argparse.Namespace) -> int:
     """0 if all was imported that can be read, 1 if there was nothing to import, 2 if some source cannot be read."""
-    from selfconf.importing import import_descriptions
-
-    report = import_descriptions(given.form, given.sources, given.out, given.namespace)
+    report = _imported(given)
     for unreadable in report.unreadable:
         complain(str(unreadable) if unreadable.file else f"selfconf import: {unreadable}")  # a place comes first
     for each in (*report.renamed, *report.left_out):
@@ -57,6 +66,20 @@ def run(given: argparse.Namespace) -> int:
     else:
         _print_table(report)
     return 2 if report.unreadable else 0 if report.files else 1
+
+
+def _imported(given: argparse.Namespace) -> ImportReport:
+    if given.connect is None:
+        from selfconf.importing import import_descriptions
+
+        if not given.sources:
+            raise AuthorError("name at least one SOURCE to import, or for ros2 a router with --connect")
+        return import_descriptions(given.form, given.sources, given.out, given.namespace)
+    from selfconf.api.living_import import import_living_nodes
+
+    if given.form != "ros2" or given.sources:
+        raise AuthorError("--connect imports the nodes that live in a domain of ROS 2; it goes with ros2 and no SOURCE")
+    return import_living_nodes(given.connect, given.domain, given.out, given.namespace)
 
 
 def _print_table(report: ImportReport) -> None:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 LONGEST_SECONDS = 1e6
 """Seconds that an alarm can be set to everywhere."""
+MOST_DOMAIN = 232
+"""The greatest ROS_DOMAIN_ID that ROS 2 takes."""
 
 
 def add_task_arguments(parser: argparse.ArgumentParser) -> None:
@@ -229,3 +231,10 @@ def one_stdin(*paths: Path) -> None:
     """Raises AuthorError where standard input, which can be read once, is to be more than one thing."""
     if paths.count(STDIN) > 1:
         raise AuthorError("- is standard input, which can be only one of these; give files for the others")
+
+
+def domain(text: str) -> int:
+    """The number of a domain of ROS 2."""
+    if not text.isdecimal() or int(text) > MOST_DOMAIN:
+        raise argparse.ArgumentTypeError(f"{text!r} is no domain; it takes a number from 0 to {MOST_DOMAIN}")
+    return int(text)

@@ -1,8 +1,8 @@
 """Other descriptions of components as advertisements: read, converted, and written as Turtle.
 
-`import_descriptions` is one import from sources to files; its answer is an `ImportReport` with an `ImportedFile` for
-each file and its `FileState`, an `Omission` for what is not in them, and a `Renaming` where a name was taken.
-`IMPORT_FORMATS` are the formats by name.
+`import_descriptions` is one import from sources to files, `import_documents` one of what else is read; its answer is an
+`ImportReport` with an `ImportedFile` for each file and its `FileState`, an `Omission` for what is not in them, and a
+`Renaming` where a name was taken. `IMPORT_FORMATS` are the formats by name.
 
 For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `document_at` makes one of what
 a URL has answered, asked for what is `ACCEPTED`, within `FETCH_SECONDS` and up to `LARGEST_SOURCE` bytes.
@@ -13,7 +13,13 @@ a component of a ROS 2 node's `NodeInterface`s, each of an `InterfaceKind`; `ROS
 a name of a text.
 """
 
-from selfconf.importing.conversion import IMPORT_FORMATS, ImportedFile, ImportReport, import_descriptions
+from selfconf.importing.conversion import (
+    IMPORT_FORMATS,
+    ImportedFile,
+    ImportReport,
+    import_descriptions,
+    import_documents,
+)
 from selfconf.importing.folder import FileState
 from selfconf.importing.imported import (
     ImportedComponent,
@@ -60,5 +66,6 @@ __all__ = [
     "document_at",
     "gather",
     "import_descriptions",
+    "import_documents",
     "slug",
 ]

@@ -69,24 +69,29 @@ class ImportReport:
     unreadable: tuple[AuthorError, ...] = field(default=())
 
 
-def convert(form: ImportFormat, given: Sequence[str], out: Path, namespace: str) -> ImportReport:
-    """Import sources into a folder. Raises AuthorError if the folder cannot be written to."""
-    unreadable: list[AuthorError] = []
-    ledger = ImportLedger(namespace, unreadable.append)
-    documents: dict[str, ImportedDocument] = {}
-    for document in form.importer(gather(given, form.endings, unreadable.append), ledger):
-        documents[f"{ledger.names.file(document.name)}.ttl"] = document
-    states = write_folder(out, {name: turtle(document, form.name) for name, document in documents.items()})
-    files = tuple(ImportedFile(out / name, states[name], document) for name, document in documents.items())
-    return ImportReport(form.name, files, ledger.omissions(), tuple(ledger.names.renamed), tuple(unreadable))
-
-
-def import_descriptions(form: str, given: Sequence[str], out: Path, namespace: str | None = None) -> ImportReport:
-    """Import files, folders and URLs of a format, which is a name of `IMPORT_FORMATS`, as Turtle files in a folder.
+def import_documents(
+    form: str, read: Callable[[ImportLedger], Iterable[ImportedDocument]], out: Path, namespace: str | None = None
+) -> ImportReport:
+    """Write what an importer reads, which notes in a ledger what it leaves out, as Turtle files in a folder.
 
     The namespace is what the IRIs of components begin with to which their source gives none. Raises AuthorError if the
     folder cannot be written to, or the namespace cannot be one; what cannot be read is in the report.
     """
     if namespace is not None and (absolute(namespace) is None or namespace[-1] not in "#/:"):
         raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with #, / or :")
-    return convert(IMPORT_FORMATS[form], given, out, namespace or f"urn:selfconf:{form}:")
+    unreadable: list[AuthorError] = []
+    ledger = ImportLedger(namespace or f"urn:selfconf:{form}:", unreadable.append)
+    documents = {f"{ledger.names.file(document.name)}.ttl": document for document in read(ledger)}
+    states = write_folder(out, {name: turtle(document, form) for name, document in documents.items()})
+    files = tuple(ImportedFile(out / name, states[name], document) for name, document in documents.items())
+    return ImportReport(form, files, ledger.omissions(), tuple(ledger.names.renamed), tuple(unreadable))
+
+
+def import_descriptions(form: str, given: Sequence[str], out: Path, namespace: str | None = None) -> ImportReport:
+    """Import files, folders and URLs of a format, which is a name of `IMPORT_FORMATS`, as `import_documents` does."""
+    known = IMPORT_FORMATS[form]
+
+    def read(ledger: ImportLedger) -> Iterable[ImportedDocument]:
+        return known.importer(gather(given, known.endings, ledger.unreadable), ledger)
+
+    return import_documents(form, read, out, namespace)

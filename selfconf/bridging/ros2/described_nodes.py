@@ -58,10 +58,10 @@ def translated_name(name: str, translation: SignalTranslation) -> str:
     return f"{name} as {translation.name}"
 
 
-def node_iri(token: RosToken) -> IRI:
+def node_iri(token: RosToken, namespace: str = NODE_NAMESPACE) -> IRI:
     """The component that a node is."""
     path = "/".join(map(slug, token.full_name.strip("/").split("/")))
-    return IRI(f"{NODE_NAMESPACE}{token.node.domain}/{path}")
+    return IRI(f"{namespace}{token.node.domain}/{path}")
 
 
 def is_bridged(token: RosToken) -> bool:
@@ -70,12 +70,12 @@ def is_bridged(token: RosToken) -> bool:
 
 
 def ports_of(endpoints: Iterable[RosEndpoint]) -> NodePorts:
-    """The ports and operations of a node; of two endpoints of one name and kind the first counts."""
+    """The ports and operations of a node, by their names; of two endpoints of one name and kind the first counts."""
     found: dict[str, EndpointsByName] = {kind: {} for kind in (PUBLISHER, SUBSCRIPTION, SERVER, CLIENT)}
     for each in sorted(endpoints, key=lambda one: one.entity):
         if each.topic not in OF_EVERY_NODE and not is_hidden(each.topic):
             found[each.kind].setdefault(each.topic.strip("/"), each)
-    return NodePorts(*found.values())
+    return NodePorts(*(dict(sorted(named.items())) for named in found.values()))
 
 
 def is_hidden(name: str) -> bool:
@@ -83,8 +83,8 @@ def is_hidden(name: str) -> bool:
     return any(part.startswith("_") for part in name.split("/"))
 
 
-def described_node(token: RosToken, ports: NodePorts) -> ImportedComponent:
-    """A node as the component that it is."""
+def described_node(token: RosToken, ports: NodePorts, ledger: ImportLedger | None = None) -> ImportedComponent:
+    """A node as the component that it is; a ledger says what its name begins with, and hears what is left out."""
     outputs, inputs, offered, needed = ports
     interfaces = [
         NodeInterface(kind, name, each.type.name, qualities(each.quality))
@@ -97,9 +97,9 @@ def described_node(token: RosToken, ports: NodePorts) -> ImportedComponent:
         for name, each in named.items()
     ]
     source = SourceDocument(f"the domain {token.node.domain} of ROS 2", "", b"")
-    reader = NodeReader(ImportLedger(NODE_NAMESPACE, lambda error: None), source)
+    ledger = ledger or ImportLedger(NODE_NAMESPACE, lambda error: None)
     facts = {"nodeName": token.name, "nodeNamespace": token.namespace or "/"}
-    found = reader.component(node_iri(token), tuple(interfaces), facts)
+    found = NodeReader(ledger, source).component(node_iri(token, ledger.namespace), tuple(interfaces), facts)
     return replace(
         found,
         outputs=tuple(port for each in found.outputs for port in _issuing(each, outputs[each.name])),
