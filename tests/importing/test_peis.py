@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+import selfconf
+from selfconf.api.answer import Answer
 from selfconf.errors import AuthorError
 from selfconf.importing.peis import parse_fields, parse_semantics
 from selfconf.importing.sources import SourceDocument
 from tests.importing.imports import Workshop, left_out
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVE = r"""# Drive.cmp
 Name=drive
 Id=+21
@@ -107,3 +112,40 @@ def test_what_has_no_counterpart_is_named(workshop: Workshop) -> None:
     text = workshop.texts()["x.ttl"]
     assert "<urn:selfconf:peis:name> a sc:Component, <urn:selfconf:peis:Component> ;" in text
     assert "<urn:p> <urn:v>" in text
+
+
+ASTRID = {
+    "drive.cmp": ("wheel_drive", '( (\\"position.0.mi-setvel\\" \\"file:/Data.owl;#PlanarVel\\") ) ( )'),
+    "wheels.cmp": ("encoder", '( ) ( (\\"position.0.odopos\\" \\"file:/Data.owl;#EncoderReading\\") )'),
+    "ring.cmp": (
+        "sonar_array",
+        (
+            '( ) ( (\\"sonar.pose\\" \\"file:/Data.owl;#PlanarPoseB\\")'
+            ' (\\"sonar.range\\" \\"file:/Data.owl;#Distance\\") )'
+        ),
+    ),
+}
+"""Astrid's components as she described them in 2008: the same terms, in texts of our own."""
+PLAYS = {"sonar": "ring", "encoder": "wheels", "drive": "drive"}
+
+
+def test_astrid_of_2008_plays_her_roles_of_figure_7(workshop: Workshop) -> None:
+    texts = {}
+    for name, (kind, ports) in ASTRID.items():
+        support = r"( (\"file:/Objects.owl;#Support\" \"ASTRID\") )"
+        head = rf"\"file:/PeisComponentsHierarchy.owl;#{kind}\" \"{name[:-4]}\" \"Of Astrid.\""
+        said = f"'( {head} {support} ( ) ( ) {ports} )'"
+        texts[name] = f"Name={name[:-4]}\nId=+21\nSemantics=\n\n{said}\n"
+    report = workshop.imported("peis", texts)
+    others = ("thinking-cap.ttl", "person-tracker.ttl")
+    home = selfconf.read(*(file.path for file in report.files), *(EXAMPLES / "peis-home" / name for name in others))
+    task = selfconf.template(EXAMPLES / "navigate.ttl").bind(robot=":Astrid", goal="(AT BEDROOM)")
+    assert not selfconf.partition(task, home)["sonar"].eligible
+    partition = selfconf.partition(task, home, reasoning="subclass")
+    answer = selfconf.configure(task, home, reasoning="subclass")
+    for role, name in PLAYS.items():
+        assert [str(each) for each in partition[role].eligible] == [f"urn:selfconf:peis:{name}"]
+    assert answer
+    assert isinstance(answer, Answer)
+    flows = {(str(each.source).rpartition(":")[2], each.output, each.input) for each in answer.connections}
+    assert {("ring", "sonar.range", "sonar"), ("wheels", "position.0.odopos", "localize")} < flows
