@@ -42,6 +42,8 @@ _CHANNEL = 1 << 17
 """How much a channel holds that Python has not read yet, before Zenoh's thread waits."""
 _TOGETHER = 200
 """How many of them are handed over together: what is urgent waits for as many lives at most."""
+LAST_TOLD = 0.5
+"""Seconds after which it is told which sample was the last one, where samples are kept: the last may be lost, too."""
 _QUALITY: dict[Urgency, dict[str, Any]] = {
     Urgency.SIGNAL: {
         "congestion_control": zenoh.CongestionControl.DROP,
@@ -293,7 +295,7 @@ class ZenohBus(Loop):
                 self._session,
                 key,
                 cache=cache,
-                sample_miss_detection=zenoh.ext.MissDetectionConfig(),  # so that samples have numbers, and no clock
+                sample_miss_detection=zenoh.ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=LAST_TOLD),
                 publisher_detection=True,
                 **_QUALITY[urgency],
             )

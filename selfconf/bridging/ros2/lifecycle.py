@@ -21,7 +21,7 @@ from selfconf.ros_messages import MessageError
 
 CHANGE, STATE, EVENT = "change_state", "get_state", "transition_event"
 """The names of the services and of the topic, below that of the node."""
-TYPES = {CHANGE: "lifecycle_msgs/srv/ChangeState", STATE: "lifecycle_msgs/srv/GetState"}
+LIFECYCLE_TYPES = {CHANGE: "lifecycle_msgs/srv/ChangeState", STATE: "lifecycle_msgs/srv/GetState"}
 INACTIVE, ACTIVE = 2, 3
 STEPS = {1: (1, "configure"), INACTIVE: (3, "activate")}
 """The transition towards the active state from unconfigured and inactive, by the number of the state."""
@@ -30,7 +30,7 @@ PASSING = range(10, 16)
 """The states that a node is in only while it makes a transition."""
 TRANSITION_SECONDS = 30.0
 """How long a transition may take; `on_configure` may load a map."""
-LOOK_AGAIN = 0.2
+STATE_AGAIN = 0.2
 """Seconds after which a node is asked again that makes a transition already."""
 
 
@@ -48,7 +48,11 @@ def lifecycle_of(
     """By what a node of a full name is a lifecycle node; None if it is none."""
     below = name.strip("/")
     change, state = (services.get(f"{below}/{service}") for service in (CHANGE, STATE))
-    if change is None or state is None or (change.type.name, state.type.name) != (TYPES[CHANGE], TYPES[STATE]):
+    if (
+        change is None
+        or state is None
+        or (change.type.name, state.type.name) != (LIFECYCLE_TYPES[CHANGE], LIFECYCLE_TYPES[STATE])
+    ):
         return None
     return LifecycleEndpoints(change, state, topics.get(f"{below}/{EVENT}"))
 
@@ -92,7 +96,7 @@ class NodeLifecycle:
             self._active = True
         elif state in PASSING:
             turn = self._turn
-            self._domain.bus.later(LOOK_AGAIN, lambda: self._look() if turn == self._turn else None)
+            self._domain.bus.later(STATE_AGAIN, lambda: self._look() if turn == self._turn else None)
         elif state in STEPS:
             self._change(STEPS[state], partial(self._changed, state), self._fail)
         else:

@@ -14,14 +14,14 @@ from selfconf.bus.port import Bus
 from selfconf.errors import AuthorError, PeerError
 from selfconf.importing import ImportedDocument, ImportLedger, SourceDocument, slug
 
-ANSWERS = 5.0
+TOKENS_NAMED = 5.0
 """Seconds that the router may take to name all tokens; it answers at once."""
 
 
 def living_graph(bus: Bus, domain: int, ledger: ImportLedger) -> Iterator[ImportedDocument]:
     """The nodes that live in a domain, by their names; what of it cannot be described goes into the ledger."""
     found: list[tuple[str, ...]] = []
-    bus.roll_call(f"{ROOT}/{domain}/**", ANSWERS, found.append)
+    bus.roll_call(f"{ROOT}/{domain}/**", TOKENS_NAMED, found.append)
     bus.run(lambda: bool(found))
     nodes: dict[NodeIdentity, list[RosToken]] = {}
     for key in sorted(found[0]):

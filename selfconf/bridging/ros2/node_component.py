@@ -32,7 +32,7 @@ MOST_MESSAGES = 5000
 """How many messages a second of one topic are relayed; an inertial sensor publishes a thousand."""
 MOST_OUTGOING = 1000
 """How many messages wait for the network to take them; beyond that the oldest are dropped."""
-MOST_KEPT = 100
+MOST_KEPT_MESSAGES = 100
 """How many messages of a topic are kept at most for those that are subscribed later, where that is asked for."""
 LATEST_TIME = 9e9
 """The latest time that an attachment can say, in seconds of the Unix epoch: that of the year 2255."""
@@ -162,7 +162,7 @@ class NodeComponent(Component):
         # Like rmw_zenoh: only where everything is kept does a publisher wait for a network that is short of room.
         waits = endpoint.quality.keep_all and endpoint.quality.reliable
         quality = endpoint.quality
-        depth = MOST_KEPT if quality.keep_all else min(quality.depth, MOST_KEPT)
+        depth = MOST_KEPT_MESSAGES if quality.keep_all else min(quality.depth, MOST_KEPT_MESSAGES)
         publisher = bus.publisher(
             key, Urgency.EVENT if waits else Urgency.SIGNAL, kept=depth if quality.transient_local else 0
         )

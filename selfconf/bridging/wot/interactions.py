@@ -12,10 +12,10 @@ way back the field the value.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 from selfconf import files, library
 from selfconf.bridging.wot.forms import FOLLOWED, ThingForm, ThingForms
@@ -23,6 +23,9 @@ from selfconf.importing import DescribedThing, ImportedComponent, ImportedOperat
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, UNIT, XSD
+
+_Imported = TypeVar("_Imported", ImportedPort, ImportedOperation)
+_Done = TypeVar("_Done")
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,12 +95,9 @@ class ThingInteractions:
 def interactions(thing: DescribedThing, forms: ThingForms, rate: float) -> ThingInteractions:
     """What a bridge does with a thing; `rate` is how often it reads what it cannot follow, in hertz."""
     component, fields, affordances = thing.component, _fields(thing.component), _Affordances(thing.description)
-    fed = {port: _output(port, affordances, forms, fields) for port in component.outputs}
-    outputs = {port: output for port, output in fed.items() if output is not None}
-    written = {port: _write(port, affordances, forms, fields) for port in component.inputs}
-    inputs = {port: taken for port, taken in written.items() if taken is not None}
-    actions = {operation: _action(operation, affordances, forms, fields) for operation in component.operations}
-    operations = {operation: action for operation, action in actions.items() if action is not None}
+    outputs = _usable(component.outputs, lambda port: _output(port, affordances, forms, fields))
+    inputs = _usable(component.inputs, lambda port: _write(port, affordances, forms, fields))
+    operations = _usable(component.operations, lambda operation: _action(operation, affordances, forms, fields))
     inputs |= _commands(operations, {port.name for port in inputs})
     bridged = replace(
         component,
@@ -110,15 +110,20 @@ def interactions(thing: DescribedThing, forms: ThingForms, rate: float) -> Thing
         *(taken.form for taken in inputs.values()),
         *(output.follow for output in outputs.values()),
     ]
-    probe = next((form for form in probes if form is not None), None)
     return ThingInteractions(
         bridged,
         tuple(outputs.values()),
         tuple(inputs.values()),
         tuple(operations.values()),
-        probe,
+        next((form for form in probes if form is not None), None),
         tuple(forms.problems),
     )
+
+
+def _usable(imported: Iterable[_Imported], interaction: Callable[[_Imported], _Done | None]) -> dict[_Imported, _Done]:
+    """What is done with each port or operation with which anything can be done."""
+    found = ((each, interaction(each)) for each in imported)
+    return {each: done for each, done in found if done is not None}
 
 
 class _Affordances:
