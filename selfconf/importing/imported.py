@@ -7,7 +7,7 @@ writer of Turtle takes; a format that is RDF already makes descriptions without 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.model.wording import listed
@@ -38,6 +38,10 @@ class Description:
 
     subject: IRI | BlankNode
     statements: tuple[DescribedStatement, ...]
+
+    def with_statement(self, predicate: IRI, *values: DescribedValue) -> Description:
+        """The description with one statement more, at its end."""
+        return replace(self, statements=(*self.statements, (predicate, values)))
 
     def values(self, predicate: IRI) -> tuple[DescribedValue, ...]:
         """The values of a predicate."""

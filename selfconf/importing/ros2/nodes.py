@@ -10,6 +10,7 @@ from selfconf.importing.imported import Description, ImportedDocument
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import slug, stem
 from selfconf.importing.ros2.components import NodeReader
+from selfconf.importing.ros2.composites import SystemComposites
 from selfconf.importing.ros2.interfaces import TYPE_BASE, NodeInterface
 from selfconf.importing.ros2.model_text import parse_model
 from selfconf.importing.ros2.node_models import NodeModel, node_models
@@ -32,8 +33,9 @@ def import_nodes(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Ite
         except AuthorError as error:
             ledger.unreadable(error)
     wiring = SystemWiring(systems, models, ledger)
+    composites = SystemComposites(wiring, ledger)
     for name, group in groupby(systems, lambda system: stem(system.source)):
-        yield from _systems(name, list(group), wiring, ledger)
+        yield from _systems(name, list(group), wiring, composites, ledger)
     unused = (model for model in models if model not in wiring.used)
     for name, nodes in groupby(unused, lambda model: stem(model.source)):
         kinds = list(nodes)
@@ -57,9 +59,9 @@ def _read(source: SourceDocument, models: list[NodeModel], systems: list[SystemM
 
 
 def _systems(
-    name: str, systems: list[SystemModel], wiring: SystemWiring, ledger: ImportLedger
+    name: str, systems: list[SystemModel], wiring: SystemWiring, composites: SystemComposites, ledger: ImportLedger
 ) -> Iterator[ImportedDocument]:
-    """The nodes of the systems of one source, and a template for each of these."""
+    """The nodes of the systems of one source, a template for each of these, and what is for parts of systems."""
     source, instances = systems[0].source, [each for system in systems for each in wiring.own(system)]
     prefixes = {"": ledger.namespace + slug(systems[0].name) + "/"} | _prefixes(instances)
     nodes = tuple(_instance(each, source, wiring, ledger) for each in instances)
@@ -75,6 +77,15 @@ def _systems(
         prefixes = {"": f"{template}/", "role": f"{template}/role/"}
         path = f"{folder}/{slug(system.name)}" if folder else slug(system.name)
         yield ImportedDocument(f"{path}.template", source.name, tuple(described), prefixes)
+        types, base = _prefixes(wiring.members(system)), ledger.minted(system.name)
+        if composites.parts.get(system.name) is system:
+            described = list(composites.composite(system))
+            named = {"": f"{base}/", "inside": f"{base}/inside/role/"}
+            yield ImportedDocument(f"{path}.composite", source.name, tuple(described), named | types)
+        described = composites.template_of_parts(system)
+        if described:
+            named = {"": f"{base}/parts/", "role": f"{base}/parts/role/", "part": f"{base}/parts/part/"}
+            yield ImportedDocument(f"{path}.parts.template", source.name, tuple(described), named)
 
 
 def _instance(

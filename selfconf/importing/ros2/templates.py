@@ -28,36 +28,45 @@ def system_template(
 ) -> list[Description]:
     """The template of a system, its roles, and its interactions."""
     roles = {instance.key: role_of(template, instance, system) for instance in members}
-    found = [
-        Description(
-            template,
-            (
-                (TYPE, (SC.Template,)),
-                (LABEL, (Literal(f"ROS 2 system {system}"),)),
-                (SC.roles, (TermList(tuple(roles.values())),)),
-            ),
-        )
-    ]
+    found = [template_head(template, system, roles.values())]
     for instance in members:
-        facts = (_fact(ROS2.nodeName, instance.node.name), _fact(ROS2.system, instance.system))
+        facts = (fact(ROS2.nodeName, instance.node.name), fact(ROS2.system, instance.system))
         package, _, kind = instance.node.model.partition(".")
         kind = instance.model.name if instance.model else kind
         role = ((TYPE, (SC.Role,)), (SH["class"], (node_class(package, kind) or ROS2.Node,)), (SH.property, facts))
         found.append(Description(roles[instance.key], role))
     for number, pair in enumerate(pairs, 1):
         called = "" if pair.output.kind in TOPICS else CALL_MARK
-        interaction: tuple[DescribedStatement, ...] = (
-            (TYPE, (SC.Interaction,)),
-            (SC["from"], (roles[pair.source.key],)),
-            (SC.output, (Literal(pair.output.name + called),)),
-            (SC.to, (roles[pair.sink.key],)),
-            (SC.input, (Literal(pair.input.name + called),)),
-        )
-        found.append(Description(IRI(f"{template}/connection/{number}"), interaction))
+        ends = (roles[pair.source.key], pair.output.name + called, roles[pair.sink.key], pair.input.name + called)
+        found.append(interaction(template, number, *ends))
     return found
 
 
-def _fact(path: IRI, value: str) -> NestedNode:
+def template_head(template: IRI, system: str, roles: Iterable[IRI]) -> Description:
+    """The template of a system, as far as it stands in its roles."""
+    return Description(
+        template,
+        (
+            (TYPE, (SC.Template,)),
+            (LABEL, (Literal(f"ROS 2 system {system}"),)),
+            (SC.roles, (TermList(tuple(roles)),)),
+        ),
+    )
+
+
+def interaction(template: IRI, number: int, source: IRI, output: str, sink: IRI, taken: str) -> Description:
+    """A connection of a template between two roles, by the names of the ports."""
+    statements: tuple[DescribedStatement, ...] = (
+        (TYPE, (SC.Interaction,)),
+        (SC["from"], (source,)),
+        (SC.output, (Literal(output),)),
+        (SC.to, (sink,)),
+        (SC.input, (Literal(taken),)),
+    )
+    return Description(IRI(f"{template}/connection/{number}"), statements)
+
+
+def fact(path: IRI, value: str) -> NestedNode:
     """What a component has to say of itself."""
     said = TermList((Literal(value),))
     return NestedNode(((SH.path, (path,)), (SH["in"], (said,)), (SH.minCount, (Literal("1", XSD.integer),))))
