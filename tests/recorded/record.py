@@ -1,9 +1,10 @@
 """Record what selfconf answers now, say what has changed since the record, or show one answer.
 
-    python -m tests.recorded.record answers      record the structure of all answers: codes, members, exit codes
-    python -m tests.recorded.record sentences    record the sentences alone, after rewording them
-    python -m tests.recorded.record show NAME    show what is recorded of a case, and the files of a random ecology
-    python -m tests.recorded.record count        count how often which codes occur in the random ecologies
+    python -m tests.recorded.record answers            record the structure of all answers: codes, members, exit codes
+    python -m tests.recorded.record sentences          record the sentences alone, after rewording them
+    python -m tests.recorded.record answers examples   only those of one group
+    python -m tests.recorded.record show NAME          show what is recorded of a case, and its files
+    python -m tests.recorded.record count              count how often which codes occur in the random ecologies
 
 Type it in the root of the tree. The first two name every answer that differs from the record before: look through
 them before you commit. A record is compressed JSON; `git diff` cannot show it, the test and these commands can.
@@ -18,7 +19,7 @@ import os
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -90,10 +91,10 @@ def compared(group: str, found: Mapping[str, Answer], part: str, most: int = 40)
     return "\n".join([head, *lines[:most], *rest])
 
 
-def record(part: str) -> None:
-    """Record one part of every answer, and say what has changed."""
-    kept: Record = {}
-    for group in GROUPS:
+def record(part: str, groups: Iterable[str]) -> None:
+    """Record one part of every answer of some groups, and say what has changed."""
+    kept = load(part)
+    for group in groups:
         with tempfile.TemporaryDirectory() as here:
             found = answers(group, Path(here))
         print(compared(group, found, part, most=1_000) or f"{part} of {group}: as recorded")
@@ -144,8 +145,12 @@ def main() -> int:
     """The command line."""
     parser = argparse.ArgumentParser(description="record what selfconf answers")
     parser.add_argument("what", choices=("answers", "sentences", "show", "count"))
-    parser.add_argument("name", nargs="?", default="", help="which case, for show; how its name begins is enough")
+    parser.add_argument(
+        "name", nargs="?", default="", help="which group to record; for show, how the name of a case begins"
+    )
     given = parser.parse_args()
+    if given.what in ("answers", "sentences") and given.name not in ("", *GROUPS):
+        parser.error(f"there is no group {given.name}, but {', '.join(GROUPS)}")
     if given.what == "show":
         show(given.name)
     elif given.what == "count":
@@ -153,7 +158,7 @@ def main() -> int:
     else:
         with tempfile.TemporaryDirectory() as runtime:
             os.environ["SELFCONF_RUNTIME_DIR"] = runtime
-            record(given.what)
+            record(given.what, [given.name] if given.name else GROUPS)
     return 0
 
 
