@@ -19,8 +19,7 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
-from selfconf.model.refusal import Conflict, Outcome, Refusal, TooFewEligible, Undecided
-from selfconf.model.requirement import RolePlayed
+from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
@@ -30,7 +29,8 @@ from selfconf.search.additions import with_additions
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
-from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, priced, recruited
+from selfconf.search.recruit_refusal import refusal_of_recruits
+from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, recruited
 from selfconf.search.relaxations import NEAR, with_relaxations
 from selfconf.search.strategies import BEST_STEPS, algorithm_1, answers, best_configuration, possible
 from selfconf.search.what_if import consequences
@@ -67,12 +67,6 @@ def _admitted(near: NearMiss, variables: Sequence[Variable]) -> tuple[int, ...]:
         of_its_own = allowed is not None and not allowed <= set(variable.domain)
         masks.append(ANY_VALUE if allowed is None else known | of_its_own << len(variable.domain))
     return tuple(masks)
-
-
-def _nearest(problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
-    """What keeps most of a configuration that runs."""
-    assert running is not None
-    yield nearest_configuration(problem, running)
 
 
 AnswersOf = Callable[[Problem, Configuration | None], Iterator[Optimum | Outcome]]
@@ -145,7 +139,7 @@ class Composer:
             running = with_outside_player(running, self.outside)
         problem = self._problem(self.partition(ecology), lost, played)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
-        for answer in self._with_recruits(problem, self._with_additions(self._search, problem, running), running):
+        for answer in self._with_additions(self._search, problem, running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
             if isinstance(outcome, Configuration):
                 wrong = certificate.broken_conditions(self._task, problem.partition, outcome, self.hierarchy)
@@ -172,25 +166,14 @@ class Composer:
         self, problem: Problem, found: Iterator[Optimum | Outcome], running: Configuration | None
     ) -> Iterator[Optimum | Outcome]:
         """Answers with the recruits that they need; where there are none, the first answer that has some."""
-        kept = () if running is None else running.recruits
         for answer in found:
-            outcome = answer.configuration if isinstance(answer, Optimum) else answer
-            if not isinstance(outcome, Configuration) or not any(role.recruits for role in problem.roles):
+            if not isinstance(answer, Configuration) or not any(role.recruits for role in problem.roles):
                 yield answer
                 continue
             steps = RECRUIT_STEPS if self.steps is None else self.steps
-            whole = recruited(problem, outcome, kept, steps)
+            whole = recruited(problem, answer, () if running is None else running.recruits, steps)
             other = first_recruited(problem, steps, running) if whole is None else whole[0]
-            if other is None:
-                roles = tuple(role.iri for role in problem.roles)
-                conflict = Conflict(roles, requirements=tuple(map(RolePlayed, roles)))
-                yield Refusal(self.task.task.template.iri, (conflict,), irreducible=False, smallest=False)
-            elif isinstance(answer, Optimum) and isinstance(other, Configuration):
-                # Where these players have no recruits, others have, of whom nothing is known but that they come first.
-                found_for = answer if whole is not None else replace(answer, proved=False)
-                yield priced(problem, found_for, other)
-            else:
-                yield other
+            yield refusal_of_recruits(problem) if other is None else other
 
     def _with_additions(
         self, search: AnswersOf, problem: Problem, running: Configuration | None
@@ -204,9 +187,11 @@ class Composer:
             yield answer
 
     def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
-        if self.strategy is Strategy.BEST:
-            yield from self._best(problem, running)
-            return
+        found = self._best if self.strategy is Strategy.BEST else self._first_or_nearest
+        # The best are chosen together with their recruits.
+        yield from self._with_recruits(problem, found(problem, running), running)
+
+    def _first_or_nearest(self, problem: Problem, running: Configuration | None) -> Iterator[Outcome]:
         found = algorithm_1(problem, self.steps) if self.strategy is Strategy.PAPER else None
         if found is not None:
             yield found
@@ -218,6 +203,11 @@ class Composer:
             *_, whole = answers(problem, self.steps)
             near = nearest(problem, running, self.steps) if isinstance(whole, Configuration) else whole
             yield near.configuration if isinstance(near, Reconfiguration) else near
+
+    def _nearest(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
+        """What keeps most of a configuration that runs."""
+        assert running is not None
+        yield from self._with_recruits(problem, iter((nearest_configuration(problem, running),)), running)
 
     def _best(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         most = SLICES[-1] if self.steps is None else self.steps
@@ -278,11 +268,10 @@ class Composer:
     def _after(self, problem: Problem, running: Configuration) -> Configuration | Refusal:
         """What comes after a configuration that runs."""
         if self.strategy is Strategy.BEST:
-            *_, found = self._with_recruits(problem, self._with_additions(self._best, problem, running), running)
+            *_, found = self._with_additions(self._best, problem, running)
             if not isinstance(found, Undecided):
                 return found.configuration if isinstance(found, Optimum) else found
-        answers = self._with_additions(_nearest, problem, running)
-        *_, near = self._with_recruits(problem, answers, running)
+        *_, near = self._with_additions(self._nearest, problem, running)
         return near if isinstance(near, Configuration | Refusal) else Refusal(self.task.task.template.iri, ())
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:

@@ -92,6 +92,10 @@ class Partition:
         left = tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates)
         return self._narrowed(left, recruits)
 
+    def without_recruits(self) -> Partition:
+        """The partition with which players have to be enough."""
+        return replace(self, recruits=())
+
     def with_only(self, role: int, component: IRI) -> Partition:
         """The partition in which one component alone is eligible for a role, given by its number."""
         only = tuple(c for c in self.candidates[role] if c.profile.component == component)

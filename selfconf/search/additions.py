@@ -13,6 +13,7 @@ from itertools import combinations_with_replacement
 
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
+from selfconf.search.recruiting import possible_with_recruits
 from selfconf.search.strategies import possible
 
 MOST_ADDITIONS = 3
@@ -34,7 +35,9 @@ def with_additions(problem: Problem) -> Problem | None:
         if number == MOST_CHOICES:
             return None
         raised = asking_for(problem, minima)
-        if possible(raised, Budget(CHOICE_STEPS)):
+        if possible(raised, Budget(CHOICE_STEPS)) and (
+            not any(role.recruits for role in problem.roles) or possible_with_recruits(raised, CHOICE_STEPS)
+        ):
             return raised
     return None
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines import ClauseSolver, solver_available
+from selfconf.search.engines import FoundedSolver, solver_available
 from selfconf.search.recruit_choice import RecruitChoice
-from selfconf.search.reduction import ReducedProblem
+
+WithoutSpare = Callable[[Sequence[int]], list[int]]
+"""Recruits that are enough, by number, without those that can be spared."""
 
 
 def fewest(choice: RecruitChoice, budget: Budget) -> tuple[list[int], bool]:
@@ -17,34 +19,34 @@ def fewest(choice: RecruitChoice, budget: Budget) -> tuple[list[int], bool]:
     met = choice.without_spare(choice.chain())
     if not met or not solver_available():
         return met, not met
-    with _Clauses(choice, met) as search:
+    reduced, wanted = choice.reduced()
+    with FoundedSolver(reduced, wanted) as clauses:
+        order = [option.number for option in reduced.options[-1]]
+        return fewest_of(clauses, order, met, choice.without_spare, budget)
+
+
+def fewest_of(
+    clauses: FoundedSolver, order: Sequence[int], met: list[int], without_spare: WithoutSpare, budget: Budget
+) -> tuple[list[int], bool]:
+    """Return the fewest recruits that the clauses allow, the first of them in an order, and whether that is proved.
+
+    `met` are recruits that they allow.
+    """
+    with ExitStack() as stack:
+        search = _Counting(clauses, order, met, without_spare, stack)
         return search.best(budget)
 
 
-class _Clauses:
-    """The choice of recruits as clauses; use it in a `with` statement."""
+class _Counting:
+    """A solver with a counter of the recruits that are chosen."""
 
-    def __init__(self, choice: RecruitChoice, met: list[int]) -> None:
-        self.choice, self.met = choice, met
-        self._stack = ExitStack()
-        self._clauses = self._stack.enter_context(ClauseSolver(ReducedProblem((), (), (), ())))
-        self._chosen = {number: self._clauses.literal() for number in choice.ordered(choice.needs)}
-        for need in choice.wanted:
-            self._clauses.add(self._literals(need.suppliers))
-        for number, needs in choice.needs.items():
-            for need in needs:
-                self._clauses.add([-self._chosen[number], *self._literals(need.suppliers)])
-        self._clauses.prefer(-literal for literal in self._chosen.values())
-        self._counter = self._clauses.counter(list(self._chosen.values()), self._stack) if self._chosen else None
-
-    def __enter__(self) -> _Clauses:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
-
-    def _literals(self, numbers: Sequence[int]) -> list[int]:
-        return [self._chosen[number] for number in numbers]
+    def __init__(
+        self, clauses: FoundedSolver, order: Sequence[int], met: list[int], spare: WithoutSpare, stack: ExitStack
+    ) -> None:
+        self.met, self._clauses, self._without_spare = met, clauses, spare
+        self._chosen = {number: clauses.recruits[number] for number in order}
+        clauses.prefer(-literal for literal in self._chosen.values())
+        self._counter = clauses.counter(list(self._chosen.values()), stack) if self._chosen else None
 
     def best(self, budget: Budget) -> tuple[list[int], bool]:
         """The fewest, and of these the first by preference; and whether both are proved."""
@@ -78,29 +80,11 @@ class _Clauses:
 
     def _answer(self, assumed: list[int], most: int, budget: Budget) -> list[int] | Undecided | None:
         """At most a number of recruits that are enough; None if there are none."""
-        if most < 1:
+        if most < 0 or (most == 0 and assumed):
             return None
         bound = [-self._clauses.at_least(self._counter, most + 1)] if 0 < most < len(self._chosen) else []
-        while True:
-            found = self._clauses.solve([*assumed, *bound], budget)
-            if isinstance(found, Undecided):
-                return found
-            if not found:
-                return None
-            chosen = [number for number, literal in self._chosen.items() if self._clauses.holds(literal)]
-            unfounded = set(chosen).difference(self.choice.placed(chosen))
-            if not unfounded:
-                return self.choice.without_spare(chosen)
-            self._exclude(unfounded)
-
-    def _exclude(self, loop: set[int]) -> None:
-        """Add the loop formula of recruits that only feed each other: one of them is fed from outside."""
-        outside: list[int] = []
-        for number in sorted(loop):
-            fed = self._clauses.literal()
-            for need in self.choice.needs[number]:
-                others = [supplier for supplier in need.suppliers if supplier not in loop]
-                self._clauses.add([-fed, *self._literals(others)])
-            outside.append(fed)
-        for number in loop:
-            self._clauses.add([-self._chosen[number], *outside])
+        bound += [-literal for literal in self._chosen.values()] if not most else []
+        found = self._clauses.solve([*assumed, *bound], budget)
+        if isinstance(found, Undecided):
+            return found
+        return self._without_spare(self._clauses.recruited()) if found else None

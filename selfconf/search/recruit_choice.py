@@ -10,8 +10,11 @@ from selfconf.model.configuration import Configuration, Connection, ordered_conn
 from selfconf.model.partition import Recruit
 from selfconf.model.profile import Input, Output, Profile, WantedSignal
 from selfconf.model.term import IRI
-from selfconf.search.problem import Problem
+from selfconf.search.problem import Feeder, Problem
+from selfconf.search.reduction import NO_COMPONENT, InterchangeabilityClass, Need, Option, ReducedProblem
 
+UNSAID = WantedSignal((), None)
+"""What a choice of suppliers is wanted for, where its number says all."""
 Suppliers = tuple[int, ...]
 """The numbers of the recruits that could feed an input."""
 
@@ -162,12 +165,40 @@ class RecruitChoice:
 
     def without_spare(self, chosen: Sequence[int]) -> list[int]:
         """Recruits without those that can be spared, the last by preference first."""
-        left = self.ordered(chosen)
-        for number in reversed(left):
-            fewer = [other for other in left if other != number]
-            if not self._only_supplier(number, set(fewer)) and self.sufficient(fewer):
-                left = fewer
+        left, before = self.ordered(chosen), -1
+        # Again until nothing goes: once one is spared, those that fed it alone can be spared as well.
+        while len(left) != before:
+            before = len(left)
+            for number in reversed(left):
+                fewer = [other for other in left if other != number]
+                if not self._only_supplier(number, set(fewer)) and self.sufficient(fewer):
+                    left = fewer
         return left
+
+    def reduced(self) -> tuple[ReducedProblem, list[int]]:
+        """The choice as options of a role without slots, in the order in which they are chosen, and needs of players.
+
+        The needs are the choices of suppliers, by number.
+        """
+        every = (*self.wanted, *(need for needs in self.needs.values() for need in needs))
+        number = {key: place for place, key in enumerate(dict.fromkeys(id(need.suppliers) for need in every))}
+        options = [
+            Option(
+                one,
+                NO_COMPONENT,
+                InterchangeabilityClass(
+                    0,
+                    tuple(dict.fromkeys(number[id(need.suppliers)] for need in self.needs[one])),
+                    tuple(number[id(suppliers)] for suppliers in self._feeds.get(one, ())),
+                    (),
+                    one,
+                ),
+            )
+            for one in self.ordered(self.needs)
+        ]
+        needs = tuple(Need(0, UNSAID, (Feeder(0),)) for _ in number)
+        wanted = list(dict.fromkeys(number[id(need.suppliers)] for need in self.wanted))
+        return ReducedProblem((), (tuple(options),), needs, ()), wanted
 
     def _only_supplier(self, number: int, others: set[int]) -> bool:
         """Whether a need of a player, or of others that are chosen, has no supplier but this recruit."""

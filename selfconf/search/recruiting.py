@@ -14,24 +14,27 @@ library, or where the steps end, the answer is what is left of a chain of suppli
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection
 from dataclasses import replace
-from fractions import Fraction
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import cost, unknown
-from selfconf.model.optimum import Optimum
-from selfconf.model.profile import Profile
+from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
-from selfconf.search.engines import CandidateSearch
+from selfconf.search.engines import CandidateSearch, FoundedSolver, least_of_clauses, solver_available
 from selfconf.search.fewest_recruits import fewest
 from selfconf.search.problem import Problem
-from selfconf.search.recruit_choice import RecruitChoice, players_of
+from selfconf.search.recruit_choice import RecruitChoice
+from selfconf.search.reduction import (
+    ReducedProblem,
+    assigned,
+    needed_signals,
+    pruned,
+    signals_served,
+    with_recruits,
+)
 
-_NO_ROLE = IRI("")
-"""The role of a recruit, which no term of a cost names."""
 RECRUIT_STEPS = 200_000
 """Steps spent at most on finding the fewest recruits, each a conflict of the solver or a call of it."""
 
@@ -59,18 +62,74 @@ def first_recruited(
     """Return the configuration of the first players for whom there are recruits, or None.
 
     For when the first solution is not one of them: recruits may need what a player issues, or play a role themselves.
-    With a configuration that runs, its players and recruits come before all others.
+    With a configuration that runs they are the first of those that keep the most of its players in their roles.
     """
+    search = _by_clauses if solver_available() else _by_enumeration
+    playing = None if problem.valueless else search(problem, Budget(steps), running)
+    if isinstance(playing, Undecided):
+        return Undecided(steps)
+    if playing is None:
+        return None
+    found = recruited(problem, problem.solved(playing), () if running is None else running.recruits, steps)
+    assert found is not None
+    return found[0]
+
+
+def possible_with_recruits(problem: Problem, steps: int) -> bool:
+    """Return whether a configuration, with recruits for its players, is found within some steps."""
     budget = Budget(steps)
+    if problem.valueless or not solver_available():
+        return not problem.valueless and isinstance(_by_enumeration(problem, budget, None), list)
+    with founded(problem, pruned(with_recruits(problem))) as clauses:
+        return clauses.solve((), budget) is True
+
+
+def founded(
+    problem: Problem, reduced: ReducedProblem, irredundant: bool = False, guarded: bool = False
+) -> FoundedSolver:
+    """Return a solver for the players and recruits of a problem, given as options of one reduced problem."""
+    recruits = {problem.supply.recruits[o.number].component: o.number for o in reduced.options[-1]}
+    return FoundedSolver(reduced, components=recruits, irredundant=irredundant, guarded=guarded)
+
+
+def _by_clauses(
+    problem: Problem, budget: Budget, running: Configuration | None
+) -> list[list[Candidate]] | Undecided | None:
+    """Return the first players for whom there are recruits, by clause learning."""
+    with founded(problem, pruned(with_recruits(problem, () if running is None else running.players))) as clauses:
+        found = clauses.solve((), budget)
+        if isinstance(found, Undecided) or not found:
+            return found or None
+        if running is not None:
+            clauses.maximise(_staying(clauses, running), budget)
+            clauses.solve((), budget)
+        chosen = least_of_clauses(clauses, budget)
+        return chosen if isinstance(chosen, Undecided) else assigned(problem, chosen)
+
+
+def _staying(clauses: FoundedSolver, running: Configuration) -> list[int]:
+    """Return the literals of the options by which a component that runs would play its role."""
+    return [
+        literal
+        for assignment, options, literals in zip(
+            running.assignments, clauses.reduced.options[:-1], clauses.plays[:-1], strict=True
+        )
+        for option, literal in zip(options, literals, strict=True)
+        if option.component in assignment.components
+    ]
+
+
+def _by_enumeration(
+    problem: Problem, budget: Budget, running: Configuration | None
+) -> list[list[Candidate]] | Undecided | None:
+    """Return the first players for whom there are recruits, by depth-first search; those that run come first."""
     search = CandidateSearch(problem if running is None else _running_first(problem, running), budget)
     relevant = _relevant_roles(problem)
     search.matters = max((place for place, role in enumerate(search.slots) if role in relevant), default=-1)
-    kept = () if running is None else running.recruits
     for playing in search.solutions():
-        found = recruited(problem, problem.solved(playing), kept, steps)
-        if found is not None:
-            return found[0]
-    return None if budget.steps else Undecided(steps)
+        if RecruitChoice(problem, problem.solved(playing), ()).possible:
+            return playing
+    return None if budget.steps else Undecided(0)
 
 
 def _relevant_roles(problem: Problem) -> set[int]:
@@ -80,33 +139,12 @@ def _relevant_roles(problem: Problem) -> set[int]:
     need, or what somebody needs who could be recruited for that: as it plays a role, it cannot be recruited.
     """
     recruiting = {number for number, role in enumerate(problem.roles) if role.recruits}
-    needed = _needed(problem, [c.profile for number in recruiting for c in problem.candidates[number]])
+    needed = needed_signals(problem, [c.profile for number in recruiting for c in problem.candidates[number]])
     found = recruiting.union(*(problem.sources[number] for number in recruiting))
     for number, some in enumerate(problem.candidates):
-        if any(needed.intersection(_issued(problem, candidate.profile)) for candidate in some):
+        if any(needed.intersection(signals_served(problem, candidate.profile)) for candidate in some):
             found.add(number)
     return found
-
-
-def _needed(problem: Problem, profiles: Iterable[Profile]) -> set[IRI]:
-    """Return the signals that some components need, and those that recruits for these need in turn."""
-    suppliers: dict[IRI, list[Profile]] = {}
-    for recruit in problem.supply.recruits:
-        for signal in _issued(problem, recruit.profile):
-            suppliers.setdefault(signal, []).append(recruit.profile)
-    waiting = [port for profile in profiles for port in profile.required]
-    needed: set[IRI] = set()
-    while waiting:
-        for signal in waiting.pop().signals:
-            if signal not in needed:
-                needed.add(signal)
-                waiting += [port for profile in suppliers.get(signal, ()) for port in profile.required]
-    return needed
-
-
-def _issued(problem: Problem, profile: Profile) -> Iterator[IRI]:
-    """Yield the signals that the outputs of a component serve."""
-    return (signal for output in profile.outputs for signal in problem.hierarchy.served(output.signals))
 
 
 def _running_first(problem: Problem, running: Configuration) -> Problem:
@@ -117,47 +155,3 @@ def _running_first(problem: Problem, running: Configuration) -> Problem:
         for role, some in zip(problem.roles, problem.candidates, strict=True)
     )
     return Problem(problem.task, replace(problem.partition, candidates=candidates), problem.hierarchy)
-
-
-def priced(problem: Problem, optimum: Optimum, configuration: Configuration) -> Optimum:
-    """Return an optimum with a configuration that has recruits: these cost as players do, in no role.
-
-    What a solution costs is what its first players cost, as many as each role asks for, and its recruits. That nothing
-    costs less is proved only where there are no recruits, and none could make a solution cheaper.
-    """
-    levels, hierarchy = problem.task.template.cost, problem.hierarchy
-    profiles = {recruit.component: recruit.profile for recruit in problem.supply.recruits}
-    minima = {
-        c
-        for a, role in zip(configuration.assignments, problem.roles, strict=True)
-        for c in a.components[: role.minimum]
-    }
-    counted = [
-        (problem.roles[number].iri, profile)
-        for component, (number, profile) in players_of(problem, configuration)
-        if component in minima
-    ]
-    counted += [(_NO_ROLE, profiles[component]) for component in configuration.recruits]
-    amounts = [cost(levels, role, profile, hierarchy)[1:] for role, profile in counted]
-    cheaper = any(amount < 0 for one in profiles.values() for amount in cost(levels, _NO_ROLE, one, hierarchy))
-    return replace(
-        optimum,
-        configuration=configuration,
-        bound=_with_cheapest(problem, optimum.bound),
-        cost=tuple(sum(level, Fraction(0)) for level in zip(*amounts, strict=True)),
-        missing=tuple(
-            (one.component, wanted) for role, one in counted for wanted in unknown(levels, role, one, hierarchy)
-        ),
-        proved=optimum.proved and not configuration.recruits and not cheaper,
-    )
-
-
-def _with_cheapest(problem: Problem, bound: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
-    """Return a bound of what players cost, less all that recruits could make a solution cheaper."""
-    levels, hierarchy = problem.task.template.cost, problem.hierarchy
-    profiles = (recruit.profile for recruit in problem.supply.recruits)
-    amounts = [cost(levels, _NO_ROLE, profile, hierarchy)[1:] for profile in profiles]
-    return tuple(
-        least + sum((min(one[number], Fraction(0)) for one in amounts), Fraction(0))
-        for number, least in enumerate(bound)
-    )

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from itertools import combinations, product
 
 import pytest
@@ -13,16 +12,13 @@ from hypothesis import strategies as st
 
 from selfconf import certificate
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import CostTerm
-from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate, Recruit
 from selfconf.model.profile import Profile, WantedSignal
 from selfconf.model.refusal import Refusal
-from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import first_recruited, priced, recruited
-from selfconf.search.strategies import best, first
+from selfconf.search.recruiting import first_recruited, recruited
+from selfconf.search.strategies import first
 from tests.effort import NIGHTLY
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems
@@ -92,19 +88,23 @@ class RecruitingWorld(World):
         port = component("x", "i:S").inputs[0]._replace(signals=wanted.signals, condition=wanted.condition)
         return any(self.feeds(output, port, False) for profile in sources for output in profile.outputs)
 
-    def answer(self) -> tuple[Players, tuple[Recruit, ...]] | None:
-        """The first players for whom there are recruits, with the fewest of these, the first."""
+    def playable(self) -> Iterator[tuple[Players, list[tuple[int, WantedSignal]]]]:
+        """Distinct players who share their values, in order, with what recruits have to feed."""
         choices = [combinations(c, role.minimum) for c, role in zip(self.candidates, self.roles, strict=True)]
         for players in product(*map(list, choices)):
             names = [c.profile.component for some in players for c in some]
             needs = self.lacking(players)
             if (
-                needs is None
-                or len(set(names)) < len(names)
-                or self.unset(players)
-                or not all(allowed is None or allowed for allowed in self.values(players))
+                needs is not None
+                and len(set(names)) == len(names)
+                and not self.unset(players)
+                and all(allowed is None or allowed for allowed in self.values(players))
             ):
-                continue
+                yield players, needs
+
+    def answer(self) -> tuple[Players, tuple[Recruit, ...]] | None:
+        """The first players for whom there are recruits, with the fewest of these, the first."""
+        for players, needs in self.playable():
             for size in range(len(self.recruits) + 1):
                 for chosen in combinations(self.recruits, size):
                     if self.enough(players, needs, chosen):
@@ -260,21 +260,3 @@ def test_the_certificate_names_what_is_wrong_with_recruits(change: object, words
     assert found is not None
     wrong = change(found[0])  # type: ignore[operator]  # a table of functions
     assert any(words in said for said in certificate.broken_conditions(helped.task, helped.partition, wrong))
-
-
-def test_recruits_cost_as_players_do_and_then_nothing_is_proved() -> None:
-    user = problem({"user": [component("user", "s:S")]})
-    cheap = replace(
-        component("a", "", "s:S"), properties=((iri("watts"), Literal("5", IRI(XSD_NAMESPACE + "integer"))),)
-    )
-    helped = with_recruits(user, cheap)
-    template = replace(helped.task.template, cost=((CostTerm(iri("watts"), otherwise=Fraction(1)),),))
-    stated = Problem(replace(helped.task, template=template), helped.partition)
-    optimum = best.best_configuration(stated)
-    assert isinstance(optimum, Optimum)
-    found = recruited(stated, optimum.configuration)
-    assert found is not None
-    whole = priced(stated, optimum, found[0])
-    assert (optimum.cost, whole.cost) == ((Fraction(1),), (Fraction(6),))
-    assert optimum.proved
-    assert not whole.proved

@@ -9,12 +9,14 @@
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
   `least_by_clauses` find any or the least solution by several of them, `least_of_clauses` the least one of what a
   solver has been told, and `minimise` a solution of least weight.
+* `FoundedSolver` is such a solver for players and recruits, which never feed each other in a circle.
 * `smallest_core` is a smallest set of constraints that cannot hold together, by hitting sets.
 """
 
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
 from selfconf.search.engines.clause_learning import ClauseSolver, solver_available
 from selfconf.search.engines.exclusion import exclusive_groups
+from selfconf.search.engines.founded import FoundedSolver
 from selfconf.search.engines.hitting_sets import smallest_core
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses, least_of_clauses
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
@@ -25,6 +27,7 @@ __all__ = [
     "SLOT_HEADROOM",
     "CandidateSearch",
     "ClauseSolver",
+    "FoundedSolver",
     "HallSet",
     "MaintainedMatching",
     "ReducedSearch",

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import attrgetter
 
 from selfconf.model.partition import Candidate
@@ -91,6 +91,14 @@ class ReducedProblem:
     def components(self) -> list[list[IRI]]:
         """Return for each role the components of its options, in order: what matching works on."""
         return [[option.component for option in options] for options in self.options]
+
+
+def in_order(given: ReducedProblem) -> ReducedProblem:
+    """Return a problem with the options of each role in the order of the candidates."""
+    return replace(given, options=tuple(tuple(sorted(some, key=_number)) for some in given.options))
+
+
+_number: Callable[[Option], int] = attrgetter("number")
 
 
 def assigned(problem: Problem, chosen: Iterable[Option]) -> list[list[Candidate]]:

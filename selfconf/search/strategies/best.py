@@ -21,29 +21,25 @@ the start, each core raises it, and the first of the best is found as it is for 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from fractions import Fraction
 from itertools import accumulate
-from math import lcm
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import cost, unknown
+from selfconf.model.cost import unknown
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.term import IRI
 from selfconf.search import explain
 from selfconf.search.budget import Budget
+from selfconf.search.cost_table import LEADING_LEVELS, CostTable
 from selfconf.search.engines import ClauseSolver, ReducedSearch, least_of_clauses, minimise, solver_available
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, pruned, reduced
+from selfconf.search.recruit_refusal import refusal_of_recruits
+from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, in_order, pruned, reduced
+from selfconf.search.strategies.best_recruited import best_with_recruits, with_priced_recruits
 from selfconf.search.strategies.first import solution
 
 BRANCHING_STEPS = 20_000
 """Steps of branch and bound before clauses are written."""
-LEADING_LEVELS = 2
-"""Levels before those that the template states: how many newcomers there are, and how many terms are unknown."""
 BEST_STEPS = 2_000_000
 """Steps until the search for the best answers with the cheapest solution met."""
 
@@ -53,9 +49,25 @@ def best_configuration(
 ) -> Optimum | Refusal | Undecided:
     """Return the best configuration that is found within a number of steps, or why there is none.
 
-    With a configuration that runs it is the best of those with the fewest newcomers.
+    With a configuration that runs it is the best of those with the fewest newcomers. Where roles recruit, see
+    `best_recruited`.
     """
     given = LazyReduction(problem)
+    if not any(role.recruits for role in problem.roles):
+        return _best_players(given, steps, running)
+    if solver_available() and isinstance(solution(given, Budget(steps)), list):
+        found = best_with_recruits(problem, steps, running)
+    else:
+        players = _best_players(given, steps, running)
+        if not isinstance(players, Optimum):
+            return players
+        found = with_priced_recruits(problem, players, steps, running)
+    return refusal_of_recruits(problem) if found is None else found
+
+
+def _best_players(given: LazyReduction, steps: int, running: Configuration | None) -> Optimum | Refusal | Undecided:
+    """Return the best configuration of players alone, or why there is none."""
+    problem = given.problem
     playing = solution(given, Budget(steps))
     if isinstance(playing, Undecided):
         return Undecided(steps, unaided=not solver_available())
@@ -109,74 +121,6 @@ def _cheapest(
     return playing, bound, proved
 
 
-class CostTable:
-    """What each candidate costs in each role, level by level and combined into one integer.
-
-    Each level becomes a digit of a number with mixed radix: shifted to begin at zero, scaled to be whole, and with a
-    base beyond what all slots can cost on it. So integers are ordered as the levels are.
-    """
-
-    def __init__(self, problem: Problem, running: Configuration | None = None) -> None:
-        self.exact = _exact_costs(problem, running)
-        """For each role the cost of its candidates by number, level by level; nothing for a role without slots."""
-        rows = [row for role in self.exact for row in role]
-        slots = sum(role.minimum for role in problem.roles)
-        width = LEADING_LEVELS + len(problem.task.template.cost)
-        self.scale = [lcm(*(row[k].denominator for row in rows)) for k in range(width)]
-        self.lowest = [min((row[k] for row in rows), default=Fraction(0)) for k in range(width)]
-        self.base = [1] * width
-        for k in range(width - 1, 0, -1):
-            span = max((row[k] for row in rows), default=Fraction(0)) - self.lowest[k]
-            self.base[k - 1] = self.base[k] * (1 + slots * int(span * self.scale[k]))
-        self.of: list[list[int]] = [[self._combined(row) for row in role] for role in self.exact]
-        """For each role the combined cost of its candidates by number."""
-        self._number = [
-            {c.profile.component: number for number, c in enumerate(candidates)} for candidates in problem.candidates
-        ]
-
-    def _combined(self, row: Sequence[Fraction]) -> int:
-        return sum(
-            int((value - low) * scale) * base
-            for value, low, scale, base in zip(row, self.lowest, self.scale, self.base, strict=True)
-        )
-
-    def total(self, playing: Sequence[Sequence[Candidate]]) -> int:
-        """Return the combined cost of a solution."""
-        return sum(
-            self.of[role][self._number[role][c.profile.component]] for role, some in enumerate(playing) for c in some
-        )
-
-    def levels(self, playing: Sequence[Sequence[Candidate]]) -> tuple[Fraction, ...]:
-        """Return the cost of a solution, level by level, with the newcomers and the unknown before all others."""
-        rows = [
-            self.exact[role][self._number[role][c.profile.component]] for role, some in enumerate(playing) for c in some
-        ]
-        return tuple(sum((row[k] for row in rows), Fraction(0)) for k in range(len(self.base)))
-
-    def levels_of(self, combined: int, slots: int) -> tuple[Fraction, ...]:
-        """Return the levels that a combined cost of a number of slots stands for."""
-        found = []
-        for low, scale, base in zip(self.lowest, self.scale, self.base, strict=True):
-            digit, combined = divmod(combined, base)
-            found.append(Fraction(digit, scale) + low * slots)
-        return tuple(found)
-
-
-def _exact_costs(problem: Problem, running: Configuration | None) -> list[list[tuple[Fraction, ...]]]:
-    levels = problem.task.template.cost
-    played = {a.role: frozenset(a.components) for a in running.assignments} if running is not None else {}
-    none: frozenset[IRI] = frozenset()
-
-    def row(role: IRI, candidate: Candidate) -> tuple[Fraction, ...]:
-        newcomer = bool(played) and candidate.profile.component not in played.get(role, none)
-        return Fraction(newcomer), *cost(levels, role, candidate.profile, problem.hierarchy)
-
-    return [
-        [row(role.iri, candidate) for candidate in candidates] if role.minimum else []
-        for role, candidates in zip(problem.roles, problem.candidates, strict=True)
-    ]
-
-
 class _BoundedSearch(ReducedSearch):
     """Leaves out options with which a solution would cost more than a limit."""
 
@@ -219,7 +163,7 @@ def _by_branch_and_bound(
             return best, search.least, False
         best, search.limit = found, search.spent[-1] - 1
     least = search.limit + 1
-    first = next(_BoundedSearch(_in_order(part), costs, least).solutions(budget), None)
+    first = next(_BoundedSearch(in_order(part), costs, least).solutions(budget), None)
     return (first, least, True) if isinstance(first, list) else (best, least, False)
 
 
@@ -228,7 +172,7 @@ def _by_cores(part: ReducedProblem, costs: CostTable, budget: Budget) -> tuple[l
 
     When the budget ends: the cheapest solution met, if any, a bound, and False.
     """
-    ordered = _in_order(part)
+    ordered = in_order(part)
     with ClauseSolver(ordered) as clauses:
         weights: dict[int, int] = {}
         unavoidable = 0
@@ -242,12 +186,3 @@ def _by_cores(part: ReducedProblem, costs: CostTable, budget: Budget) -> tuple[l
         if isinstance(found, list):
             return found, unavoidable + more, True
         return lightest, unavoidable + more, False
-
-
-def _in_order(part: ReducedProblem) -> ReducedProblem:
-    """Return the problem with the options in the order of the candidates."""
-    return replace(part, options=tuple(tuple(sorted(o, key=_number)) for o in part.options))
-
-
-def _number(option: Option) -> int:
-    return option.number

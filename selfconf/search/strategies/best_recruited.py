@@ -1,0 +1,230 @@
+"""The strategy `best` where roles recruit: players and recruits of least cost together, with a proof.
+
+*What is best.* A solution is players, and recruits that are enough for them and of which none can be spared. It costs
+what its players cost in their roles and its recruits in no role. The answer is the first of the solutions of least
+cost: that of the lexicographically first players, of these the one with the fewest recruits, and of these the first by
+preference and IRI. After a failure newcomers are the first level, among players and recruits alike.
+
+*How it is found.* Players and recruits are options of one reduced problem (`with_recruits`), whose clauses a solver has
+that excludes recruits which only feed each other (`FoundedSolver`). Weighted optimisation guided by cores finds the
+least cost, and a bound at any time; then the players are minimised, and with these the number of recruits. A weight
+below zero is the weight of doing without.
+
+Without a solver library, players and recruits are chosen one after the other, and nothing is proved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.cost import cost, unknown
+from selfconf.model.optimum import Optimum
+from selfconf.model.partition import Candidate
+from selfconf.model.profile import Profile
+from selfconf.model.refusal import Undecided
+from selfconf.model.term import IRI
+from selfconf.search.budget import Budget
+from selfconf.search.cost_table import LEADING_LEVELS, NO_ROLE, CostTable, recruit_cost
+from selfconf.search.engines import FoundedSolver, least_of_clauses, minimise
+from selfconf.search.fewest_recruits import fewest_of
+from selfconf.search.problem import Problem
+from selfconf.search.recruit_choice import RecruitChoice, players_of
+from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, founded, recruited
+from selfconf.search.reduction import Option, ReducedProblem, assigned, in_order, pruned, with_recruits
+
+
+@dataclass(frozen=True, slots=True)
+class _Chosen:
+    """Players, and recruits by number."""
+
+    players: list[list[Candidate]]
+    recruits: list[int]
+
+
+def best_with_recruits(
+    problem: Problem, steps: int, running: Configuration | None = None
+) -> Optimum | Undecided | None:
+    """Return the best configuration with recruits that is found within a number of steps; None if there is none."""
+    if problem.valueless:
+        return None
+    candidates = CostTable(problem, running)
+    order = {
+        role: sorted(range(len(problem.candidates[role])), key=candidates.of[role].__getitem__)
+        for role, asked in enumerate(problem.roles)
+        if asked.minimum
+    }
+    kept = frozenset(() if running is None else running.recruits)
+
+    def preference(number: int) -> tuple[bool, int]:
+        return problem.supply.recruits[number].component not in kept, number
+
+    def rank(number: int) -> tuple[Fraction, ...]:
+        return *recruit_cost(problem, number, running), *map(Fraction, preference(number))
+
+    part = in_order(pruned(with_recruits(problem, (), order, rank)))
+    numbers = [option.number for option in part.options[-1]]
+    costs = CostTable(problem, running, numbers)
+    rewarded = any(amount < 0 for amount in costs.of_recruit.values())
+    with founded(problem, part, irredundant=rewarded) as clauses:
+        search = _CheapestSearch(problem, part, costs, clauses, sorted(numbers, key=preference))
+        found = search.run(Budget(steps))
+    if not isinstance(found, _Chosen):
+        return Undecided(steps) if found is None else None
+    choice = RecruitChoice(problem, problem.solved(found.players), kept)
+    brought = [number for number in found.recruits if number in choice.needs]
+    spent = costs.levels(found.players, brought)
+    least = spent if search.proved else costs.levels_of(search.bound, len(part.slots))
+    # Where a leading level could be less, the bounds of the stated levels hold no more.
+    tight = least[:LEADING_LEVELS] == spent[:LEADING_LEVELS]
+    bounds = least if tight else costs.levels_of(_lowest(costs), len(part.slots))
+    return Optimum(
+        problem.with_further_players(choice.configuration(brought)),
+        spent[LEADING_LEVELS:],
+        bounds[LEADING_LEVELS:],
+        tuple(_missing(problem, found.players, [problem.supply.recruits[n].profile for n in brought])),
+        proved=spent == least,
+    )
+
+
+def _lowest(costs: CostTable) -> int:
+    """Return what no solution can cost less than, on any level, combined."""
+    return sum(reward * base for reward, base in zip(costs.rewards, costs.base, strict=True))
+
+
+def _missing(
+    problem: Problem, players: Sequence[Sequence[Candidate]], recruits: Iterable[Profile]
+) -> Iterable[tuple[IRI, IRI]]:
+    """Yield the components and the properties that terms ask of them in vain."""
+    counted = [(role.iri, c.profile) for role, some in zip(problem.roles, players, strict=True) for c in some]
+    for role, profile in (*counted, *((NO_ROLE, profile) for profile in recruits)):
+        for wanted in unknown(problem.task.template.cost, role, profile, problem.hierarchy):
+            yield profile.component, wanted
+
+
+class _CheapestSearch:
+    """Players and recruits of least cost by clause learning, with a bound and what was met so far."""
+
+    def __init__(
+        self, problem: Problem, part: ReducedProblem, costs: CostTable, clauses: FoundedSolver, order: Sequence[int]
+    ) -> None:
+        self.problem, self.part, self.costs, self.clauses, self.order = problem, part, costs, clauses, order
+        """`order` is that in which recruits are preferred."""
+        self.bound = _lowest(costs)
+        self.proved = False
+
+    def run(self, budget: Budget) -> _Chosen | bool | None:
+        """Return the cheapest that is met; False if there is no solution, None if none is met within the budget."""
+        clauses = self.clauses
+        possible = clauses.solve((), budget)
+        if possible is not True:
+            return None if isinstance(possible, Undecided) else False
+        met = [self._cleaned(clauses.chosen())]
+        weights, unavoidable = self._weights()
+        more, proved, lightest = minimise(clauses, weights, budget)
+        self.bound = unavoidable + more
+        if lightest is not None:
+            met.append(self._cleaned(lightest))
+        if not proved:
+            return min(met, key=lambda chosen: self.costs.total(chosen.players, chosen.recruits))
+        self.proved = True
+        least = least_of_clauses(clauses, budget)
+        return met[-1] if isinstance(least, Undecided) else self._with_fewest_recruits(least, budget)
+
+    def _weights(self) -> tuple[Mapping[int, int], int]:
+        """Return the weights of literals, none below zero, and what every solution costs beside them."""
+        clauses, costs = self.clauses, self.costs
+        weights: dict[int, int] = {}
+        unavoidable = 0
+        for role in dict.fromkeys(self.part.slots):
+            of_role = [costs.of[role][option.number] for option in self.part.options[role]]
+            unavoidable += min(of_role) * self.part.slots.count(role)
+            for literal, amount in zip(clauses.plays[role], of_role, strict=True):
+                weights[literal] = amount - min(of_role)
+        for number, literal in clauses.recruits.items():
+            amount = costs.of_recruit[number]
+            weights[literal if amount > 0 else -literal] = abs(amount)
+            unavoidable += min(amount, 0)
+        return weights, unavoidable
+
+    def _cleaned(self, options: Sequence[Option]) -> _Chosen:
+        """Return what options stand for, without recruits that can be spared."""
+        playing = [option for option in options if option.kind.role < len(self.problem.roles)]
+        recruits = {option.number for option in options if option.kind.role == len(self.problem.roles)}
+        return _Chosen(assigned(self.problem, playing), self._without_spare(playing, recruits))
+
+    def _without_spare(self, playing: Sequence[Option], recruits: Collection[int]) -> list[int]:
+        return self.clauses.without_spare(playing, [number for number in self.order if number in recruits])
+
+    def _with_fewest_recruits(self, playing: Sequence[Option], budget: Budget) -> _Chosen:
+        """Return the first of the best players with the fewest recruits of least cost, the first of these."""
+        clauses = self.clauses
+        for option in playing:
+            place = self.part.options[option.kind.role].index(option)
+            clauses.add([clauses.plays[option.kind.role][place]])
+        spare = partial(self._without_spare, playing)
+        found, _ = fewest_of(clauses, self.order, spare(clauses.recruited()), spare, budget)
+        return _Chosen(assigned(self.problem, playing), found)
+
+
+def with_priced_recruits(
+    problem: Problem, optimum: Optimum, steps: int, running: Configuration | None
+) -> Optimum | Undecided | None:
+    """Return the best players with the fewest recruits for them, or the first that have some; None if none have.
+
+    For when there is no solver library: then nothing is proved that recruits could make cheaper.
+    """
+    steps = min(steps, RECRUIT_STEPS)
+    whole = recruited(problem, optimum.configuration, () if running is None else running.recruits, steps)
+    if whole is not None:
+        return priced(problem, optimum, whole[0])
+    other = first_recruited(problem, steps, running)
+    # Of these players nothing is known but that they come first.
+    return priced(problem, replace(optimum, proved=False), other) if isinstance(other, Configuration) else other
+
+
+def priced(problem: Problem, optimum: Optimum, configuration: Configuration) -> Optimum:
+    """Return an optimum with a configuration that has recruits: these cost as players do, in no role.
+
+    What a solution costs is what its first players cost, as many as each role asks for, and its recruits. That nothing
+    costs less is proved only where there are no recruits, and none could make a solution cheaper.
+    """
+    levels, hierarchy = problem.task.template.cost, problem.hierarchy
+    profiles = {recruit.component: recruit.profile for recruit in problem.supply.recruits}
+    minima = {
+        c
+        for a, role in zip(configuration.assignments, problem.roles, strict=True)
+        for c in a.components[: role.minimum]
+    }
+    counted = [
+        (problem.roles[number].iri, profile)
+        for component, (number, profile) in players_of(problem, configuration)
+        if component in minima
+    ]
+    counted += [(NO_ROLE, profiles[component]) for component in configuration.recruits]
+    amounts = [cost(levels, role, profile, hierarchy)[1:] for role, profile in counted]
+    cheaper = any(amount < 0 for one in profiles.values() for amount in cost(levels, NO_ROLE, one, hierarchy))
+    return replace(
+        optimum,
+        configuration=configuration,
+        bound=_with_cheapest(problem, optimum.bound),
+        cost=tuple(sum(level, Fraction(0)) for level in zip(*amounts, strict=True)),
+        missing=tuple(
+            (one.component, wanted) for role, one in counted for wanted in unknown(levels, role, one, hierarchy)
+        ),
+        proved=optimum.proved and not configuration.recruits and not cheaper,
+    )
+
+
+def _with_cheapest(problem: Problem, bound: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+    """Return a bound of what players cost, less all that recruits could make a solution cheaper."""
+    levels, hierarchy = problem.task.template.cost, problem.hierarchy
+    profiles = (recruit.profile for recruit in problem.supply.recruits)
+    amounts = [cost(levels, NO_ROLE, profile, hierarchy)[1:] for profile in profiles]
+    return tuple(
+        least + sum((min(one[number], Fraction(0)) for one in amounts), Fraction(0))
+        for number, least in enumerate(bound)
+    )
