@@ -11,6 +11,7 @@ import pyoxigraph as ox
 import pytest
 
 import selfconf
+from selfconf.api.answer import Answer
 from selfconf.cli.main import main
 from selfconf.model.configuration import Configuration
 
@@ -44,9 +45,30 @@ def test_nothing_is_said_to_come_from_an_index_on_which_it_is_not() -> None:
     assert [page for page in pages if promise.search(page.read_text("utf-8"))] == []
 
 
+@pytest.mark.parametrize("lost", [0, 1, 2, 4, 8, 16, 32, 42, 63])
+@pytest.mark.parametrize("first", ["courseError", "watts"])
+def test_the_design_that_is_proved_is_the_right_one_whichever_thrusters_are_lost(lost: int, first: str) -> None:
+    pytest.importorskip("pysat")
+    folder = ROOT / "examples" / "patterns"
+    vehicle = (folder / "submarine.ttl").read_text("utf-8")
+    for number in range(1, 7):
+        if lost >> number - 1 & 1:
+            vehicle = re.sub(rf":thruster-{number} a (?s:.)*? \] \.\n", "", vehicle)
+    survey = (folder / "survey.ttl").read_text("utf-8")
+    if first == "watts":
+        survey = survey.replace(":courseError", ":other").replace(":watts", ":courseError").replace(":other", ":watts")
+    answer = selfconf.configure(selfconf.template(survey), selfconf.read(vehicle), strategy="best")
+    assert isinstance(answer, Answer)
+    exact = first == "courseError" and not lost
+    assert answer["controller"][0].short == ("six-thruster-controller" if exact else "drifting-controller")
+    assert len(answer.recruits) == (6 if exact else 0)
+    assert answer.optimum is not None
+    assert answer.optimum.proved
+
+
 def test_the_page_has_examples() -> None:
     assert len(EXAMPLES) == 6
-    assert len(PATTERNS) == 3
+    assert len(PATTERNS) == 4
 
 
 def test_the_instance_on_the_page_goes_through_the_stages_as_printed() -> None:

@@ -60,8 +60,6 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
         bound = "" if optimum.proved else f"  (bound {_decimal(least)})"
         lines.append(f"  level {number}  {_decimal(spent)}{bound}")
     lines.append("  proved: nothing costs less" if optimum.proved else "  not proved: there may be something better")
-    if optimum.configuration.recruits:
-        lines.append("  the costs of players were compared; recruits count, but are the fewest, not the cheapest")
     if optimum.missing:
         terms = "1 term is" if optimum.unknown == 1 else f"{optimum.unknown} terms are"
         lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")

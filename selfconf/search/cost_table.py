@@ -16,6 +16,8 @@ LEADING_LEVELS = 2
 """Levels before those that the template states: how many newcomers there are, and how many terms are unknown."""
 NO_ROLE = IRI("")
 """The role of a recruit, which no term of a cost names."""
+Amounts = tuple[Fraction, ...]
+"""What something costs, level by level."""
 
 
 class CostTable:
@@ -28,39 +30,44 @@ class CostTable:
 
     def __init__(self, problem: Problem, running: Configuration | None = None, recruits: Iterable[int] = ()) -> None:
         """`recruits` are those that may be chosen, by number."""
-        self._exact_recruits = {number: recruit_cost(problem, number, running) for number in recruits}
+        self._exact_recruits: dict[int, Amounts] = {
+            number: recruit_cost(problem, number, running) for number in recruits
+        }
         self.exact = _exact_costs(problem, running)
         """For each role the cost of its candidates by number, level by level; nothing for a role without slots."""
         rows = [row for role in self.exact for row in role]
-        slots = sum(role.minimum for role in problem.roles)
-        width = LEADING_LEVELS + len(problem.task.template.cost)
-        brought = self._exact_recruits.values()
-        self.scale = [lcm(*(row[k].denominator for row in (*rows, *brought))) for k in range(width)]
-        self.lowest = [min((row[k] for row in rows), default=Fraction(0)) for k in range(width)]
-        self.base = [1] * width
-        for k in range(width - 1, 0, -1):
-            span = max((row[k] for row in rows), default=Fraction(0)) - self.lowest[k]
-            of_recruits = sum(int(abs(row[k]) * self.scale[k]) for row in brought)
-            self.base[k - 1] = self.base[k] * (1 + slots * int(span * self.scale[k]) + of_recruits)
-        self.rewards = [int(sum(min(row[k], Fraction(0)) for row in brought) * self.scale[k]) for k in range(width)]
+        brought = list(self._exact_recruits.values())
+        width = range(LEADING_LEVELS + len(problem.task.template.cost))
+        self.scale = [lcm(*(row[k].denominator for row in (*rows, *brought))) for k in width]
+        self.lowest: Amounts = tuple(min((row[k] for row in rows), default=Fraction(0)) for k in width)
+        self.rewards = [self._whole(k, sum((min(row[k], Fraction(0)) for row in brought), Fraction(0))) for k in width]
         """What recruits could make a solution cheaper at most, digit by digit: zero or less."""
-        self.of: list[list[int]] = [[self._combined(row) for row in role] for role in self.exact]
+        self.base = self._bases(rows, brought, sum(role.minimum for role in problem.roles))
+        self.of: list[list[int]] = [[self._combined(row, self.lowest) for row in role] for role in self.exact]
         """For each role the combined cost of its candidates by number."""
-        whole = [(scale, base) for scale, base in zip(self.scale, self.base, strict=True)]
-        self.of_recruit: dict[int, int] = {
-            number: sum(int(value * scale) * base for value, (scale, base) in zip(row, whole, strict=True))
-            for number, row in self._exact_recruits.items()
-        }
+        unshifted = (Fraction(0),) * len(width)
+        self.of_recruit = {number: self._combined(row, unshifted) for number, row in self._exact_recruits.items()}
         """The combined cost of each recruit by number."""
         self._number = [
             {c.profile.component: number for number, c in enumerate(candidates)} for candidates in problem.candidates
         ]
 
-    def _combined(self, row: Sequence[Fraction]) -> int:
-        return sum(
-            int((value - low) * scale) * base
-            for value, low, scale, base in zip(row, self.lowest, self.scale, self.base, strict=True)
-        )
+    def _whole(self, level: int, amount: Fraction) -> int:
+        """Return an amount of a level as a whole number of its units."""
+        return int(amount * self.scale[level])
+
+    def _bases(self, rows: Sequence[Amounts], brought: Sequence[Amounts], slots: int) -> list[int]:
+        """Return for each level what one unit of it is worth: more than all that solutions can differ by below it."""
+        base = [1] * len(self.scale)
+        for k in range(len(base) - 1, 0, -1):
+            span = max((row[k] for row in rows), default=Fraction(0)) - self.lowest[k]
+            of_recruits = sum(self._whole(k, abs(row[k])) for row in brought)
+            base[k - 1] = base[k] * (1 + slots * self._whole(k, span) + of_recruits)
+        return base
+
+    def _combined(self, row: Amounts, lowest: Amounts) -> int:
+        levels = zip(row, lowest, self.base, strict=True)
+        return sum(self._whole(k, value - low) * base for k, (value, low, base) in enumerate(levels))
 
     def total(self, playing: Sequence[Sequence[Candidate]], recruits: Iterable[int] = ()) -> int:
         """Return the combined cost of a solution."""

@@ -65,8 +65,13 @@ class FoundedSolver(ClauseSolver):
             self.add(self._supporting.get(need, ()))
         for literal, option in self._players:
             if option.component in components:
-                one_role_each = [-self.guards[Distinct()]] if Distinct() in self.guards else []
-                self.add([*one_role_each, -literal, -self.recruits[components[option.component]]])
+                self.add([*self._one_role_each(guarded), -literal, -self.recruits[components[option.component]]])
+
+    def _one_role_each(self, guarded: bool) -> list[int]:
+        """What a clause begins with by which a component does not play and is not recruited at once."""
+        if guarded and Distinct() not in self.guards:
+            self.guards[Distinct()] = self.literal()
+        return [-self.guards[Distinct()]] if guarded else []
 
     def __enter__(self) -> FoundedSolver:
         return self

@@ -19,11 +19,12 @@ from selfconf.model.partition import Recruit
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.cost_table import NO_ROLE
+from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best
 from tests.search.oracle import Players
-from tests.search.test_recruiting import RecruitingWorld, recruiting
-from tests.search.worlds import agreement, iri
+from tests.search.test_recruiting import RecruitingWorld, recruiting, with_recruits
+from tests.search.worlds import agreement, component, iri, problem
 
 LATENCY, ERROR = iri("latency"), iri("error")
 Cost = tuple[Fraction, ...]
@@ -133,3 +134,48 @@ def test_the_best_with_recruits_is_the_first_of_least_cost(problem: Problem, dat
         assert [a.components for a in after.configuration.assignments] == [
             tuple(c.profile.component for c in some) for some in nearest[0]
         ]
+
+
+def cheap_or_dear() -> Problem:
+    """A user that a dear supplier feeds, which is preferred, or two cheap ones in a row."""
+    user = stated(component("user", "s:S"), latency=1)
+    dear = stated(component("dear", "", "s:S"), latency=5)
+    first, second = stated(component("x", "t:T", "s:S"), latency=1), stated(component("y", "", "t:T"), latency=2)
+    helped = with_recruits(problem({"user": [user]}), dear, first, second)
+    template = replace(helped.task.template, cost=((CostTerm(LATENCY),),))
+    return Problem(replace(helped.task, template=template), helped.partition)
+
+
+def test_the_cheapest_recruits_may_be_more_than_the_fewest() -> None:
+    pytest.importorskip("pysat")
+    answer = best.best_configuration(cheap_or_dear())
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.bound, answer.proved) == ((Fraction(4),), (Fraction(4),), True)
+    assert answer.configuration.recruits == (iri("x"), iri("y"))
+
+
+def test_a_recruit_that_could_be_spared_is_not_taken_for_its_reward() -> None:
+    pytest.importorskip("pysat")
+    given_ = cheap_or_dear()
+    template = replace(given_.task.template, cost=((CostTerm(LATENCY, weight=Fraction(-1)),),))
+    answer = best.best_configuration(Problem(replace(given_.task, template=template), given_.partition))
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.proved) == ((Fraction(-6),), True)
+    assert answer.configuration.recruits == (iri("dear"),)
+
+
+def test_without_a_solver_recruits_are_the_fewest_and_nothing_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+    answer = best.best_configuration(cheap_or_dear())
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.proved) == ((Fraction(6),), False)
+    assert answer.bound <= (Fraction(4),)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3, 5, 8])
+def test_what_few_steps_find_has_a_true_bound(steps: int) -> None:
+    pytest.importorskip("pysat")
+    answer = best.best_configuration(cheap_or_dear(), steps)
+    if isinstance(answer, Optimum):
+        assert answer.bound <= (Fraction(4),) <= answer.cost
+        assert not answer.proved or answer.cost == (Fraction(4),)
