@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.recruiting import made
+from benchmarks.recruiting.services import made
 from tests.benchmark import short_run
 
 

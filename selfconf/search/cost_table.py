@@ -40,7 +40,7 @@ class CostTable:
         width = range(LEADING_LEVELS + len(problem.task.template.cost))
         self.scale = [lcm(*(row[k].denominator for row in (*rows, *brought))) for k in width]
         self.lowest: Amounts = tuple(min((row[k] for row in rows), default=Fraction(0)) for k in width)
-        self.rewards = [self._whole(k, sum((min(row[k], Fraction(0)) for row in brought), Fraction(0))) for k in width]
+        self.rewards = [self._rewarded(k, brought) for k in width]
         """What recruits could make a solution cheaper at most, digit by digit: zero or less."""
         self.base = self._bases(rows, brought, sum(role.minimum for role in problem.roles))
         self.of: list[list[int]] = [[self._combined(row, self.lowest) for row in role] for role in self.exact]
@@ -55,6 +55,9 @@ class CostTable:
     def _whole(self, level: int, amount: Fraction) -> int:
         """Return an amount of a level as a whole number of its units."""
         return int(amount * self.scale[level])
+
+    def _rewarded(self, level: int, brought: Sequence[Amounts]) -> int:
+        return sum(self._whole(level, min(row[level], Fraction(0))) for row in brought)
 
     def _bases(self, rows: Sequence[Amounts], brought: Sequence[Amounts], slots: int) -> list[int]:
         """Return for each level what one unit of it is worth: more than all that solutions can differ by below it."""

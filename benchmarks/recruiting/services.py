@@ -1,30 +1,20 @@
-"""How many components are recruited, and how long that takes: chains of services as in the contest WSC 2008.
+"""Chains of services as in the contest WSC 2008, generated: the descriptions, and a check of what answers a request.
 
-    python -m benchmarks.recruiting [--seed 1] [--services 158 558 ...] [--smoke] [--write]
+In the contest a service takes and gives instances of the concepts of a taxonomy (`services.xml`, `taxonomy.owl`), and a
+request names what is given and what is wanted (`problem.wsdl`); what a service gives serves an input if its concept is
+that of the input or lies below it. Only the concepts of the instances matter to that, so that they are the signal types
+here. What is given is issued by one component without inputs; the request is the only role, a component whose inputs
+are the wanted concepts.
 
-A service is a component whose inputs and outputs are concepts of a taxonomy; what is given is issued by one component;
-the request is the only role, a component whose inputs are the wanted concepts. Services are made around a solution:
-layers of services, each of which needs what the layer before issues, or something below that in the taxonomy. Beside
-them stand decoys: services with the same concepts, of which some lead nowhere and others are detours.
-
-Each answer is checked by forward chaining in this file, which shares no code with the search. `planted` is the number
-of services of the solution that was built in; fewer may be enough.
+Services are made around a solution: layers of services, each of which needs what the layer before issues, or something
+below that in the taxonomy. Beside them stand decoys: services with concepts that are alike, of which some lead nowhere
+and others are detours.
 """
 
 from __future__ import annotations
 
-import argparse
 import random
-import sys
-import tempfile
-import time
 from dataclasses import dataclass
-from itertools import product
-from pathlib import Path
-
-import selfconf as sc
-from benchmarks.machine import described, table
-from selfconf.model.configuration import Configuration
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
@@ -34,14 +24,10 @@ PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 TASK = PREFIXES + (
     ":compose a sc:Template ; sc:roles ( :request ) .\n:request a sc:Role ; sh:class :Request ; sc:recruits true ."
 )
-SIZES = (158, 558, 604, 1041, 1090, 2198, 4113, 8119)
-"""The numbers of services of the eight sets of the contest."""
-PAGE = Path(__file__).parents[1] / "docs" / "benchmarks" / "recruiting.md"
-INTRODUCTION = """# Recruits
-
-Made by `python -m benchmarks.recruiting --write`; what is measured is told at the head of that file.
-
-"""
+CONCEPTS = {158: 1540, 558: 1565, 604: 3089, 1041: 3135, 1090: 3067, 2198: 12468, 4113: 3075, 8119: 12337}
+"""For each of the eight sets of the contest, by its number of services, the number of concepts."""
+MOST_CONCEPTS = 20_000
+"""How many concepts instances of other sizes have at most; else twice as many as services."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +77,7 @@ def _advertised(name: str, inputs: list[int], outputs: list[int]) -> str:
 def made(number: int, seed: int) -> Services:
     """An instance of a number of services."""
     rng = random.Random(f"{number}/{seed}")
-    concepts = 3 * number
+    concepts = CONCEPTS.get(number) or min(MOST_CONCEPTS, 2 * number)
     parent = {low: rng.randrange(max(0, low // 3 - 2), low) for low in range(1, concepts)}
     children: dict[int, list[int]] = {}
     for low, high in parent.items():
@@ -102,7 +88,7 @@ def made(number: int, seed: int) -> Services:
             concept = rng.choice(children[concept])
         return concept
 
-    depth, width = rng.randint(3, 8), rng.randint(1, 5)
+    depth, width = rng.randint(3, 23), rng.randint(1, 5)
     layer = [rng.randrange(concepts) for _ in range(rng.randint(2, 4))]
     services = {"given": (list[int](), [below(concept) for concept in layer])}
     for place in range(depth):
@@ -124,46 +110,3 @@ def made(number: int, seed: int) -> Services:
     order = list(services)
     rng.shuffle(order)
     return Services(parent, {name: services[name] for name in order}, rng.sample(layer, min(len(layer), 4)), planted)
-
-
-def measured(number: int, seed: int, folder: Path) -> list[str]:
-    """A row of the table. Raises AssertionError where the answer is none."""
-    given, ontology = made(number, seed), folder / "taxonomy.ttl"
-    ontology.write_text(given.ontology(), "utf-8")
-    began = time.perf_counter()
-    home = sc.read(given.advertisements())
-    task = sc.template(TASK)
-    loaded = time.perf_counter()
-    answer = sc.configure(task, home, reasoning="subclass", ontologies=ontology)
-    ended = time.perf_counter()
-    assert isinstance(answer, Configuration), answer
-    chosen = [component.short for component in answer.recruits]
-    assert given.enough(chosen), chosen
-    counts = map(str, (number, seed, given.planted, len(chosen)))
-    return [*counts, f"{loaded - began:.2f}", f"{ended - loaded:.2f}"]
-
-
-def main() -> int:
-    """Measure and print, or write the page; the exit code is 0, for a wrong answer raises."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.recruiting", description="chains of services")
-    parser.add_argument("--seed", type=int, action="append", help="may be repeated; 1, 2 and 3 if it is not said")
-    parser.add_argument("--services", type=int, nargs="+", default=SIZES)
-    parser.add_argument("--smoke", action="store_true", help="two small instances, to see that it works")
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} among the docs")
-    given = parser.parse_args()
-    sizes, seeds = ((40, 80), (1,)) if given.smoke else (given.services, given.seed or (1, 2, 3))
-    rows = []
-    with tempfile.TemporaryDirectory() as folder:
-        for number, seed in product(sizes, seeds):
-            rows.append(measured(number, seed, Path(folder)))
-            print(*rows[-1], file=sys.stderr, flush=True)
-    head = ["services", "seed", "planted", "recruits", "load (s)", "partition and search (s)"]
-    text = f"{table(head, rows)}\n\n{described()}"
-    print(text)
-    if given.write:
-        PAGE.write_text(f"{INTRODUCTION}{text}\n", "utf-8")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,0 +1,1 @@
+"""How many components are recruited, and how long that takes, beside general solvers."""
