@@ -18,6 +18,8 @@ class Account:
     configurations: list[dict[str, Any]] = field(default_factory=list)
     losses: list[dict[str, Any]] = field(default_factory=list)
     first_poses: list[dict[str, Any]] = field(default_factory=list)
+    eyes: list[str] = field(default_factory=list)
+    """The cameras that looked inside of a composite, one after another."""
     played: list[dict[str, Any]] = field(default_factory=list)
     search_seconds: list[float] = field(default_factory=list)
     end: dict[str, Any] | None = None
@@ -67,6 +69,11 @@ class Account:
         if event == "end":
             self.end = fact
             return f"{time}         {fact['outcome']} after {fact['time']:.1f} simulated seconds"
+        if event == "covered":
+            return f"{time}         simulated {fact['time']:4.1f} s: a cloth covers the lens of the {fact['name']}"
+        if event == "eye":
+            self.eyes.append(fact["name"])
+            return f"{time}         the {fact['name']} looks"
         self.played.append(fact)
         return f"{time}         {fact['speaker']} {event}"
 

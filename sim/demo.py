@@ -142,7 +142,7 @@ def run(given: DemoOptions) -> int:
     """Play the scene that the options name; 0 if it ends as it should."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
-    scenes = {"navigate": _navigate, "radio": _radio}
+    scenes = {"navigate": _navigate, "composite": _navigate, "radio": _radio}
     try:
         return scenes[given.scene](given)
     except DemoError as error:
@@ -173,19 +173,23 @@ def _navigate(given: DemoOptions) -> int:
 
     for old in (path for pattern in RESULTS for path in given.out.glob(pattern)):
         old.unlink()  # an earlier run's pictures would pass for this one's
+    if given.scene == "composite":
+        _tell("One component tells where she is; inside are a camera and a tracker, and the camera fails first.")
     _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act of self-configuration, what.")
     _tell("Act 1 asks the ecology, act 2 collects its answers, act 3 composes a configuration, act 4 deploys it.")
     record = given.out / "run.npz"
     with Crew() as crew:
         stage = Stage(crew, _tell)
         _tell(f"meanwhile, in another terminal: selfconf discover --ecology {stage.ecology}")
-        stage.site("living-room", EXAMPLES / "peis-home" / "person-tracker.ttl")
+        inside = given.scene == "composite"
+        stage.site("living-room", EXAMPLES / "eyes" if inside else EXAMPLES / "peis-home" / "person-tracker.ttl")
         others = sorted(set((EXAMPLES / "peis-home").glob("*.ttl")) - {EXAMPLES / "peis-home" / "person-tracker.ttl"})
         stage.site("astrid", *others)
         if given.serve:
             stage.serve()
         world = ["--ecology", stage.ecology, "--connect", stage.endpoint, "--record", str(record)]
         world += ["--seed", str(given.seed), "--speed", str(given.speed), *(["--gui"] if given.gui else [])]
+        world += ["--eyes"] if inside else []
         crew.start("world", "-m", "sim.peis_home", *world)
         stage.until(lambda: stage.account.ready, STARTING, ("world",), "the world was there")
         goal = "goal=(AT BEDROOM)"

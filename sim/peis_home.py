@@ -21,6 +21,7 @@ from selfconf.sdk import Host, Termination
 from selfconf.sdk.program import add_connection_arguments, open_host
 from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
+from sim.eyes import STEREO, SpareEye, StereoEye, curtain
 from sim.geometry import Pose
 from sim.logbook import Logbook
 from sim.say import say
@@ -34,6 +35,8 @@ AT_REST = 2.0
 """Simulated seconds without moving after which she has arrived."""
 PROGRESS = 2.0
 """Simulated seconds between two words on how far she has come."""
+COVERED_AT = 3.0
+"""Simulated seconds of driving after which a cloth covers the first camera, where there are two."""
 REACH = 0.6
 """Metres from the place's standing point within which she is there."""
 
@@ -41,7 +44,10 @@ REACH = 0.6
 class PeisHome:
     """The world with its components, and the loop that lets time pass."""
 
-    def __init__(self, host: Host, apartment: Apartment, seed: int, speed: float, place: str, gui: bool) -> None:
+    def __init__(
+        self, host: Host, apartment: Apartment, seed: int, speed: float, place: str, gui: bool, eyes: bool = False
+    ) -> None:
+        """With `eyes` the living room has two cameras in place of its person tracker, and the first gets covered."""
         self.host, self.speed = host, speed
         self._goal = standing_point(apartment, place)
         self.world = World(apartment, seed, gui)
@@ -51,10 +57,17 @@ class PeisHome:
         self.encoder = WheelEncoder(self.world, seed)
         self.drive = MotorDrive(self.world)
         self.odometry = AbsolutePosition(self.world, self.encoder, self.world.start, frame)
-        self.tracker = PersonTracker(self.world, seed, frame)
-        for component in (self.sonar, self.encoder, self.drive, self.odometry, self.tracker):
+        self.cameras: tuple[PersonTracker | StereoEye, ...] = (
+            (StereoEye(self.world, seed), SpareEye(self.world, seed))
+            if eyes
+            else (PersonTracker(self.world, seed, frame),)
+        )
+        self._covered_at = COVERED_AT if eyes else float("inf")
+        for component in (self.sonar, self.encoder, self.drive, self.odometry, *self.cameras):
             host.add(component)
         self.told = Termination(host.bus)
+        self._drove = 0.0
+        """Simulated seconds since she first moved."""
         self._moved, self._still_since, self._asked = False, 0.0, float("-inf")
         self._next_word = 0.0
         self._began = time.monotonic()
@@ -76,12 +89,13 @@ class PeisHome:
         """Sensors first, poses last: a pose is answered with what was sensed before it."""
         self.sonar.tick()
         self.encoder.tick()
-        failed_before = not self.tracker.active
-        self.tracker.tick()
+        looking = [camera for camera in self.cameras if camera.active]
+        for camera in self.cameras:
+            camera.tick()
         self.odometry.tick()
-        self._asked = max(self.tracker.told, self.odometry.told)
-        if not failed_before:
-            self.logbook.see(self.world.time, self.tracker.frame, self.tracker.pose)
+        self._asked = max(self.odometry.told, *(camera.told for camera in self.cameras))
+        for camera in looking:
+            self.logbook.see(self.world.time, camera.frame, camera.pose)
 
     def _wait(self) -> None:
         """Let the components hear what has arrived, until this period is over."""
@@ -100,9 +114,16 @@ class PeisHome:
             self._began -= left
 
     def _move(self) -> None:
-        source = "tracker" if self.tracker.active else "odometry" if self.odometry.active else ""
+        source = (
+            "tracker" if any(camera.active for camera in self.cameras) else "odometry" if self.odometry.active else ""
+        )
         self.logbook.write(self.world.time, self.world.pose(), source)
         self.drive.tick()
+        self._drove += PERIOD if self._moved else 0.0
+        if self._drove >= self._covered_at:
+            self._covered_at = float("inf")
+            self.world.put(curtain(self.world.apartment, STEREO))
+            say("covered", name=STEREO, time=self.world.time)
         for _ in range(round(PERIOD / TIME_STEP)):
             self.world.step()
             self.logbook.touched.update(touch.other for touch in self.world.contacts())
@@ -132,9 +153,10 @@ def main() -> int:
     parser.add_argument("--place", default="bedroom", help="the run ends when she has come to rest there")
     parser.add_argument("--record", type=Path)
     parser.add_argument("--gui", action="store_true")
+    parser.add_argument("--eyes", action="store_true", help="two cameras in place of the person tracker")
     given = parser.parse_args()
     host = open_host(given.ecology, given.connect, given.keys)
-    home = PeisHome(host, read_apartment(), given.seed, given.speed, given.place, given.gui)
+    home = PeisHome(host, read_apartment(), given.seed, given.speed, given.place, given.gui, given.eyes)
     say("ready", time=home.world.time)
     try:
         outcome = home.run(given.seconds)

@@ -35,8 +35,8 @@ SMALL = made(40, 0)
 PAGE = Path(__file__).parents[2] / "docs" / "benchmarks" / "recruiting.md"
 INTRODUCTION = f"""# Recruits
 
-Made by `python -m benchmarks.recruiting --write`; what is measured is told at the head of `__main__.py` there. Times are
-in seconds; `-` is no answer within {LIMIT:.0f} s, and a number in brackets that of the services where it is another one.
+Made by `python -m benchmarks.recruiting --write`; what is measured is told at the head of its `__main__.py`. Times are
+in seconds; `-` is no answer within {LIMIT:.0f} s, and a number in brackets that of the services where that is another.
 
 """
 

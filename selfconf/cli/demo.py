@@ -19,7 +19,12 @@ ANSWERS = 5.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    parser.add_argument("--scene", choices=["navigate", "radio"], default="navigate", help="default: %(default)s")
+    parser.add_argument(
+        "--scene",
+        choices=["navigate", "composite", "radio"],
+        default="navigate",
+        help="`composite` is `navigate` with a camera and a tracker inside of one component (default: %(default)s)",
+    )
     parser.add_argument("--seed", metavar="N", type=int, default=1, help="decides all noise (default: %(default)s)")
     parser.add_argument(
         "--out",

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines import FoundedSolver, solver_available
+from selfconf.search.engines import FoundedSolver, minimise, solver_available
 from selfconf.search.recruit_choice import RecruitChoice
 
 WithoutSpare = Callable[[Sequence[int]], list[int]]
@@ -32,31 +31,24 @@ def fewest_of(
 
     `met` are recruits that they allow.
     """
-    with ExitStack() as stack:
-        search = _Counting(clauses, order, met, without_spare, stack)
-        return search.best(budget)
+    return _Fewest(clauses, order, met, without_spare).best(budget)
 
 
-class _Counting:
-    """A solver with a counter of the recruits that are chosen."""
+class _Fewest:
+    """What is known of the fewest recruits that a solver allows."""
 
-    def __init__(
-        self, clauses: FoundedSolver, order: Sequence[int], met: list[int], spare: WithoutSpare, stack: ExitStack
-    ) -> None:
+    def __init__(self, clauses: FoundedSolver, order: Sequence[int], met: list[int], spare: WithoutSpare) -> None:
         self.met, self._clauses, self._without_spare = met, clauses, spare
         self._chosen = {number: clauses.recruits[number] for number in order}
         clauses.prefer(-literal for literal in self._chosen.values())
-        self._counter = clauses.counter(list(self._chosen.values()), stack) if self._chosen else None
 
     def best(self, budget: Budget) -> tuple[list[int], bool]:
         """The fewest, and of these the first by preference; and whether both are proved."""
-        while True:
-            fewer = self._answer([], len(self.met) - 1, budget)
-            if not isinstance(fewer, list):
-                break
-            self.met = fewer
-        if fewer is not None:
+        # Guided by cores: what each part of a chain needs at least adds up.
+        fewest = minimise(self._clauses, dict.fromkeys(self._chosen.values(), 1), budget)
+        if not fewest.proved:
             return self.met, False
+        self.met = self._without_spare(self._clauses.recruited())
         return self._first(budget)
 
     def _first(self, budget: Budget) -> tuple[list[int], bool]:
@@ -68,7 +60,7 @@ class _Counting:
             if number in self.met:
                 fixed.append(literal)
                 continue
-            other = self._answer([*fixed, literal], most, budget)
+            other = self._answer([*fixed, literal], budget)
             if isinstance(other, Undecided):
                 return self.met, False
             if other is None:
@@ -78,13 +70,9 @@ class _Counting:
                 fixed.append(literal)
         return self.met, True
 
-    def _answer(self, assumed: list[int], most: int, budget: Budget) -> list[int] | Undecided | None:
-        """At most a number of recruits that are enough; None if there are none."""
-        if most < 0 or (most == 0 and assumed):
-            return None
-        bound = [-self._clauses.at_least(self._counter, most + 1)] if 0 < most < len(self._chosen) else []
-        bound += [-literal for literal in self._chosen.values()] if not most else []
-        found = self._clauses.solve([*assumed, *bound], budget)
+    def _answer(self, assumed: list[int], budget: Budget) -> list[int] | Undecided | None:
+        """As few recruits that are enough, some of which are given; None if there are none."""
+        found = self._clauses.solve(assumed, budget)
         if isinstance(found, Undecided):
             return found
         return self._without_spare(self._clauses.recruited()) if found else None

@@ -1,9 +1,11 @@
 """A clause-learning solver for players and recruits together: recruits never feed each other in a circle.
 
 The clauses say that each need of what is chosen has a support that is chosen; that allows recruits that only feed each
-other. So each model is checked by forward chaining from the players, and recruits that are left over are excluded by
-their loop formula: one of them has all of its needs supported from outside of them (Lin and Zhao, 2004). It holds in
-every solution, so that nothing that the solver has learned is lost.
+other. So each model is checked by forward chaining from the players. Where that does not meet what a player needs, the
+chosen are extended by all that can be added without meeting it: one of those left out has to be chosen, too. Such a
+*landmark* is short, holds in every solution, and says more than that a circle is none: choosing the fewest recruits is
+planning without deletions, for which hitting all landmarks is the method of choice (Bonet and Helmert, ECAI 2010;
+Haslum, Slaney and Thiebaux, ICAPS 2012). What is chosen and not fed is no recruit of the model.
 
 Where the weight of a recruit may be below zero, one that can be spared would be worth taking. `irredundant` excludes
 models with such recruits: the players, and those recruits that are enough beside it, imply that it is not chosen.
@@ -11,13 +13,14 @@ models with such recruits: the players, and those recruits that are enough besid
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from types import MappingProxyType
 
 from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import ClauseSolver
-from selfconf.search.reduction import Distinct, Option, ReducedProblem
+from selfconf.search.reduction import Distinct, Fed, Option, ReducedProblem
 
 EVERYONE_APART: Mapping[IRI, int] = MappingProxyType({})
 """No component that could be a player could be recruited."""
@@ -51,18 +54,14 @@ class FoundedSolver(ClauseSolver):
             for options, literals in zip(reduced.options[:-1], self.plays[:-1], strict=True)
             for option, literal in zip(options, literals, strict=True)
         ]
-        self._supporting: dict[int, list[int]] = {}
-        """For each need the literals of what supports it."""
-        self._suppliers: dict[int, set[int]] = {}
-        """For each need the recruits that support it, by number."""
-        for literal, option in (*self._players, *zip(self.plays[-1], reduced.options[-1], strict=True)):
-            for need in option.kind.supports:
-                self._supporting.setdefault(need, []).append(literal)
-        for number, option in self._option.items():
-            for need in option.kind.supports:
-                self._suppliers.setdefault(need, set()).add(number)
+        self._all = [*self._players, *zip(self.plays[-1], reduced.options[-1], strict=True)]
+        self._needing: dict[int, list[int]] = {}
+        """For each need the literals of the recruits that have it."""
+        for literal, option in self._all[len(self._players) :]:
+            for need in option.kind.needs:
+                self._needing.setdefault(need, []).append(literal)
         for need in wanted:
-            self.add(self._supporting.get(need, ()))
+            self.add(literal for literal, option in self._all if need in option.kind.supports)
         for literal, option in self._players:
             if option.component in components:
                 self.add([*self._one_role_each(guarded), -literal, -self.recruits[components[option.component]]])
@@ -83,12 +82,8 @@ class FoundedSolver(ClauseSolver):
         """
         kept = self._model
         while found := super().ask(assumed, budget, most):
-            chosen = self.recruited()
             playing = [option for literal, option in self._players if self.holds(literal)]
-            circular = set(chosen).difference(self._placed(playing, chosen))
-            if circular:
-                self._exclude(circular)
-            elif not self.irredundant or not self._exclude_spare(playing, chosen):
+            if not self._add_landmarks() and not (self.irredundant and self._exclude_spare(playing)):
                 return True
             self._model = kept
             if budget.steps == 0:
@@ -97,6 +92,10 @@ class FoundedSolver(ClauseSolver):
 
     def recruited(self) -> list[int]:
         """Return the recruits of the last model, by number."""
+        playing = [option for literal, option in self._players if self.holds(literal)]
+        return sorted(self._placed(playing, self._chosen()))
+
+    def _chosen(self) -> list[int]:
         return [number for number, literal in self.recruits.items() if self.holds(literal)]
 
     def _placed(self, playing: Iterable[Option], chosen: Collection[int]) -> set[int]:
@@ -109,20 +108,30 @@ class FoundedSolver(ClauseSolver):
             met.update(need for one in ready for need in self._option[one].kind.supports)
         return placed
 
-    def _exclude(self, circle: set[int]) -> None:
-        """Add the loop formula of recruits that only feed each other."""
-        outside: list[int] = []
-        for number in sorted(circle):
-            fed = self.literal()
-            outside.append(fed)
-            inside = {self.recruits[one] for one in circle}
-            for need in self._option[number].kind.needs:
-                self.add([-fed, *(one for one in self._supporting.get(need, ()) if one not in inside)])
-        for number in circle:
-            self.add([-self.recruits[number], *outside])
+    def _add_landmarks(self) -> bool:
+        """Add a landmark for each need of a player that the last model does not meet; return whether there is one."""
+        reach = Reach(self._all, self._needing, len(self._players))
+        for literal, _ in self._all:
+            if self.holds(literal):
+                reach.add(literal)
+        unmet = [(need, condition) for need, condition in self._asked() if need not in reach.met]
+        for need, condition in dict(unmet).items():
+            self.add([*condition, *reach.without(need)])
+        return bool(unmet)
 
-    def _exclude_spare(self, playing: Sequence[Option], chosen: Sequence[int]) -> bool:
+    def _asked(self) -> Iterator[tuple[int, tuple[int, ...]]]:
+        """Yield what has to be met by the last model, with the literals of which one holds where it need not be."""
+        yield from ((need, ()) for need in self.wanted)
+        for literal, option in self._players:
+            if self.holds(literal):
+                for need in option.kind.needs:
+                    guard = self.guards.get(Fed(need))
+                    if guard is None or self.holds(guard):
+                        yield need, (-literal,) if guard is None else (-literal, -guard)
+
+    def _exclude_spare(self, playing: Sequence[Option]) -> bool:
         """Exclude a recruit that can be spared, beside others that are enough; return whether there is one."""
+        chosen = self._chosen()
         enough = self.without_spare(playing, chosen)
         spare = next((one for one in chosen if one not in enough), None)
         if spare is None:
@@ -133,7 +142,8 @@ class FoundedSolver(ClauseSolver):
 
     def without_spare(self, playing: Sequence[Option], chosen: Sequence[int]) -> list[int]:
         """Return chosen recruits that are enough for players, and of which none can be spared; the last goes first."""
-        left = list(chosen)
+        placed = self._placed(playing, chosen)
+        left = [number for number in chosen if number in placed]
         while True:
             for number in reversed(left):
                 fewer = [one for one in left if one != number]
@@ -148,3 +158,47 @@ class FoundedSolver(ClauseSolver):
         met.update(need for one in chosen for need in self._option[one].kind.supports)
         needs = {need for option in playing for need in option.kind.needs}.union(self.wanted)
         return met.issuperset(needs) and len(self._placed(playing, chosen)) == len(chosen)
+
+
+class Reach:
+    """The needs that some players and recruits meet, by forward chaining; players meet what they support at once."""
+
+    def __init__(self, every: Sequence[tuple[int, Option]], needing: Mapping[int, Sequence[int]], players: int) -> None:
+        """`every` option is given with its literal, the players before all recruits."""
+        self._supports = {literal: option.kind.supports for literal, option in every}
+        self._lacking = {literal: 0 for literal, _ in every[:players]}
+        self._lacking |= {literal: len(option.kind.needs) for literal, option in every[players:]}
+        self._needing = needing
+        self._added: set[int] = set()
+        self.met: set[int] = set()
+
+    def add(self, literal: int, unless: int = -1) -> bool:
+        """Add an option, unless a need were met then; return whether it was added."""
+        met: list[int] = []
+        fed: list[int] = []
+        self._added.add(literal)
+        waiting = [literal] if not self._lacking[literal] else []
+        while waiting:
+            for need in self._supports[waiting.pop()]:
+                if need in self.met:
+                    continue
+                self.met.add(need)
+                met.append(need)
+                for other in self._needing.get(need, ()):
+                    self._lacking[other] -= 1
+                    fed.append(other)
+                    if not self._lacking[other] and other in self._added:
+                        waiting.append(other)
+        if unless not in self.met:
+            return True
+        self._added.remove(literal)
+        self.met.difference_update(met)
+        for other in fed:
+            self._lacking[other] += 1
+        return False
+
+    def without(self, need: int) -> list[int]:
+        """Return options, one of which has to be added for a need to be met: all others are not enough."""
+        reach = copy(self)
+        reach._lacking, reach._added, reach.met = dict(self._lacking), set(self._added), set(self.met)
+        return [literal for literal in self._supports if literal not in reach._added and not reach.add(literal, need)]
