@@ -122,6 +122,26 @@ def test_the_living_ecology_can_be_asked_while_the_demo_runs(tmp_path: Path, dem
 
 
 @at_night
+def test_a_camera_is_replaced_inside_of_a_composite_and_the_composite_by_odometry(
+    tmp_path: Path, demo: list[Demo]
+) -> None:
+    demo.append(Demo(tmp_path, "--scene", "composite", "--speed", "max", "--seed", "3", "--pictures", "draft"))
+    assert demo[0].end() == 0, demo[0].said
+    result = json.loads((demo[0].out / "result.json").read_text())
+    assert result["outcome"] == "arrived"
+    assert result["error"] < 0.25
+    # What the task outside is told of is the composite alone, once.
+    assert (result["lost"], result["cause"], result["touched"]) == ("position-service", "fail", [])
+    assert len(result["configurations"]) == 2
+    words = "".join(demo[0].said)
+    told = [words.index(part) for part in ("a cloth covers the lens", "the spare-camera looks", "LOST")]
+    assert told == sorted(told)
+    assert words.count("LOST") == 1
+    assert "no component is eligible for the role tracker" in words
+    assert demo[0].gone()
+
+
+@at_night
 def test_a_dismantling_configurator_arrives_too(tmp_path: Path, demo: list[Demo]) -> None:
     demo.append(Demo(tmp_path, "--speed", "max", "--policy", "dismantle", "--pictures", "none"))
     assert demo[0].end() == 0, demo[0].said
