@@ -53,21 +53,24 @@ class _Fewest:
 
     def _first(self, budget: Budget) -> tuple[list[int], bool]:
         """Of the sets of the number that was met, the one with the first recruits."""
-        most, fixed = len(self.met), list[int]()
-        for number, literal in self._chosen.items():
-            if len(fixed) == most:
-                break
-            if number in self.met:
-                fixed.append(literal)
-                continue
-            other = self._answer([*fixed, literal], budget)
+        order = list(self._chosen)
+        place = {number: at for at, number in enumerate(order)}
+        fixed: list[int] = []
+        settled = 0
+        """Up to which place of the order it is known who is chosen."""
+        while len(fixed) < len(self.met):
+            following = min(place[number] for number in self.met if place[number] >= settled)
+            # One question for all that come before the next that is chosen: mostly none of them can be.
+            earlier = self._clauses.literal()
+            self._clauses.add([-earlier, *(self._chosen[number] for number in order[settled:following])])
+            other = self._answer([*fixed, earlier], budget)
             if isinstance(other, Undecided):
                 return self.met, False
             if other is None:
-                self._clauses.add([-literal] if not fixed else [-literal, *(-one for one in fixed)])
+                fixed.append(self._chosen[order[following]])
+                settled = following + 1
             else:
                 self.met = other
-                fixed.append(literal)
         return self.met, True
 
     def _answer(self, assumed: list[int], budget: Budget) -> list[int] | Undecided | None:

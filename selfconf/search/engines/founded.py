@@ -178,7 +178,7 @@ class Reach:
         fed: list[int] = []
         self._added.add(literal)
         waiting = [literal] if not self._lacking[literal] else []
-        while waiting:
+        while waiting and unless not in self.met:
             for need in self._supports[waiting.pop()]:
                 if need in self.met:
                     continue
