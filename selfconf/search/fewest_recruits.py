@@ -44,12 +44,23 @@ class _Fewest:
 
     def best(self, budget: Budget) -> tuple[list[int], bool]:
         """The fewest, and of these the first by preference; and whether both are proved."""
-        # Guided by cores: what each part of a chain needs at least adds up.
-        fewest = minimise(self._clauses, dict.fromkeys(self._chosen.values(), 1), budget)
-        if not fewest.proved:
+        # Guided by cores: what each part of a chain needs at least adds up, but there is no answer until the end.
+        half = Budget(None if budget.steps is None else budget.steps // 2)
+        proved = minimise(self._clauses, dict.fromkeys(self._chosen.values(), 1), half).proved
+        if not proved:
+            self._descend(budget)
             return self.met, False
         self.met = self._without_spare(self._clauses.recruited())
         return self._first(budget)
+
+    def _descend(self, budget: Budget) -> None:
+        """Look for fewer than were met, again and again, until there are none or the budget ends."""
+        while self.met:
+            self._clauses.at_most(list(self._chosen.values()), len(self.met) - 1)
+            fewer = self._answer([], budget)
+            if not isinstance(fewer, list):
+                return
+            self.met = fewer
 
     def _first(self, budget: Budget) -> tuple[list[int], bool]:
         """Of the sets of the number that was met, the one with the first recruits."""

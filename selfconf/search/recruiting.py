@@ -35,8 +35,8 @@ from selfconf.search.reduction import (
     with_recruits,
 )
 
-RECRUIT_STEPS = 200_000
-"""Steps spent at most on finding the fewest recruits, each a conflict of the solver or a call of it."""
+RECRUIT_STEPS = 20_000
+"""Steps spent at most on finding the fewest recruits, each a conflict of the solver or a call of it: seconds."""
 
 
 def recruited(
