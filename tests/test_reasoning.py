@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from selfconf import entailment
-from selfconf.composition.composer import Composer, Strategy
+from selfconf.composition.composer import Composer
+from selfconf.composition.searches import Strategy
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.rdf.advertisements import reader as advertisements

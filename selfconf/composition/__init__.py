@@ -5,9 +5,10 @@ A `Composer` composes one task again and again, by a `Strategy`; `composed` is i
 keeps each other component out.
 """
 
-from selfconf.composition.composer import Composer, Strategy
+from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
 from selfconf.composition.nearest import exclusions_nearest_first
+from selfconf.composition.searches import Strategy
 from selfconf.composition.time_limit import TimeLimit, composed
 
 __all__ = ["Composer", "Strategy", "TimeLimit", "composed", "exclusions_nearest_first", "explained"]

@@ -6,12 +6,12 @@ a failure only the lost components leave it and the search alone runs again.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from enum import Enum
 
 from selfconf import certificate
 from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
+from selfconf.composition.searches import Searches, Strategy
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
@@ -19,34 +19,20 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
-from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, Undecided
+from selfconf.model.refusal import Outcome, Refusal, TooFewEligible
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner, near_misses
 from selfconf.rdf.tasks import TaskDocument
-from selfconf.search.additions import with_additions
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
-from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
-from selfconf.search.recruit_refusal import refusal_of_recruits
-from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, recruited
 from selfconf.search.relaxations import NEAR, with_relaxations
-from selfconf.search.strategies import BEST_STEPS, algorithm_1, answers, best_configuration, possible
+from selfconf.search.strategies import possible
 from selfconf.search.what_if import consequences
 
 STANDBY = 2
 """How many candidates per role an input is told of in advance."""
-SLICES = (10_000, 200_000, BEST_STEPS)
-"""Steps after which the strategy `best` tells how far it has come, and begins again with more."""
-
-
-class Strategy(str, Enum):
-    """How to search; all but `BEST` give the lexicographically first configuration."""
-
-    FIRST = "first"
-    PAPER = "paper"
-    BEST = "best"
 
 
 def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
@@ -69,10 +55,6 @@ def _admitted(near: NearMiss, variables: Sequence[Variable]) -> tuple[int, ...]:
     return tuple(masks)
 
 
-AnswersOf = Callable[[Problem, Configuration | None], Iterator[Optimum | Outcome]]
-"""Answers to a problem, with a configuration that runs or without; the last one holds."""
-
-
 class Composer:
     """Composes one task, again and again as the ecology changes."""
 
@@ -90,7 +72,8 @@ class Composer:
         """
         if strategy is Strategy.BEST and not task.task.template.cost:
             strategy = Strategy.FIRST
-        self.task, self.hierarchy, self.strategy, self.steps = task, hierarchy, strategy, steps
+        self.task, self.hierarchy, self.steps = task, hierarchy, steps
+        self.searches = Searches(strategy, steps)
         self.partitioner = Partitioner(task, hierarchy)
         self.outside = outside
         self._task = task.task if outside is None else with_outside(task.task, outside)
@@ -139,7 +122,7 @@ class Composer:
             running = with_outside_player(running, self.outside)
         problem = self._problem(self.partition(ecology), lost, played)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
-        for answer in self._with_additions(self._search, problem, running):
+        for answer in self.searches.answers(problem, running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
             if isinstance(outcome, Configuration):
                 wrong = certificate.broken_conditions(self._task, problem.partition, outcome, self.hierarchy)
@@ -161,63 +144,6 @@ class Composer:
             number = next(n for n, role in enumerate(self._task.template.roles) if role.iri == played[0])
             partition = partition.with_only(number, played[1])
         return Problem(self._task, partition, self.hierarchy)
-
-    def _with_recruits(
-        self, problem: Problem, found: Iterator[Optimum | Outcome], running: Configuration | None
-    ) -> Iterator[Optimum | Outcome]:
-        """Answers with the recruits that they need; where there are none, the first answer that has some."""
-        for answer in found:
-            if not isinstance(answer, Configuration) or not any(role.recruits for role in problem.roles):
-                yield answer
-                continue
-            steps = RECRUIT_STEPS if self.steps is None else self.steps
-            whole = recruited(problem, answer, () if running is None else running.recruits, steps)
-            other = first_recruited(problem, steps, running) if whole is None else whole[0]
-            yield refusal_of_recruits(problem) if other is None else other
-
-    def _with_additions(
-        self, search: AnswersOf, problem: Problem, running: Configuration | None
-    ) -> Iterator[Optimum | Outcome]:
-        """The answers of a search; where there is no configuration, with the optional roles that it takes."""
-        for answer in search(problem, running):
-            raised = with_additions(problem) if isinstance(answer, Refusal) else None
-            if raised is not None:
-                yield from search(raised, running)
-                return
-            yield answer
-
-    def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
-        found = self._best if self.strategy is Strategy.BEST else self._first_or_nearest
-        # The best are chosen together with their recruits.
-        yield from self._with_recruits(problem, found(problem, running), running)
-
-    def _first_or_nearest(self, problem: Problem, running: Configuration | None) -> Iterator[Outcome]:
-        found = algorithm_1(problem, self.steps) if self.strategy is Strategy.PAPER else None
-        if found is not None:
-            yield found
-        elif running is None or self.strategy is Strategy.PAPER:
-            yield from answers(problem, self.steps)
-        elif self.steps is None:
-            yield nearest_configuration(problem, running)
-        else:
-            *_, whole = answers(problem, self.steps)
-            near = nearest(problem, running, self.steps) if isinstance(whole, Configuration) else whole
-            yield near.configuration if isinstance(near, Reconfiguration) else near
-
-    def _nearest(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
-        """What keeps most of a configuration that runs."""
-        assert running is not None
-        yield from self._with_recruits(problem, iter((nearest_configuration(problem, running),)), running)
-
-    def _best(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
-        most = SLICES[-1] if self.steps is None else self.steps
-        for steps in (*(slice_ for slice_ in SLICES if slice_ < most), most):
-            found = best_configuration(problem, steps, running)
-            yield found
-            if isinstance(found, Refusal) or (isinstance(found, Optimum) and found.proved):
-                return
-        if isinstance(found, Undecided) and self.steps is None:
-            yield from answers(problem)
 
     def possible_under(self, ecology: Mapping[IRI, Advertisement], hierarchy: Hierarchy) -> bool:
         """Whether there would be a configuration where there is none now, if the roles saw another hierarchy."""
@@ -263,16 +189,7 @@ class Composer:
     def what_if(self, ecology: Mapping[IRI, Advertisement], configuration: Configuration) -> list[Consequence]:
         """For each component of a configuration, what would come instead of it if it failed."""
         problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
-        return list(consequences(problem, configuration, self._after))
-
-    def _after(self, problem: Problem, running: Configuration) -> Configuration | Refusal:
-        """What comes after a configuration that runs."""
-        if self.strategy is Strategy.BEST:
-            *_, found = self._with_additions(self._best, problem, running)
-            if not isinstance(found, Undecided):
-                return found.configuration if isinstance(found, Optimum) else found
-        *_, near = self._with_additions(self._nearest, problem, running)
-        return near if isinstance(near, Configuration | Refusal) else Refusal(self.task.task.template.iri, ())
+        return list(consequences(problem, configuration, self.searches.after))
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
         """For each component and input of a configuration, the outputs of the next candidates that could feed it.

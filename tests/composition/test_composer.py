@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.composition import composer as compose
-from selfconf.composition.composer import STANDBY, Composer, Strategy
+from selfconf.composition import searches
+from selfconf.composition.composer import STANDBY, Composer
+from selfconf.composition.searches import Strategy
 from selfconf.configurator.state import Phase
 from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.configuration import Configuration
@@ -96,7 +97,7 @@ def test_subclasses_that_match_but_do_not_suffice_are_no_hint() -> None:
 
 
 def test_where_the_best_is_not_decided_the_first_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compose, "SLICES", (1,))
+    monkeypatch.setattr(searches, "SLICES", (1,))
     given = ecology(locator("gps", price=9), locator("odometry", price=2), controller("cap"))
     answers = list(Composer(task(PRICED), strategy=Strategy.BEST).answers(given, NOBODY, None))
     assert isinstance(answers[0], Undecided)

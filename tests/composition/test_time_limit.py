@@ -9,7 +9,8 @@ import pytest
 
 from selfconf.api.reading import read
 from selfconf.composition import TimeLimit, composed
-from selfconf.composition.composer import Composer, Strategy
+from selfconf.composition.composer import Composer
+from selfconf.composition.searches import Strategy
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.rdf.deadline import TimeUp

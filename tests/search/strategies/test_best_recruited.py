@@ -105,7 +105,7 @@ def is_solution(found: Configuration, solution: tuple[Players, tuple[Recruit, ..
 
 
 @given(priced_recruiting(), st.data())
-@agreement(0.3)
+@agreement(0.15)
 def test_the_best_with_recruits_is_the_first_of_least_cost(problem: Problem, data: st.DataObject) -> None:
     pytest.importorskip("pysat")
     world, answer = PricedWorld(problem), best.best_configuration(problem)

@@ -1,0 +1,128 @@
+"""Everything at once against enumeration.
+
+Optional inputs, conditions, operations, free parameters, cardinalities, recruits, optional roles, the inside of a
+composite, and costs, in one generator; the answers of both strategies, and those to a failure.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations_with_replacement
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from selfconf import certificate
+from selfconf.composition.outside import with_outside, with_outside_candidate
+from selfconf.composition.searches import Searches, Strategy
+from selfconf.model.configuration import Configuration
+from selfconf.model.optimum import Optimum
+from selfconf.model.refusal import Outcome, Refusal
+from selfconf.model.template import TemplatePort
+from selfconf.search.additions import MOST_ADDITIONS, asking_for
+from selfconf.search.problem import Problem
+from tests.effort import NIGHTLY
+from tests.search.strategies.test_best_recruited import PricedWorld, priced_recruiting
+from tests.search.test_recruiting import Players, Recruit
+from tests.search.worlds import SIGNALS, agreement, iri
+
+Solution = tuple[Players, tuple[Recruit, ...]]
+
+
+@st.composite
+def ecologies(draw: st.DrawFn) -> Problem:
+    """Problems with all that a template and an advertisement can say; a third of them are the inside of a composite."""
+    given_ = draw(priced_recruiting())
+    spread = st.sampled_from([0, 0, 0, 1, None])
+    roles = tuple(
+        replace(role, maximum=None if (more := draw(spread)) is None else role.minimum + more) for role in given_.roles
+    )
+    task = replace(given_.task, template=replace(given_.task.template, roles=roles))
+    partition = given_.partition
+    if draw(st.integers(0, 2)) == 0:
+        names = st.sampled_from([role.iri for role in roles])
+        ports = tuple(
+            TemplatePort(name, (draw(st.sampled_from(SIGNALS)),), draw(names), draw(st.booleans()))
+            for name in draw(st.sampled_from([(), ("p",), ("p", "q")]))
+        )
+        ported = replace(task, template=replace(task.template, ports=ports))
+        task = with_outside(ported, iri("composite"))
+        partition = with_outside_candidate(partition, ported, iri("composite"))
+    return Problem(task, partition, given_.hierarchy)
+
+
+def raised(problem: Problem) -> Iterator[Problem]:
+    """The problem, and those in which optional roles that feed others are asked for, the fewest first."""
+    yield problem
+    optional = [k for k, role in enumerate(problem.roles) if role.minimum == 0 and problem.sinks[k]]
+    for size in range(1, MOST_ADDITIONS + 1):
+        for chosen in combinations_with_replacement(optional, size):
+            minima = Counter(chosen)
+            if all(
+                count <= len(problem.candidates[k]) and ((most := problem.roles[k].maximum) is None or count <= most)
+                for k, count in minima.items()
+            ):
+                yield asking_for(problem, minima)
+
+
+def solutions(problem: Problem) -> tuple[Problem, PricedWorld, list[Solution]]:
+    """Every solution by enumeration, with as few optional roles as it takes; and the problem that they solve."""
+    for asked in raised(problem):
+        world = PricedWorld(asked)
+        found = list(world.whole())
+        if found:
+            return asked, world, found
+    return problem, PricedWorld(problem), []
+
+
+def holds(problem: Problem, asked: Problem, answer: Configuration, solution: Solution) -> None:
+    """Hold an answer against the solution that it extends, and against the certificate."""
+    players, recruits = solution
+    for assignment, role, some in zip(answer.assignments, asked.roles, players, strict=True):
+        assert set(assignment.components) >= {c.profile.component for c in some}
+        assert assignment.components[: role.minimum] == tuple(c.profile.component for c in some)
+    assert answer.recruits == tuple(recruit.component for recruit in recruits)
+    assert not certificate.broken_conditions(problem.task, problem.partition, answer, problem.hierarchy)
+
+
+def outcome(strategy: Strategy, problem: Problem, running: Configuration | None = None) -> Optimum | Outcome:
+    """The last answer of a strategy."""
+    *_, last = Searches(strategy).answers(problem, running)
+    return last
+
+
+@given(ecologies(), st.data())
+@agreement(1.0 if NIGHTLY else 2.5)  # 500 for every push
+def test_everything_at_once_is_answered_as_enumeration_does(problem: Problem, data: st.DataObject) -> None:
+    pytest.importorskip("pysat")
+    asked, world, found = solutions(problem)
+    first, best = outcome(Strategy.FIRST, problem), outcome(Strategy.BEST, problem)
+    if not found:
+        assert isinstance(first, Refusal)
+        assert isinstance(best, Refusal)
+        assert first.reasons
+        return
+    assert isinstance(first, Configuration)
+    # In order of the players, then of the number of recruits: the first is the first.
+    holds(problem, asked, first, found[0])
+    assert isinstance(best, Optimum)
+    assert best.proved
+    least = min(found, key=lambda one: world.total(*one))
+    assert (best.unknown, *best.cost) == world.total(*least)
+    holds(problem, asked, best.configuration, least)
+    if first.components:
+        after_failure(problem, first, data)
+
+
+def after_failure(problem: Problem, running: Configuration, data: st.DataObject) -> None:
+    """Hold the answer to the loss of a component against enumeration: there is one where there is any."""
+    lost = frozenset((data.draw(st.sampled_from(running.components)),)) - {iri("composite")}
+    left = Problem(problem.task, problem.partition.without(lost), problem.hierarchy)
+    answer = outcome(Strategy.FIRST, left, running)
+    *_, possible = solutions(left)
+    assert isinstance(answer, Configuration) == bool(possible)
+    if isinstance(answer, Configuration):
+        assert not certificate.broken_conditions(left.task, left.partition, answer, left.hierarchy)
