@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import entailment, files, library
-from selfconf.api.reading import file_text, listed_files
+from selfconf.api.reading import Text, file_text, listed_files
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
@@ -27,8 +28,13 @@ def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hiera
     own = listed_files(ontologies, files.ONTOLOGY)
     if reasoning is Reasoning.SYNTACTIC:
         return hierarchy([], reasoning)
+    return _of_texts(reasoning, tuple(map(file_text, (*library.ontologies(), *own))))
+
+
+# Whoever asks again and again under one large ontology waits for it once.
+@lru_cache(maxsize=2)
+def _of_texts(reasoning: Reasoning, texts: tuple[Text, ...]) -> Hierarchy:
     relevant = READ if reasoning is Reasoning.SUBCLASS else None
-    texts = map(file_text, (*library.ontologies(), *own))
     return hierarchy(
         [turtle.read_ontology(*text, relevant) for text in texts], reasoning, entailment.entailed_hierarchy
     )
