@@ -68,7 +68,7 @@ def test_the_design_that_is_proved_is_the_right_one_whichever_thrusters_are_lost
 
 def test_the_page_has_examples() -> None:
     assert len(EXAMPLES) == 6
-    assert len(PATTERNS) == 4
+    assert len(PATTERNS) == 6
 
 
 def test_the_instance_on_the_page_goes_through_the_stages_as_printed() -> None:

@@ -16,10 +16,12 @@ from __future__ import annotations
 
 import logging
 import secrets
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from selfconf.api.detached import Aside
+from selfconf.api.reading import text_of
 from selfconf.bus.port import Bus, Urgency
 from selfconf.composition import Composer
 from selfconf.deployment import RunRequest, TaskRunner
@@ -32,7 +34,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys, safe_name
 from selfconf.protocol.messages import Apply, Moved, Wire
-from selfconf.rdf import tasks
+from selfconf.rdf import tasks, turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import Document
 from selfconf.sdk import Component
@@ -199,6 +201,32 @@ class Composites:
             name=safe_name(component.short),
             aside=self._aside,
         )
+
+
+def insides(
+    known: Mapping[IRI, Advertisement], components: Collection[IRI]
+) -> Iterator[tuple[IRI, Configuration | str]]:
+    """Yield what composites among some components are inside, from given advertisements, or why that is nothing.
+
+    Composites inside of these follow each after the one that holds it.
+    """
+    found, why = _configurable(known, document_of)
+    waiting = list(components)
+    while waiting:
+        component = waiting.pop(0)
+        if component in why:
+            yield component, why[component]
+        elif component in found:
+            others = {one: a for one, a in known.items() if one != component and one not in why}
+            inside = found[component].compose(others, frozenset(), None)
+            assert isinstance(inside, Configuration)  # otherwise there is a reason
+            yield component, inside
+            waiting = [*inside.components, *waiting]
+
+
+def document_of(advertisement: Advertisement) -> Document:
+    """The document in which a component is advertised. Raises AuthorError."""
+    return turtle.parse(*text_of(Path(advertisement.profile.place.source if advertisement.profile.place else "")))
 
 
 def _configurable(

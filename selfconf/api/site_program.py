@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import files, rendezvous
-from selfconf.api.composites import Composites
+from selfconf.api.composites import Composites, document_of
 from selfconf.api.joining import Joining
-from selfconf.api.reading import existing, text_of
+from selfconf.api.reading import existing
 from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.port import Bus
@@ -26,9 +26,6 @@ from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
-from selfconf.rdf import turtle
-from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.turtle import Document
 from selfconf.render import count
 from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
@@ -95,7 +92,7 @@ def serve(
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
         log_path = _log_path(log, ecology, name).absolute()
         joining.log = str(log_path)
-        composites = Composites(bus, ecology, _document_of, complain, work.work)
+        composites = Composites(bus, ecology, document_of, complain, work.work)
         keys_of = None if secured is None else secured.keys_of
         site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond, changed=composites.refresh)
         if secured is not None:
@@ -153,11 +150,6 @@ def _named(keys: Path | None, name: str | None) -> tuple[SecuredSite | None, str
 
 _HOST = re.sub(r"[^A-Za-z0-9-]", "-", platform.node())[:32] or "unknown"
 """This host, as a part of the life of a site: so others can say who has a name."""
-
-
-def _document_of(advertisement: Advertisement) -> Document:
-    """The document in which a component is advertised. Raises AuthorError."""
-    return turtle.parse(*text_of(Path(advertisement.profile.place.source if advertisement.profile.place else "")))
 
 
 def _refuse_taken(name: str, ecology: str, joining: Joining) -> None:

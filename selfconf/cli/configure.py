@@ -64,7 +64,24 @@ def run(given: argparse.Namespace) -> int:
         complain(undecided_text(answer, task.iri, task.names))
     else:
         display(_text(inquiry, answer, given.format))
+        if isinstance(answer, Answer) and given.format == "text" and given.ads is not None:
+            _tell_insides(inquiry, answer)
     return 0 if answer else 2 if isinstance(answer, Undecided) else 1
+
+
+def _tell_insides(inquiry: Inquiry, answer: Answer) -> None:
+    """Tell what composites of a configuration would be inside, if their sites had these advertisements."""
+    if not any(inquiry.ecology[component].profile.inside for component in answer.components):
+        return
+    from selfconf.api.composites import insides  # only now: it brings all that a site needs
+    from selfconf.render import configuration_text
+
+    for component, inside in insides(inquiry.ecology, answer.components):
+        if isinstance(inside, str):
+            display(f"{answer.names(component)}: {inside}")
+            continue
+        told = ("  " + line for line in configuration_text(inside, answer.names).splitlines())
+        display("\n".join([f"inside of {answer.names(component)}, from these advertisements", *told]))
 
 
 def _body(inquiry: Inquiry, answer: Answer | Refusal | Undecided) -> dict[str, Any]:
