@@ -187,9 +187,7 @@ def _navigate(given: DemoOptions) -> int:
         stage.site("astrid", *others)
         if given.serve:
             stage.serve()
-        world = ["--ecology", stage.ecology, "--connect", stage.endpoint, "--record", str(record)]
-        world += ["--seed", str(given.seed), "--speed", str(given.speed), *(["--gui"] if given.gui else [])]
-        world += ["--eyes"] if inside else []
+        world = _world_arguments(given, stage, record)
         crew.start("world", "-m", "sim.peis_home", *world)
         stage.until(lambda: stage.account.ready, STARTING, ("world",), "the world was there")
         goal = "goal=(AT BEDROOM)"
@@ -218,6 +216,13 @@ def _navigate(given: DemoOptions) -> int:
         for path in draw_run(account, record, given.out, given.pictures, _tell):
             _tell(f"wrote {path}")
     return 0 if account.end["outcome"] == "arrived" and not account.end["touched"] else 1
+
+
+def _world_arguments(given: DemoOptions, stage: Stage, record: Path) -> list[str]:
+    """What the program of the world is started with."""
+    world = ["--ecology", stage.ecology, "--connect", stage.endpoint, "--record", str(record)]
+    world += ["--seed", str(given.seed), "--speed", str(given.speed), *(["--gui"] if given.gui else [])]
+    return [*world, "--eyes"] if given.scene == "composite" else world
 
 
 def _radio(given: DemoOptions) -> int:

@@ -210,7 +210,7 @@ def insides(
 
     Composites inside of these follow each after the one that holds it.
     """
-    found, why = _configurable(known, document_of)
+    found, why = _configurable(known, described_in)
     waiting = list(components)
     while waiting:
         component = waiting.pop(0)
@@ -224,7 +224,7 @@ def insides(
             waiting = [*inside.components, *waiting]
 
 
-def document_of(advertisement: Advertisement) -> Document:
+def described_in(advertisement: Advertisement) -> Document:
     """The document in which a component is advertised. Raises AuthorError."""
     return turtle.parse(*text_of(Path(advertisement.profile.place.source if advertisement.profile.place else "")))
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import files, rendezvous
-from selfconf.api.composites import Composites, document_of
+from selfconf.api.composites import Composites, described_in
 from selfconf.api.joining import Joining
 from selfconf.api.reading import existing
 from selfconf.api.unknown_terms import unknown_in_ecology
@@ -92,7 +92,7 @@ def serve(
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
         log_path = _log_path(log, ecology, name).absolute()
         joining.log = str(log_path)
-        composites = Composites(bus, ecology, document_of, complain, work.work)
+        composites = Composites(bus, ecology, described_in, complain, work.work)
         keys_of = None if secured is None else secured.keys_of
         site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond, changed=composites.refresh)
         if secured is not None:
