@@ -6,8 +6,8 @@ import pytest
 
 from benchmarks.faults.__main__ import report
 from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS
-from benchmarks.faults.ecology import Sign, lives_at_once
-from benchmarks.faults.trial import KINDS, PHASES, PROMISES, Outcome, plan
+from benchmarks.faults.ecology import HUB, Sign, lives_at_once
+from benchmarks.faults.trial import KINDS, PHASES, PROMISES, ROUTED_VICTIMS, Outcome, plan
 from tests.benchmark import short_run
 
 
@@ -30,6 +30,12 @@ def test_a_trial_is_decided_by_its_seed_and_every_fault_comes_at_every_phase() -
     assert len(seen) == len(PHASES) * 3 * len(KINDS)
     assert any(len(one.faults) == 2 for one in plans)
     assert not any("10 s" in str(plan(1, number, 0.5)) for number in range(100))
+
+
+def test_where_all_go_through_a_router_it_is_hit_by_every_fault_too() -> None:
+    plans = [plan(1, number, 10.0, ROUTED_VICTIMS) for number in range(200)]
+    assert {one.faults[0].kind for one in plans if one.faults[0].victim == "router"} == set(KINDS)
+    assert {fault.name for one in plans for fault in one.faults if fault.victim == "router"} == {HUB}
 
 
 def test_two_processes_that_act_at_once_are_noticed_and_one_after_the_other_is_not() -> None:

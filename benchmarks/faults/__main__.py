@@ -1,11 +1,14 @@
 """Real faults, by seed, and a table of promises, trials and violations.
 
-    python -m benchmarks.faults [--trials 60] [--seed 1] [--minutes 10] [--smoke]
+    python -m benchmarks.faults [--trials 60] [--seed 1] [--minutes 10] [--router] [--smoke]
     python -m benchmarks.faults --only 1/17         one trial again
 
 Each trial: a configurator begins in an ecology of two sites whose components are started on demand; at a random moment
 of discovery, reservation, activation, running or repair a component, a site or the configurator is killed, ended, or
 stopped for half a second, two or ten; one in four has a second fault. Sites come back after half a second.
+
+With `--router` each site is as on a host of its own, linked to nobody but a router that all go through; in two of seven
+trials it is that which is killed, ended or stopped.
 """
 
 from __future__ import annotations
@@ -17,13 +20,13 @@ import time
 from pathlib import Path
 
 from benchmarks.faults.ecology import Ecology
-from benchmarks.faults.trial import PROMISES, Outcome, Trial, plan
+from benchmarks.faults.trial import PROMISES, ROUTED_VICTIMS, VICTIMS, Outcome, Trial, plan
 from benchmarks.machine import described, table
 
 LEFT = "no process is left when its site has ended"
 
 
-def measure(seed: int, numbers: list[int], longest: float, minutes: float) -> list[Outcome]:
+def measure(seed: int, numbers: list[int], longest: float, minutes: float, routed: bool = False) -> list[Outcome]:
     """The outcomes of the trials, as many as there is time for; the ecology is made anew after a broken promise."""
     outcomes: list[Outcome] = []
     deadline = time.monotonic() + 60 * minutes
@@ -32,8 +35,9 @@ def measure(seed: int, numbers: list[int], longest: float, minutes: float) -> li
         for number in numbers:
             if time.monotonic() > deadline:
                 break
-            ecology = ecology or Ecology(Path(folder))
-            outcome = Trial(ecology, plan(seed, number, longest)).carry_out()
+            ecology = ecology or Ecology(Path(folder), routed)
+            victims = ROUTED_VICTIMS if routed else VICTIMS
+            outcome = Trial(ecology, plan(seed, number, longest, victims)).carry_out()
             outcomes.append(outcome)
             for promise, detail in outcome.broken.items():
                 print(f"{outcome.trial} {outcome.fault}: broken: {promise}: {detail}", file=sys.stderr, flush=True)
@@ -69,6 +73,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=90.0, help="begin no trial after so many minutes")
     parser.add_argument("--only", metavar="SEED/NUMBER", help="one trial")
+    parser.add_argument("--router", action="store_true", help="have all go through one router, and hit that as well")
     parser.add_argument("--smoke", action="store_true", help="one short trial, to see that it works")
     given = parser.parse_args()
     seed, numbers, longest = given.seed, list(range(given.trials)), 10.0
@@ -77,7 +82,7 @@ def main() -> int:
     if given.only:
         seed, number = map(int, given.only.split("/"))
         numbers = [number]
-    outcomes = measure(seed, numbers, longest, given.minutes)
+    outcomes = measure(seed, numbers, longest, given.minutes, given.router)
     print(report(outcomes))
     return 1 if any(outcome.broken for outcome in outcomes) else 0
 

@@ -18,10 +18,14 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.faults.actor import ADVERTISEMENTS
+from selfconf import rendezvous
+from selfconf.bus.zenoh_session import with_port
 
 ROOT = Path(__file__).resolve().parents[2]
 TASK = Path(__file__).parent / "task.ttl"
 SITES = ("robot", "room")
+HUB = "hub"
+"""A site that advertises nothing, and through which all others and the configurators go, as if each had a host."""
 PATIENCE = 30.0
 """Seconds that a process may take to begin, on a busy machine."""
 
@@ -150,8 +154,9 @@ class Program:
 class Ecology:
     """Sites, components and configurators, all real processes; everything is read by this one thread."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, through_hub: bool = False) -> None:
         self.name = f"faults-{secrets.token_hex(3)}"
+        self._hub = with_port("tcp/127.0.0.1:0") if through_hub else ""
         runtime = folder / self.name
         runtime.mkdir()
         self.witnesses = Witnesses(runtime / "witness")
@@ -161,17 +166,36 @@ class Ecology:
             "FAULTS_WITNESS": str(runtime / "witness"),
             "PYTHONPATH": str(ROOT),
         }
+        if through_hub:
+            self.environment[rendezvous.CONNECT_VARIABLE] = self._hub
+        self._runtime = runtime
         self.programs: list[Program] = []
         self.sites: dict[str, Program] = {}
-        for name in SITES:
+        for name in (HUB, *SITES) if through_hub else SITES:
             self.start_site(name)
 
     def start_site(self, name: str) -> None:
         """Start a site, and wait until it serves."""
-        site = self.start("site", str(ADVERTISEMENTS / name), "--ecology", self.name, "--name", name)
+        where = ("site", str(self._advertisements(name)), "--ecology", self.name, "--name", name)
+        site = Program(self._environment_of(name), *where, *(("--listen", self._hub) if name == HUB else ()))
+        self.programs.append(site)
         self.sites[name] = site
         if not self.until(lambda: any(" on tcp/" in line for line in site.lines), PATIENCE):
             raise RuntimeError(f"site {name} does not begin: {site.lines}")
+
+    def _advertisements(self, name: str) -> Path:
+        folder = ADVERTISEMENTS / name if name in SITES else self._runtime / name / "ads"
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+
+    def _environment_of(self, name: str) -> dict[str, str]:
+        """What a site is told: where all go through a hub, a folder of its own, as on a host of its own."""
+        if not self._hub:
+            return self.environment
+        found = {**self.environment, "SELFCONF_RUNTIME_DIR": str(self._runtime / name)}
+        if name == HUB:
+            del found[rendezvous.CONNECT_VARIABLE]
+        return found
 
     def start(self, *arguments: str) -> Program:
         """Start a program of selfconf in this ecology."""

@@ -12,13 +12,13 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 
 from benchmarks.faults.actor import OUTPUTS
-from benchmarks.faults.ecology import PATIENCE, SITES, Ecology, Sign, lives_at_once
+from benchmarks.faults.ecology import HUB, PATIENCE, SITES, Ecology, Sign, lives_at_once
 
 PHASES = {
     "discovery": ("query",),
@@ -31,6 +31,8 @@ PHASES = {
 KINDS = {"kill": 0.0, "end": 0.0, "stop 0.5 s": 0.5, "stop 2 s": 2.0, "stop 10 s": 10.0}
 """What happens to a process, and for how many seconds it stands still."""
 VICTIMS = ("component", "component", "site", "configurator", "configurator")
+ROUTED_VICTIMS = ("router", "router", *VICTIMS)
+"""Whom it happens to where all go through a router."""
 
 GRACE = 1.0
 LEASE = 1.0
@@ -96,13 +98,14 @@ class Plan:
         return f"{self.phase}: {', then '.join(map(str, self.faults))}"
 
 
-def plan(seed: int, number: int, longest: float) -> Plan:
+def plan(seed: int, number: int, longest: float, victims: Sequence[str] = VICTIMS) -> Plan:
     """The plan of a trial; nobody stands still for longer than `longest` seconds."""
     chance = random.Random(f"{seed}/{number}")
 
     def fault(delay: float) -> Fault:
-        victim = chance.choice(VICTIMS)
-        name = {"component": chance.choice(sorted(OUTPUTS)), "site": chance.choice(SITES)}.get(victim, victim)
+        victim = chance.choice(victims)
+        names = {"component": chance.choice(sorted(OUTPUTS)), "site": chance.choice(SITES), "router": HUB}
+        name = names.get(victim, victim)
         kind = chance.choice([kind for kind, seconds in KINDS.items() if seconds <= longest])
         return Fault(victim, kind, name, delay)
 
@@ -173,7 +176,7 @@ class Trial:
             self._still.append((now, now + seconds))
             return
         os.kill(process, signal.SIGKILL if fault.kind == "kill" else signal.SIGTERM)
-        if fault.victim == "site":
+        if fault.victim in ("site", "router"):
             self._restart.append((time.monotonic() + 0.5, fault.name))
 
     def _wait(self, seconds: float) -> None:
