@@ -9,10 +9,15 @@ A site that is told where to listen, or to connect to another machine, relays be
 
 A relay that hangs cannot be told so. A site that has had no hub for `HUNG` seconds takes its place on another port and
 writes into its file that it relays no more; when it goes on it reads that, and closes its hub.
+
+A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
+and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
+its own hub who lives, again and again, and opens another one when it does not answer.
 """
 
 from __future__ import annotations
 
+import logging
 import os
 import random
 from collections.abc import Sequence
@@ -27,6 +32,8 @@ from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys
 from selfconf.rendezvous import LocalSite
 
+log = logging.getLogger(__name__)
+
 HASTE = 0.05
 """Seconds within which, by chance, a site that has lost its hub looks whether there is a place to take."""
 LOOK_AGAIN = 0.2
@@ -37,6 +44,10 @@ MEETING = 0.6
 """Seconds that it may take to see the sites of other hosts after connecting to them."""
 STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
+HUB_ANSWER = 2.0
+"""Seconds that a hub may take to answer its own site; one that works answers within milliseconds."""
+UNANSWERED = 2
+"""How many questions in a row it may leave unanswered: a machine may be very busy for a while."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
 
@@ -64,6 +75,9 @@ class Joining:
         """The log of the site, for others on this machine."""
         self._lost_at: float | None = None
         self._look_again: Undo = lambda: None
+        self._unanswered = 0
+        """How many questions in a row the hub of this site has not answered."""
+        self._asking = False
         self.bus.watch_link(self._link_changed)
         self.bus.later(STILL_MINE, self._look_from_time_to_time)
 
@@ -143,8 +157,35 @@ class Joining:
 
     def _look_from_time_to_time(self) -> None:
         self.bus.later(STILL_MINE, self._look_from_time_to_time)
-        if self._file is not None and self.bus.endpoint and not rendezvous.relays(self._file):
+        if self._file is None or not self.bus.endpoint:
+            return
+        if not rendezvous.relays(self._file):
             self._look()
+        elif not self._asking:
+            self._ask_hub()
+
+    def _ask_hub(self) -> None:
+        """Ask the hub of this site who lives; what counts is that it answers, and not only after the time is over."""
+        self._asking, asked = True, self.bus.now()
+
+        def answered(_: tuple[str, ...]) -> None:
+            self._asking = False
+            in_time = bool(self.bus.link) and self.bus.now() - asked < HUB_ANSWER
+            self._unanswered = 0 if in_time else self._unanswered + 1
+            if self._unanswered >= UNANSWERED:
+                self._unanswered = 0
+                self._replace_hub()
+
+        self.bus.roll_call(Keys(self._ecology).site_life(self._name, "*"), HUB_ANSWER, answered)
+
+    def _replace_hub(self) -> None:
+        """Open another hub in the place of one that has broken: where that was, if it lets go of its port."""
+        before = self.bus.endpoint
+        log.error("the hub at %s does not answer; opening another one", before)
+        with rendezvous.turn(seconds=0.0) as mine:
+            if mine:
+                self.bus.relay_no_more()
+                self._relay_at(list(dict.fromkeys((before, *self._usual))), self._relays())
 
     def _look(self) -> None:
         if self._file is None:
@@ -178,9 +219,12 @@ class Joining:
         """Relay, if nobody does, or if whoever does hangs."""
         relays = self._relays()
         hung = self._lost_at is not None and self.bus.now() - self._lost_at > HUNG
-        if relays and not hung:
-            return
-        for endpoint in self._usual:
+        if not relays or hung:
+            self._relay_at(self._usual, relays)
+
+    def _relay_at(self, endpoints: Sequence[str], relays: Sequence[str]) -> None:
+        """Relay at the first of some endpoints that is free, beside others that relay and keep their places."""
+        for endpoint in endpoints:
             try:
                 hub = Hub(endpoint, self._security)
             except NetworkError:  # the port is taken, by one that hangs or by another program
@@ -188,6 +232,6 @@ class Joining:
             for other in rendezvous.local_sites(self._ecology):
                 if other.relays and other.endpoint in self._usual:
                     rendezvous.announce_for(other, relays=False)
-            self.bus.relay(hub, [relay for relay in relays if relay not in self._usual])
+            self.bus.relay(hub, [*(relay for relay in relays if relay not in self._usual), *self._elsewhere])
             self.announce()
             return

@@ -18,6 +18,7 @@ import random
 import threading
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -36,6 +37,8 @@ QUIET = 0.3
 """Seconds without any change of its links after which an uplink is replaced: trees are computed in between."""
 RETRY_SPREAD = 0.5
 """By how many seconds at most a replacement is delayed, by chance: others may have lost their links with this one."""
+CLOSING = 3.0
+"""Seconds for which the end of a session is waited for."""
 LINGER = 3.0
 """Seconds for which an uplink that was replaced stays, up to twice that by chance."""
 MOST_LINGERING = 3
@@ -185,7 +188,13 @@ class _Uplink:
 
 
 def _close(session: Any) -> None:
-    try:
-        session.close()
-    except zenoh.ZError:  # it takes too long; the process, or the lease, will end it
-        return
+    """Close a session elsewhere, and wait for that for a while: one that has broken inside may never be closed."""
+
+    def close() -> None:
+        # It takes too long, or Zenoh panics, which is no Exception; the process, or the lease, will end it.
+        with suppress(BaseException):
+            session.close()
+
+    closing = threading.Thread(target=close, daemon=True, name="closing")
+    closing.start()
+    closing.join(CLOSING)

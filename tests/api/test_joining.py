@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import rendezvous
+from selfconf.api import joining
 from selfconf.api.joining import Joining
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import NetworkError
@@ -154,6 +155,27 @@ def test_relays_of_several_hosts_see_each_other_again_after_one_was_stopped(home
     assert home.until(lambda: seen_at(home, ends[1]) == {"b", "c"})
     sites[0].send(signal.SIGCONT)
     assert home.until(lambda: all(seen_at(home, end) == {"a", "b", "c"} for end in ends))
+
+
+def test_a_site_whose_own_hub_has_broken_opens_another(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    monkeypatch.setattr(joining, "HUB_ANSWER", 0.3)
+    site = machine.join("a")
+    machine.join("b")
+    relay = site.bus._relay
+    assert relay is not None
+    broken, answers = relay._hub, site.bus.roll_call
+
+    def silent(key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        """A hub that is there, but answers nothing: the time is over before anything is heard."""
+        if site.bus._relay is relay:
+            site.bus.later(seconds, lambda: done(()))
+        else:
+            answers(key, seconds, done)
+
+    monkeypatch.setattr(site.bus, "roll_call", silent)
+    assert machine.until(lambda: site.bus._relay is not None and site.bus._relay._hub is not broken)
+    assert machine.until(machine.united)
 
 
 def test_the_place_of_one_that_hangs_is_taken_and_it_joins_the_others_when_it_goes_on(home: Home) -> None:

@@ -1,0 +1,109 @@
+"""Many sites on one machine: what they cost while nothing happens, and whether they recover from a common stall.
+
+    python -m benchmarks.live.stall [--sites 50] [--seconds 3] [--smoke]
+
+All sites are processes of one ecology. They are left alone, then all stopped at once (SIGSTOP) and let go on; a bare
+client asks who lives until it sees as many as before, and the cost of idleness is measured once more.
+
+    up       from the first process to the last site that is seen
+    idle     processor time of all sites together, per cent of one core, before and after the stall
+    back     from the end of the stall until all are seen, at two looks in a row
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import secrets
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+from benchmarks.live.__main__ import cost, program
+from benchmarks.machine import described, table
+from selfconf import rendezvous
+from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.protocol.keys import Keys
+
+PATIENCE = 240.0
+LOOK = 0.2
+"""Seconds between two looks at who lives."""
+SETTLING = 10.0
+"""Seconds after which the cost of idleness is measured: uplinks that were replaced stay for a while."""
+
+
+def living(bus: ZenohBus, ecology: str) -> int:
+    """How many sites live, as far as a bus can see."""
+    heard: list[tuple[str, ...]] = []
+    bus.roll_call(Keys(ecology).any_site_life(), 2.0, heard.append)
+    deadline = bus.now() + 3.0
+    bus.run(lambda: bool(heard) or bus.now() > deadline)
+    return len(heard[0]) if heard else 0
+
+
+def until_all_live(bus: ZenohBus, ecology: str, sites: int) -> float:
+    """Seconds until all sites are seen at two looks in a row; the first of these counts."""
+    began = time.monotonic()
+    seen_at = None
+    while time.monotonic() < began + PATIENCE:
+        if living(bus, ecology) < sites:
+            seen_at = None
+        elif seen_at is not None:
+            return seen_at - began
+        else:
+            seen_at = time.monotonic()
+        threading.Event().wait(LOOK)
+    raise SystemExit(f"after {PATIENCE:.0f} s {living(bus, ecology)} of {sites} sites are seen")
+
+
+def measure(sites: int, seconds: float) -> list[str]:
+    """The row of one ecology."""
+    ecology = f"stall-{secrets.token_hex(3)}"
+    with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
+        folder = Path(name) / "ads"
+        folder.mkdir()
+        os.environ |= {"SELFCONF_RUNTIME_DIR": f"{name}/runtime", rendezvous.ECOLOGY_VARIABLE: ecology}
+        began = time.monotonic()
+        served: list[subprocess.Popen[str]] = []
+        for number in range(sites):
+            served.append(stack.enter_context(program("selfconf", "site", str(folder), "--name", f"s{number}")))
+            if not number:
+                while not rendezvous.local_sites(ecology) and time.monotonic() < began + PATIENCE:
+                    threading.Event().wait(LOOK)
+        bus = client(rendezvous.find(ecology, [])[1])
+        stack.callback(bus.close)
+        until_all_live(bus, ecology, sites)
+        up = time.monotonic() - began
+        threading.Event().wait(SETTLING)
+        before, megabytes = cost(served)
+        for process in served:
+            process.send_signal(signal.SIGSTOP)
+        threading.Event().wait(seconds)
+        for process in served:
+            process.send_signal(signal.SIGCONT)
+        back = until_all_live(bus, ecology, sites)
+        threading.Event().wait(SETTLING)
+        after, _ = cost(served)
+        ended = sum(process.poll() is not None for process in served)
+    shown = [f"{up:.1f}", f"{100 * before:.1f}", f"{back:.1f}", f"{100 * after:.1f}", f"{megabytes:.0f}", str(ended)]
+    return [str(sites), f"{seconds:g}", *shown]
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.live.stall", description="many sites, and a stall")
+    parser.add_argument("--sites", type=int, default=50)
+    parser.add_argument("--seconds", type=float, default=3.0, help="how long all stand still")
+    parser.add_argument("--smoke", action="store_true", help="three sites, to see that it works")
+    given = parser.parse_args()
+    row = measure(3 if given.smoke else given.sites, given.seconds)
+    head = ["sites", "stall s", "up s", "idle %", "back s", "idle afterwards %", "site MB", "ended"]
+    print(f"{table(head, [row])}\n\nOne run; {described('eclipse-zenoh')}")
+
+
+if __name__ == "__main__":
+    main()
