@@ -1,20 +1,31 @@
-"""The page in a real browser: it shows a failure as it happens, looks back in time, and runs nothing of strangers."""
+"""The page in a real browser: it shows a failure as it happens, looks back in time, and runs nothing of strangers.
+
+Where `AXE_CORE` names the file `axe.min.js` of axe-core (from npm), it is also checked whether everybody can use it.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import re
-import shutil
-from collections.abc import Iterator
-from typing import Any
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
+import uvicorn
 
-from tests.cli.processes import Home
-from tests.lab import PREFIXES
+from selfconf.serve.board import Board
+from selfconf.serve.change import Body, EcologyChange
+from selfconf.serve.metrics import Metrics
+from selfconf.serve.server import bound
+from tests.cli.processes import Home, dormant
+from tests.lab import PREFIXES, iri
+from tests.serve.asgi import served
+from tests.serve.chromium import CHROMIUM, Chromium, Page
+from tests.serve.shown import advertised
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright, which drives a browser, is not installed")
-CHROMIUM = os.environ.get("SELFCONF_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 pytestmark = [
     pytest.mark.process,
     pytest.mark.slow,
@@ -22,6 +33,11 @@ pytestmark = [
 ]
 HOSTILE = "<img src=x onerror=document.title='caught'><script>document.title='caught'</script>"
 EVIL = f'{PREFIXES}<https://example.org/peis-home#evil> a sc:Component, <urn:x:%3Cb%3E> ; rdfs:label "{HOSTILE}" .'
+TALK = 'print("hello <b>there</b>", flush=True)\n'
+SIZES = [(1320, 780, False), (390, 844, True)]
+AXE = os.environ.get("AXE_CORE")
+CHECKED = "axe.run(document, { resultTypes: ['violations'] }).then((found) => found.violations)"
+POSITION = "[...document.querySelectorAll('.box')].find((box) => box.textContent.includes('position'))"
 
 
 @pytest.fixture(scope="module")
@@ -29,8 +45,10 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     """The paper's ecology, with one component that means harm, and a task that runs."""
     home = Home(tmp_path_factory.mktemp("page"))
     (home.folder / "ads" / "evil.ttl").write_text(EVIL)
+    (home.folder / "components.py").write_text(TALK + (home.folder / "components.py").read_text())
+    dormant(home, "tracker")
     home.site("peis-home", "ads")
-    home.components("sonar", "encoder", "tracker", "odometry", "control", "drive")
+    home.components("sonar", "encoder", "odometry", "control", "drive")
     home.run().act("running")
     yield home
     home.close()
@@ -45,67 +63,225 @@ def url(home: Home) -> str:
     return found[0]
 
 
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chromium]:
+    """A browser."""
+    browser = Chromium(tmp_path_factory.mktemp("browser"))
+    yield browser
+    browser.close()
+
+
 @pytest.fixture
-def page(url: str) -> Iterator[Any]:
-    """The page in a browser that notes what goes wrong and whom it asks; a refused query is what a test may ask for."""
-    with sync_api.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1280, "height": 800})
-        trouble: list[str] = []
-        page.on("pageerror", lambda error: trouble.append(str(error)))
-        page.on(
-            "console",
-            lambda message: (
-                trouble.append(message.text) if "error" in message.type and "400" not in message.text else None
-            ),
-        )
-        page.on("request", lambda request: None if request.url.startswith(url) else trouble.append(request.url))
-        page.goto(url)
-        page.get_by_role("button", name="person-tracker").first.wait_for()
-        yield page
-        browser.close()
-    assert trouble == []
+def page(browser: Chromium, url: str) -> Iterator[Page]:
+    """The page, in which nothing goes wrong, and which asks nobody but its server."""
+    page = browser.page(url)
+    page.says("#components", "person-tracker")
+    yield page
+    page.close()
+    assert page.trouble == []
 
 
-def test_a_failure_is_seen_as_it_happens_and_can_be_looked_back_at(home: Home, page: Any) -> None:
-    position = page.locator(".box", has_text="position")
-    sync_api.expect(position.locator(".face .name")).to_have_text("person-tracker")
+@pytest.fixture
+def shown(browser: Chromium) -> Iterator[Callable[[Board], tuple[Page, Callable[[EcologyChange], None]]]]:
+    """Shows a board in the browser; what it returns changes the board."""
+    ends: list[Callable[[], None]] = []
+
+    def show(board: Board) -> tuple[Page, Callable[[EcologyChange], None]]:
+        config = uvicorn.Config(served(board), log_level="warning", access_log=False, lifespan="off", ws="none")
+        server, place = uvicorn.Server(config), bound("127.0.0.1", 0)
+        thread = threading.Thread(target=server.run, args=([place],))
+        thread.start()
+        page = browser.page(f"http://127.0.0.1:{place.getsockname()[1]}/")
+        page.says("#link", "live")
+
+        def end() -> None:
+            page.close()
+            board.stream.close()
+            server.should_exit = True
+            thread.join()
+            place.close()
+            assert page.trouble == []
+
+        ends.append(end)
+        return page, board.apply
+
+    yield show
+    for end in ends:
+        end()
+
+
+def player(page: Page) -> str:
+    """Who plays the role `position` in the diagram."""
+    return str(page.value(f"{POSITION}?.querySelector('.face .name').textContent"))
+
+
+def accessible(page: Page) -> None:
+    """Where axe-core is at hand, it finds nothing serious."""
+    if AXE is None:
+        return
+    page.value(Path(AXE).read_text())
+    faults = page.value(CHECKED)
+    serious = [(one["id"], one["nodes"][0]["html"]) for one in faults if one["impact"] in ("serious", "critical")]
+    assert serious == []
+
+
+def test_signals_log_and_roles_of_a_component_are_shown_while_it_is_looked_at(page: Page) -> None:
+    page.click("person-tracker")
+    page.until("Boolean(document.querySelector('.signals .rate')?.textContent.match(/[0-9.]+[/]s/))")
+    page.says(".signals code", '"frame": "map"')
+    page.says(".log", "hello <b>there</b>")
+    page.says(".fits", "position of navigateplays it")
+    page.click("pippi-drive")
+    page.says(".fits", "drive of navigatenearly: support is Pippi, not Astrid")
+    page.says(".log", "It has printed nothing")
+    accessible(page)
+
+
+def test_a_failure_is_seen_as_it_happens_and_can_be_looked_back_at(home: Home, page: Page) -> None:
+    assert player(page) == "person-tracker"
     (home.folder / "tracker.fail").touch()
-    sync_api.expect(position.locator(".face .name")).to_have_text("absolute-odometry")
-    sync_api.expect(position.locator(".caption")).to_contain_text("instead of person-tracker: it failed")
-    sync_api.expect(page.locator(".events")).to_contain_text(
-        "absolute-odometry takes over position from person-tracker"
+    page.until(f"{POSITION}.querySelector('.face .name').textContent === 'absolute-odometry'")
+    page.until(f"{POSITION}.textContent.includes('instead of person-tracker: it failed')")
+    page.says(".events", "absolute-odometry takes over position from person-tracker")
+    page.says("#below", "person-tracker it failed: told to")
+    page.click("the configuration runs")
+    page.until(f"{POSITION}.querySelector('.face .name').textContent === 'person-tracker'")
+    page.click("Back to now")
+    page.until(f"{POSITION}.querySelector('.face .name').textContent === 'absolute-odometry'")
+
+
+def test_what_a_stranger_wrote_stays_text(page: Page) -> None:
+    page.click("evil")
+    page.says(".detail .lead", HOSTILE)
+    page.says(".detail .turtle", HOSTILE)
+    assert page.value("document.querySelectorAll('.detail img, .detail script').length") == 0
+    assert "caught" not in page.value("document.title")
+
+
+def test_nothing_leaves_this_machine_even_where_a_script_would(browser: Chromium, url: str) -> None:
+    page = browser.page(url)
+    page.value("fetch('https://example.org/').catch(() => 0)")
+    page.value(
+        "new Promise((done) => { const one = new Image(); one.onerror = done; one.src = 'http://example.org/x' })"
     )
-    page.get_by_role("button", name="the configuration runs").click()
-    sync_api.expect(position.locator(".face .name")).to_have_text("person-tracker")
-    page.get_by_role("button", name="Back to now").click()
-    sync_api.expect(position.locator(".face .name")).to_have_text("absolute-odometry")
+    page.close()
+    assert any("Content Security Policy" in one for one in page.trouble)
+    assert not [one for one in browser.outside if "example.org" in one]
 
 
-def test_what_a_stranger_wrote_stays_text(page: Any) -> None:
-    page.get_by_role("button", name="evil").click()
-    sync_api.expect(page.locator(".detail .lead")).to_have_text(HOSTILE)
-    sync_api.expect(page.locator(".detail .turtle")).to_contain_text(HOSTILE)
-    assert page.locator(".detail img, .detail script").count() == 0
-    sync_api.expect(page).not_to_have_title("caught")
+def test_the_page_is_used_by_keyboard(page: Page) -> None:
+    page.press("/")
+    page.write("thinking")
+    page.press("Tab")
+    while page.value("document.activeElement.className") != "component":
+        page.press("Tab")
+    page.press("Enter")
+    page.says(".detail .title", "thinking-cap")
+    page.press("Escape")
+    page.says(".detail .hint", "Choose a component")
 
 
-def test_the_page_is_used_by_keyboard(page: Any) -> None:
-    page.keyboard.press("/")
-    page.keyboard.type("thinking")
-    page.keyboard.press("Tab")
-    while page.evaluate("document.activeElement.className") != "component":
-        page.keyboard.press("Tab")
-    page.keyboard.press("Enter")
-    sync_api.expect(page.locator(".detail .title")).to_have_text("thinking-cap")
-    page.keyboard.press("Escape")
-    sync_api.expect(page.locator(".detail .hint")).to_be_visible()
+def test_questions_in_sparql_are_answered_and_their_faults_shown_where_they_are(page: Page) -> None:
+    page.click("Query")
+    page.click("Who feeds whom")
+    page.until("document.querySelectorAll('.answer tbody tr').length === 4")
+    for number in range(6):
+        page.value(f"document.querySelectorAll('#examples button')[{number}].click()")
+        page.until("!['', 'asking'].includes(document.querySelector('#asked').textContent)")
+    for text, wrong in (
+        ("SELEKT", "SELEKT"),
+        ("SELECT ?x WHERE {\n  ?x a sc:Component ;\n    foo:bar ?y\n}", "foo:bar"),
+        ("ASK {\n  ?a ?b }", "}"),
+    ):
+        page.value(f"document.querySelector('#sparql').value = {json.dumps(text)}")
+        page.value("document.querySelector('#sparql').focus()")
+        page.press("Enter", control=True)
+        page.until(f"document.querySelector('#painted mark')?.textContent === {json.dumps(wrong)}")
+        assert page.value("document.activeElement.id") == "sparql"
+    page.says(".answer", "it ends too soon")
+    accessible(page)
+    page.click("Who is there")
+    page.click("thinking-cap", ".answer button")
+    page.says(".detail .title", "thinking-cap")
 
 
-def test_a_question_in_sparql_is_answered_on_the_page(page: Any) -> None:
-    page.get_by_role("button", name="Query").click()
-    page.get_by_role("button", name="Who feeds whom").click()
-    sync_api.expect(page.locator(".answer tbody tr")).to_have_count(4)
-    page.locator("#sparql").fill("SELEKT")
-    page.keyboard.press("Control+Enter")
-    sync_api.expect(page.locator(".answer")).to_contain_text("it begins with 'SELEKT'")
+@pytest.mark.parametrize(("width", "height", "dark"), SIZES)
+def test_it_fits_a_desk_and_a_phone_by_day_and_by_night(
+    browser: Chromium, url: str, width: int, height: int, dark: bool
+) -> None:
+    page = browser.page(url, width, height, dark)
+    page.until("document.querySelectorAll('.box').length === 5")
+    assert page.value("document.documentElement.scrollWidth") <= width
+    light = page.value("getComputedStyle(document.documentElement).backgroundColor").split("(")[1].split(",")[0]
+    assert (int(light) < 128) is dark
+    page.click("thinking-cap")
+    page.says(".detail .title", "thinking-cap")
+    accessible(page)
+    page.close()
+
+
+def refused_task() -> Body:
+    """A task that waits: one role has nobody, a component nearly fits it, and something would mend it."""
+    refusal = {
+        "reasons": [{"code": "x", "role": iri("drive"), "message": "nobody is eligible for drive"}],
+        "near_misses": [
+            {"role": iri("drive"), "component": iri("pippi-drive"), "obstacle": "support is Pippi, not Astrid"}
+        ],
+        "repairs": [{"code": "x", "role": iri("drive"), "message": "let drive have another support"}],
+        "message": "",
+    }
+    facts = {
+        "priority": 0,
+        "beginning": 1.0,
+        "since": 1.0,
+        "epoch": 0,
+        "host": "",
+        "process": 0,
+        "template": "x#navigate",
+    }
+    lists: Body = {"components": [], "owed": [], "dropped": {}, "lost": {}, "configuration": None, "refusal": refusal}
+    return {
+        "name": "navigate",
+        "configurator": "c1",
+        "phase": "waiting",
+        "over": False,
+        "detached": False,
+        **facts,
+        **lists,
+    }
+
+
+def test_a_refusal_is_one_screen_with_what_would_mend_it(
+    board: Board, shown: Callable[[Board], tuple[Page, Callable[[EcologyChange], None]]]
+) -> None:
+    board.apply(EcologyChange(tasks={"navigate~1": refused_task()}))
+    page, _ = shown(board)
+    for text in ("nobody is eligible for drive", "support is Pippi, not Astrid", "let drive have another support"):
+        page.says(".refusal", text)
+    bottom, seen = page.value("[document.querySelector('.refusal').getBoundingClientRect().bottom, innerHeight]")
+    assert bottom < seen
+    accessible(page)
+    page.click("pippi-drive", ".refusal button")
+    page.says(".detail .title", "pippi-drive")
+
+
+def test_a_thousand_components_are_grouped_and_found(
+    shown: Callable[[Board], tuple[Page, Callable[[EcologyChange], None]]],
+) -> None:
+    board, one = Board("crowd", Metrics()), advertised("tracker")
+    (body,) = one.components.values()
+    assert body is not None
+    crowd = {
+        f"urn:c:{n}": {**body, "name": f"sensor-{n}", "places": [f"room-{n % 30}"], "site": f"host-{n % 10}"}
+        for n in range(1000)
+    }
+    board.apply(replace(one, components=crowd, sites={f"host-{n}": {"missing": False} for n in range(10)}))
+    page, change = shown(board)
+    page.says("#tally", "1000 of 1000 components alive")
+    assert page.value("document.querySelectorAll('button.component').length") < 1000
+    page.press("/")
+    page.write("sensor-777")
+    page.until("document.querySelectorAll('button.component').length === 1")
+    change(EcologyChange(components={"urn:c:777": {**crowd["urn:c:777"], "state": "absent"}}))
+    page.says("#tally", "999 of 1000 components alive")
+    accessible(page)

@@ -118,7 +118,6 @@ export class Diagram {
       say(known.role, cut(node.roles.map(short).join(", "), 28));
       say(known.title, [node.component, `plays ${node.roles.map(short).join(", ")}`, note,
         node.passed.length ? `passed over: ${node.passed.map(short).join(", ")}` : ""].filter(Boolean).join("\n"));
-      known.group.setAttribute("aria-label", known.title.textContent);
     }
   }
 

@@ -74,7 +74,7 @@ export function faultIn(query, complaint) {
   let start = -1;
   if (place) {
     const before = query.split("\n").slice(0, Number(place[1]) - 1).reduce((sum, line) => sum + line.length + 1, 0);
-    start = Math.min(before + Number(place[2]) - 1, query.length);
+    start = Math.min(before + Number(place[2]) - 1, query.trimEnd().length - 1);  // what is missing has no place: the end
   } else if (named) start = query.indexOf(named[1] ?? named[2]);
   else start = /\bSERVICE\b/i.exec(/^SERVICE /.test(complaint) ? query : "")?.index ?? -1;
   if (start < 0) return null;
