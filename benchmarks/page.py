@@ -120,7 +120,7 @@ def report(times: Times) -> str:
         [name, str(len(seconds)), f"{1e3 * quantile(seconds, 0.5):.0f}", f"{1e3 * max(seconds):.0f}"]
         for name, seconds in times.items()
     ]
-    return "\n".join(table(["until it is shown, in ms", "times", "median", "worst"], rows))
+    return table(["until it is shown, in ms", "times", "median", "worst"], rows)
 
 
 def main() -> None:
