@@ -81,7 +81,7 @@ def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequenc
     """Why the roles of a task are played as they are, of those that a term means; none where it means nothing here.
 
     The term is a role, a component, a value that the task is bound to, or its name; an IRI or its local name.
-    `passed_over` are by role the candidates that go before the chosen ones.
+    `passed_over` are by role the candidates that go before the chosen ones, as far as that is known.
     """
     if found.refusal is not None:
         return _refused(found, term)
@@ -89,7 +89,7 @@ def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequenc
     sentences = []
     for role, components in found.roles():
         if everything or _means(term, role) or any(_means(term, one) for one in components):
-            sentences += _played(found, role, components, passed_over.get(role, ()))
+            sentences += _played(found, role, components, passed_over.get(role))
     return sentences + _without_a_role(found, term, passed_over)
 
 
@@ -109,7 +109,8 @@ def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Seque
     return sentences
 
 
-def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequence[str]) -> list[str]:
+def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequence[str] | None) -> list[str]:
+    """Who plays a role and why; `before` are the candidates that go before those, None if that is not known."""
     who = ", ".join(map(_name, components)) or "nobody"
     until = "" if found.ended is None else f", until {_clock(found.ended)}"
     sentences = [f"{_name(role)} in {found.task}: {who}, since {_clock(found.since)}{until}"]
@@ -118,7 +119,11 @@ def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequ
         if instead is not None:
             loss = found.lost.get(instead)
             sentences.append(f"  it took over from {_name(instead)}{'' if loss is None else ': ' + _loss(loss)}")
-    others = [one for one in before if one not in components]
+        if component in found.lost:
+            sentences.append(f"  {_name(component)} was {_loss(found.lost[component])}, and has come back")
+    others = [one for one in before or () if one not in components]
+    if before is not None and components and not others:
+        sentences.append("  no other candidate goes before it")
     if others:
         names = ", ".join(map(_name, others))
         sentences.append(f"  passed over, though first in order: {names}")

@@ -74,11 +74,11 @@ def test_every_configuration_is_read_with_its_time_its_end_and_what_had_failed(k
     ("at", "words"),
     [
         (999_999.0, []),
-        (1_000_003.0, ["position in navigate: tracker, since"]),
+        (1_000_003.0, ["position in navigate: tracker, since", "no other candidate"]),
         (1_000_006.0, ["navigate: odometry", "it took over from tracker: lost at", "passed over", "what would change"]),
         (1_000_009.0, ["odometry, since", "took over", "passed over", "would change"]),
-        (1_000_012.0, ["position in navigate: tracker, since"]),
-        (None, ["position in navigate: tracker, since"]),
+        (1_000_012.0, ["position in navigate: tracker, since", "was lost", "no other candidate"]),
+        (None, ["position in navigate: tracker, since", "was lost", "no other candidate"]),
     ],
 )
 def test_the_answer_is_that_of_the_moment(at: float | None, words: list[str], kept: Path) -> None:
@@ -103,8 +103,9 @@ def test_a_real_configuration_is_told(tmp_path: Path) -> None:
     history = History(tmp_path / "history")
     history.note({GRAPH: ntriples(parse(agent._record.turtle(), "cfg").triples())})
     history.close()
-    (sentence,) = past_why(tmp_path / "history", "position", None)
+    sentence, why = past_why(tmp_path / "history", "position", None)
     assert sentence.startswith("position in navigate: person-tracker, since ")
+    assert why == "  no other candidate goes before it"
     assert past_why(tmp_path / "history", "Astrid", None)
 
 

@@ -34,6 +34,17 @@ def test_a_role_is_told_with_what_failed_what_was_passed_over_and_what_would_cha
     assert fourth.startswith("  what would change it: tracker able to act again")
 
 
+def test_who_goes_first_and_who_has_come_back_is_said() -> None:
+    first, over, back, order = why_sentences(
+        story("navigate", [*EVENTS, running(40.0, "tracker")]), "position", {HOME + "position": []}
+    )
+    assert first.startswith("position in navigate: tracker, since ")
+    assert over == "  it took over from odometry"
+    assert back.startswith("  tracker was lost at ")
+    assert back.endswith("(fail, out of view), and has come back")
+    assert order == "  no other candidate goes before it"
+
+
 def test_at_an_earlier_moment_the_answer_is_that_of_then() -> None:
     (only,) = why_sentences(story("navigate", EVENTS, at=15.0), "position", {})
     assert "tracker, since" in only
