@@ -1,6 +1,6 @@
 """How long from FAIL to the first message over the new connection, beside a bare Zenoh round trip in the same run.
 
-    python -m benchmarks.failover [--trials 50] [--kill] [--smoke]
+    python -m benchmarks.failover [--trials 50] [--kill] [--smoke] [--servers 3]
 
 Nine processes on one machine: a site (the router), six components without physics, the configurator (`selfconf run`)
 and an echo, all real. A trial: after a pause the position sensor in use raises FAIL; the configurator hears it,
@@ -17,9 +17,11 @@ With `--kill` the process of the sensor in use is ended by kill -9 instead, and 
 from __future__ import annotations
 
 import argparse
+import http.client
 import json
 import os
 import queue
+import re
 import secrets
 import subprocess
 import sys
@@ -139,10 +141,11 @@ class Echo:
         self._session.close()
 
 
-def measure(trials: int, kill: bool = False, keys: Path | None = None) -> dict[str, list[float]]:
+def measure(trials: int, kill: bool = False, keys: Path | None = None, servers: int = 0) -> dict[str, list[float]]:
     """Seconds by part: round trip, detect, decide, deploy, total without decide.
 
-    With `keys`, the folder of an authority, nothing is measured beside it: a bare round trip is not let in.
+    With `servers` that total is measured once more in the same run, with so many `selfconf serve` attached, each with a
+    page. With `keys`, the folder of an authority, nothing is measured beside it: a bare round trip is not let in.
     """
     ecology = f"failover-{secrets.token_hex(3)}"
     lines = Lines()
@@ -168,19 +171,46 @@ def measure(trials: int, kill: bool = False, keys: Path | None = None) -> dict[s
         lines.until(_said("configurator", "act", "running"))
         if echo is not None:
             echo.measure()
-        for trial in range(trials):
-            threading.Event().wait(PAUSE)
-            if echo is not None:
-                parts["round trip"].append(echo.measure())
+
+        def repeat(parts: dict[str, list[float]]) -> None:
+            for trial in range(trials):
                 threading.Event().wait(PAUSE)
-            name = ("position-a", "position-b")[trial % 2]
-            _trial(lines, actors[name], parts, kill)
-            if kill:
-                actors[name].end()
-                actors[name] = start(name, "benchmarks.failover_actors", name, **where)
-                lines.until(_said(name, "event", "ready"))
-                threading.Event().wait(PAUSE)  # until it stands by
+                if echo is not None:
+                    parts["round trip"].append(echo.measure())
+                    threading.Event().wait(PAUSE)
+                name = ("position-a", "position-b")[trial % 2]
+                _trial(lines, actors[name], parts, kill)
+                if kill:
+                    actors[name].end()
+                    actors[name] = start(name, "benchmarks.failover_actors", name, **where)
+                    lines.until(_said(name, "event", "ready"))
+                    threading.Event().wait(PAUSE)  # until it stands by
+
+        repeat(parts)
+        if servers:
+            for number in range(servers):
+                start(f"server-{number}", "selfconf", "serve", "--port", "0", **where)
+                said = lines.until(lambda name, fact: name.startswith("server-") and "http://" in str(fact))[-1][1]
+                _attached(str(said), stack)
+            again: dict[str, list[float]] = {name: [] for name in parts}
+            repeat(again)
+            parts["attached"] = again["undecided"]
     return parts
+
+
+def _attached(said: str, stack: ExitStack) -> None:
+    """Follow a server as its page does, from when it has seen what runs."""
+    found = re.search(r"http://([^:]+):(\d+)/", said)
+    assert found is not None, said
+    line = http.client.HTTPConnection(found[1], int(found[2]), timeout=PATIENCE)
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        line.request("GET", "/state")
+        if any(task["configuration"] for task in json.loads(line.getresponse().read())["tasks"].values()):
+            break
+        threading.Event().wait(PAUSE)
+    line.request("GET", "/changes")
+    stack.callback(line.close)
 
 
 def _begun_echo(start: Callable[..., Process], lines: Lines, endpoint: str, stack: ExitStack) -> Echo:
@@ -221,7 +251,8 @@ def _said(process: str, key: str, value: str) -> Callable[[str, Any], bool]:
 def report(parts: dict[str, list[float]], kill: bool = False) -> str:
     """The table, with each part as a ratio to the median round trip."""
     floor = quantile(parts["round trip"], 0.5)
-    names = {"undecided": f"{'kill -9' if kill else 'FAIL'} to first message, without the search"}
+    total = f"{'kill -9' if kill else 'FAIL'} to first message, without the search"
+    names = {"undecided": total, "attached": f"{total}, with servers attached"}
     rows = []
     for name, values in parts.items():
         middle, high = quantile(values, 0.5), quantile(values, 0.95)
@@ -238,8 +269,13 @@ def main() -> None:
     parser.add_argument("--trials", type=int, default=50)
     parser.add_argument("--kill", action="store_true", help="end the process of the sensor instead of raising FAIL")
     parser.add_argument("--smoke", action="store_true", help="four trials, to see that it works")
+    parser.add_argument("--servers", type=int, default=0, help="measure again with so many `selfconf serve` attached")
     given = parser.parse_args()
-    print(report(measure(4 if given.smoke else given.trials, given.kill), given.kill))
+    parts = measure(4 if given.smoke else given.trials, given.kill, servers=given.servers)
+    print(report(parts, given.kill))
+    if given.servers:
+        with_them, without = quantile(parts["attached"], 0.5), quantile(parts["undecided"], 0.5)
+        print(f"\nwith {given.servers} servers / without: {with_them / without:.2f} (medians)")
 
 
 if __name__ == "__main__":

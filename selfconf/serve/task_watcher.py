@@ -115,6 +115,8 @@ class TaskWatcher:
         event = task.hear(notice)
         if event is not None:
             self._happened(event)
+            if event["act"] == "waiting":  # what was deployed is taken down, though its configurator still tells it
+                self._put_graph(task.configurator, b"")
         if notice.event.get("act") == "running":
             self._ask(self.keys.configuration(task.configurator), self._deployed)
 
@@ -179,8 +181,8 @@ class TaskWatcher:
             except TurtleError as error:
                 log.warning("passed over a configuration: %s", error)
                 continue
-            self._put_graph(name, turtle.ntriples(document.triples()))
             if task.refusal is None:
+                self._put_graph(name, turtle.ntriples(document.triples()))
                 task.configuration = deployed_body(document)
         self._changed()
 

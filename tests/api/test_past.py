@@ -9,8 +9,10 @@ import pytest
 from selfconf.api.past import past_configurations, past_graphs, past_why
 from selfconf.errors import AuthorError
 from selfconf.rdf.turtle import ntriples, parse
+from selfconf.serve.change import EcologyChange
 from selfconf.serve.history import DEPLOYED, History
-from tests.lab import Lab, iri
+from selfconf.serve.watcher import EcologyWatcher
+from tests.lab import ADVERTISEMENTS, Lab, iri
 
 GRAPH = DEPLOYED + "lab/conf/c1/cfg"
 
@@ -119,3 +121,39 @@ def test_a_folder_without_a_history_and_one_that_is_broken_are_sentences(tmp_pat
 
 def test_what_is_no_configuration_is_passed_over() -> None:
     assert past_configurations({"urn:x": b"<urn:x> <urn:y> <urn:z> .\n"}) == []
+
+
+def test_after_three_failures_the_history_tells_at_each_moment_what_the_run_has_told(tmp_path: Path) -> None:
+    spare = ADVERTISEMENTS["odometry"].replace("absolute-odometry", "spare")
+    lab = Lab(tmp_path / "lab", advertised={**ADVERTISEMENTS, "spare": spare})
+    lab.navigation()
+    lab.site("attic", "spare")
+    lab.component("spare")
+    history = History(tmp_path / "history", lambda: lab.network.time)
+
+    def note(change: EcologyChange) -> None:
+        history.note(change.graphs)
+
+    EcologyWatcher(lab.network.node(), "lab", note, lambda: lab.network.time).begin()
+    assert lab.running(lab.agent(patient=True))
+    for name in ("tracker", "odometry", "spare"):
+        lab.let_pass(20.0)
+        lab.components[name].fail(f"{name} is told to")
+        lab.let_pass(5.0)
+    history.close()
+    lost = [(event.time, event.component.short) for event in lab.acts("lost")]
+    players = [
+        (event.time, next(one.components[0].short for one in event.configuration.assignments if "position" in one.role))
+        for event in lab.acts("running")
+    ]
+    assert [who for _, who in players] == ["person-tracker", "absolute-odometry", "spare"]
+    assert [who for _, who in lost] == [who for _, who in players]
+    begun, *replaced = (when for when, _ in players)
+    for moment in (begun + 1, replaced[0] - 1, replaced[0] + 1, replaced[1] + 1, lost[2][0] - 1):
+        said = past_why(tmp_path / "history", "position", moment)
+        number = sum(when <= moment for when, _ in players) - 1
+        assert f": {players[number][1]}, since " in said[0], moment
+        causes = [line for line in said if "took over from" in line]
+        failed = lost[number - 1][1] if number else ""
+        assert [f"{failed}: lost at " in line and "(fail, " in line for line in causes] == [True] * bool(number), said
+    assert ", until " in past_why(tmp_path / "history", "position", lost[2][0] + 4)[0]
