@@ -8,11 +8,13 @@ import json
 import re
 import signal
 import socket
-from typing import Any
+from typing import Any, cast
 from urllib.parse import quote
 
+import pyoxigraph as ox
 import pytest
 
+from selfconf.rdf.vocabulary import SC
 from tests.cli.command import run
 from tests.cli.processes import Home, Program, component_of
 
@@ -98,15 +100,23 @@ def component_rows(body: bytes) -> int:
     return len(json.loads(body)["results"]["bindings"])
 
 
-def test_ctrl_c_ends_it_with_streams_open(ecology: Home) -> None:
+def test_another_sparql_server_asks_it_and_ctrl_c_ends_it_with_streams_open(ecology: Home) -> None:
     server, browser = serve(ecology)
     assert ecology.until(lambda: browser.get("/healthz")[0] == 200)
+    here = f"SERVICE <http://127.0.0.1:{browser.port}/sparql> {{ ?c a <{SC.Component}> }}"
+    assert len(list(cast(ox.QuerySolutions, ox.Store().query(f"SELECT ?c {{ {here} }}")))) == 7
+    look = http.client.HTTPConnection("127.0.0.1", browser.port, timeout=30)
+    look.request("GET", f"/look?component={quote(component_of('tracker'), safe='')}")
+    told = look.getresponse()
+    while told.readline() != b"event: log\n":
+        assert not server.over
     stream = http.client.HTTPConnection("127.0.0.1", browser.port, timeout=30)
     stream.request("GET", "/changes")
     events = stream.getresponse()
     assert events.readline().startswith(b":")
     assert server.end(signal.SIGINT) == 0
     stream.close()
+    look.close()
     assert "Traceback" not in server.complaints
 
 
