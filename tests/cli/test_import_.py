@@ -88,7 +88,7 @@ def test_a_file_of_somebody_else_stops_the_import(things: Path, capsys: pytest.C
 
 
 def test_the_examples_are_imported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for form, number in (("wot", 1), ("ros2", 4)):
+    for form, number in (("wot", 1), ("ros2", 5)):  # four nodes, and a part as a composite
         outcome = run(capsys, "import", form, str(EXAMPLES), "--out", str(tmp_path / form), "--format", "json")
         assert outcome.code == 0
         assert sum(len(file["components"]) for file in outcome.body["files"]) == number

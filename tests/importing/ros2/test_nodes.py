@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 import selfconf as sc
+from selfconf.importing import ROS2
 from selfconf.model.configuration import Configuration
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import SC, TYPE
 from tests.effort import examples
 from tests.importing.imports import Workshop, left_out
 from tests.importing.ros2.look_alikes import system
@@ -30,10 +31,14 @@ def test_nodes_of_a_system_are_components_and_the_models_that_they_are_instances
     texts = system(3).texts
     report = workshop.imported("ros2", texts)
     assert [file.path.name for file in report.files] == [
-        "base.ttl", "base.template.ttl", "robot.ttl", "robot.template.ttl",
+        "base.ttl", "base.template.ttl", "base.composite.ttl", "robot.ttl", "robot.template.ttl",
+        "robot.parts.template.ttl",
     ]  # fmt: skip
     nodes = texts["robot.rossystem"].count("      from:") + texts["base.rossystem"].count("      from:")
-    assert sum(1 for file in report.files for _ in file.document.subjects(SC.Component)) == nodes
+    components = [each for file in report.files for each in file.document.subjects(SC.Component)]
+    assert len(components) == nodes + 1
+    systems = [each.subject for each in components if ROS2.System in each.values(TYPE)]
+    assert systems == ["urn:selfconf:ros2:base/composite"]
 
 
 def test_models_that_no_system_uses_and_nodl_are_components_of_their_own(workshop: Workshop) -> None:
