@@ -108,12 +108,12 @@ def act(folder: Path) -> None:
     """Be all sensors and drives, in one process that ends with its stdin."""
     host, over = open_host(), threading.Event()
 
-    def watch() -> None:
+    def end_with_stdin() -> None:
         sys.stdin.read()
         over.set()
         host.code.wake_up()
 
-    threading.Thread(target=watch, daemon=True).start()
+    threading.Thread(target=end_with_stdin, daemon=True).start()
     for path in sorted(folder.glob("*.ttl")):
         output = "pose" if path.stem.startswith("sensor") else ""
         host.add(type("One", (Actor,), {"advertisement": str(path), "output": output})())
@@ -147,7 +147,7 @@ def contend(name: str, numbers: Sequence[int]) -> Round:
     gate = threading.Barrier(len(numbers) + 1)
     ending = threading.Event()
 
-    def stop_at_the_end(run: sc.Run) -> None:
+    def end(run: sc.Run) -> None:
         ending.wait(PATIENCE)
         run.stop()
 
@@ -156,7 +156,7 @@ def contend(name: str, numbers: Sequence[int]) -> Round:
             wanted = sc.template(task(number, needs(number)))
             gate.wait(PATIENCE)
             run = stack.enter_context(living.run(wanted, wait=True, name=f"task{number}"))
-            threading.Thread(target=stop_at_the_end, args=(run,), daemon=True).start()
+            threading.Thread(target=end, args=(run,), daemon=True).start()
             for event in run.events():
                 heard.put((event.act, time.monotonic()))
 
