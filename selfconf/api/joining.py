@@ -46,8 +46,10 @@ STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
 HUB_ANSWER = 2.0
 """Seconds that a hub may take to answer its own site; one that works answers within milliseconds."""
-UNANSWERED = 2
-"""How many questions in a row it may leave unanswered: a machine may be very busy for a while."""
+UNANSWERED = 3
+"""How many questions in a row it may leave unanswered."""
+BUSY = 0.5
+"""Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear anything."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
 
@@ -170,8 +172,11 @@ class Joining:
 
         def answered(_: tuple[str, ...]) -> None:
             self._asking = False
-            in_time = bool(self.bus.link) and self.bus.now() - asked < HUB_ANSWER
-            self._unanswered = 0 if in_time else self._unanswered + 1
+            took = self.bus.now() - asked
+            if self.bus.link and took < HUB_ANSWER:
+                self._unanswered = 0
+            elif took < HUB_ANSWER + BUSY:
+                self._unanswered += 1
             if self._unanswered >= UNANSWERED:
                 self._unanswered = 0
                 self._replace_hub()
