@@ -3,7 +3,7 @@
 `RosWorld` is the world of the nodes of one domain; `living_documents` describes the nodes that live there now.
 """
 
-from selfconf.bridging.ros2.living_graph import living_documents
+from selfconf.bridging.ros2.node_graph import living_graph
 from selfconf.bridging.ros2.ros_world import RosWorld
 
 __all__ = ["RosWorld", "living_documents"]
