@@ -33,6 +33,11 @@ class RosDomain:
         self.session = secrets.token_hex(16)
         """The name of this bridge in the tokens that it declares."""
         self.entities = itertools.count(1)
+        self.serving: dict[str, list[object]] = {}
+        """What answers calls in the place of a server, by the key of the service, the first first.
+
+        It is used on the thread of the bus alone.
+        """
         self._own: dict[str, OwnPublisher] = {}
         self._complain = complain
         self._topics: dict[str, TopicSources] = {}

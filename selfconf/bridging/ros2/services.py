@@ -5,13 +5,15 @@ answered by whatever the configuration has connected to the operation that its n
 a server of the service, as itself. Requests and responses travel as CDR from node to node, as messages do; where the
 other end is no node they are objects with the fields of the `.srv` definition, if that is known.
 
-Nobody answers in place of a server that ROS 2 has: a client that finds one there is not connected to another one too.
+Nobody answers in place of a server that ROS 2 has: a client that finds one there is not connected to another one too. A
+call does not say which client it is of: of several clients of one service the first that is connected counts for all.
 """
 
 from __future__ import annotations
 
 import time
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 from selfconf import ros_messages
@@ -103,6 +105,13 @@ class ServedService:
         if domain.has_server(key):
             domain.tell(f"{endpoint.topic}: a node of ROS 2 serves it, which its clients reach; no other is connected")
             return
+        self._serving = domain.serving.setdefault(key, [])
+        self._serving.append(self)
+        if len(self._serving) > 1:
+            domain.tell(
+                f"{endpoint.topic}: several nodes call it, and which call is whose cannot be said; the first counts"
+            )
+        self._declared.append(partial(self._serving.remove, self))
         self._declared.append(domain.bus.serve(key, self._asked, complete=True))
         self._declared.append(domain.bus.announce(bridge_token(domain, SERVER, endpoint).key()))
 
@@ -114,6 +123,9 @@ class ServedService:
             self._refuse(request, "what was connected to it is so no more")
 
     def _asked(self, request: Request) -> None:
+        if self._serving[0] is not self:  # the call was made once, and is answered once
+            request.finish()
+            return
         self._open.add(request)
         try:
             attachment = RosAttachment.unpack(request.attachment)

@@ -125,6 +125,22 @@ def test_a_node_calls_a_component_and_ros_sees_who_serves(living: LivingStage, t
         assert "AddTwoInts_Request" in replies_to(found, client, "/add", b"short").errors[0]
 
 
+def test_a_call_of_several_clients_is_made_once(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        clients = [found.node(name) for name in ("one", "two")]
+        for client in clients:
+            client.token("SC", "/add", key=ADD_KEY)
+        callers = tuple(node(client.name) for client in clients)
+        component = adder(living, f'sc:hasOperation [ sc:name "add" ; {TYPES} ]', callers={CALL: callers})
+        for client in clients:
+            found.activate(client.name, **{CALL: (Wire(ADDER, CALL),)})
+        assert until(lambda: found.complained("/add: several nodes call it"))
+        known = len(component.requests)
+        for client in clients:
+            assert replies_to(found, client, "/add", asked(20, 22)).samples[0].payload == answered(42)
+        assert len(component.requests) == known + 2
+
+
 def test_a_node_calls_another_one_by_another_name(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
         server, client = found.node("server"), found.node("client")
