@@ -63,8 +63,10 @@ def read_media(media: str) -> MessageMedia | None:
 
 
 def load() -> None:
-    """Load the types that are known, which takes some tenths of a second; else the first use of one does it."""
-    _stores()
+    """Load the types that are known, and what reads and writes them; else the first use of one takes a second."""
+    text = usual_type("std_msgs/msg/String")
+    if text is not None:
+        message_fields(message({}, text), text)
 
 
 def is_known(kind: MessageType) -> bool:

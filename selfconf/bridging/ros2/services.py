@@ -30,24 +30,32 @@ SERVICE_SECONDS = 60.0
 
 
 def call_service(domain: RosDomain, endpoint: RosEndpoint, request: Signal) -> Future[Any]:
-    """Ask the server of a service; may be called from any thread. Raises Refused for what is no request of it.
+    """Ask the server of a service; may be called from any thread, which it does not hold up.
 
     The future comes to the response, as an object or as CDR as the request was, or to Refused.
     """
-    payload, answer = _request(endpoint.type, request), Future[Any]()
-    key = endpoint.key(domain.number)
-    own = domain.own(key)
-    attachment = RosAttachment(next(own.numbers), time.time_ns(), own.identifier).pack()
+    answer = Future[Any]()
 
     def heard(replies: Replies) -> None:
-        if not answer.set_running_or_notify_cancel():
-            return
-        try:
-            answer.set_result(_response(endpoint, replies, isinstance(request.value, bytes)))
-        except Refused as refused:
-            answer.set_exception(refused)
+        if answer.set_running_or_notify_cancel():
+            try:
+                answer.set_result(_response(endpoint, replies, isinstance(request.value, bytes)))
+            except Refused as refused:
+                answer.set_exception(refused)
 
-    domain.bus.wake_up(lambda: domain.bus.ask(key, payload, SERVICE_SECONDS, heard, attachment))
+    def ask() -> None:
+        try:
+            payload = _request(endpoint.type, request)
+        except Refused as refused:
+            if answer.set_running_or_notify_cancel():
+                answer.set_exception(refused)
+            return
+        key = endpoint.key(domain.number)
+        own = domain.own(key)
+        attachment = RosAttachment(next(own.numbers), time.time_ns(), own.identifier).pack()
+        domain.bus.ask(key, payload, SERVICE_SECONDS, heard, attachment)
+
+    domain.bus.wake_up(ask)
     return answer
 
 

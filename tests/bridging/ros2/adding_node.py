@@ -28,9 +28,12 @@ def main() -> None:
     }
     pause = threading.Event()
     if kind == "server":
-        server = ROS2ServiceServer(
-            service, callback=lambda asked: server.response_msg_class(sum=asked.a + asked.b), **said
-        )
+        server: Any = None
+
+        def add(asked: Any) -> Any:
+            return server.response_msg_class(sum=asked.a + asked.b)
+
+        server = ROS2ServiceServer(service, callback=add, **said)
         pause.wait()
     client = ROS2ServiceClient(service, timeout=5.0, **said)
     while True:

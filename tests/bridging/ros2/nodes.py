@@ -109,6 +109,11 @@ class BridgedDomain:
         """Whether a node lives on this side."""
         return self.bridge.lives(node(name))
 
+    def is_complete(self, name: str, *ports: str) -> bool:
+        """Whether a node lives with some ports or operations: on a busy machine some of its tokens may come late."""
+        said = self.advertised()
+        return all(f'sc:name "{port}"' in said for port in ports) and self.lives(name)
+
     def complained(self, words: str) -> bool:
         """Whether some words stand in a complaint."""
         return any(words in complaint for complaint in self.complaints)
@@ -118,14 +123,14 @@ class BridgedDomain:
         return [fail.detail for _, fail in self.stage.fails]
 
     def activate(
-        self, name: str, callers: Mapping[str, tuple[IRI, ...]] | None = None, **inputs: tuple[Wire, ...]
+        self, name: str, callers: Mapping[str, tuple[IRI, ...]] | None = None, /, **inputs: tuple[Wire, ...]
     ) -> None:
         """Activate a node, with its inputs fed; `callers` are who may call its operations."""
         answer = self.called_for(name, callers, **inputs)
         assert answer.active, answer
 
     def called_for(
-        self, name: str, callers: Mapping[str, tuple[IRI, ...]] | None = None, **inputs: tuple[Wire, ...]
+        self, name: str, callers: Mapping[str, tuple[IRI, ...]] | None = None, /, **inputs: tuple[Wire, ...]
     ) -> CallAnswer:
         """What a node answers that is to be activated."""
         assert until(lambda: self.lives(name)), self.complaints

@@ -75,7 +75,7 @@ def test_components_and_foreign_nodes_feed_each_other(
         assert until(arrives)
         assert heard[0] == "heard hello\n"
         assert until(lambda: found.lives("server") and found.lives("client"), STARTS), found.complaints
-        found.activate("server", callers={"three()": (node("client"),)})
+        found.activate("server", {"three()": (node("client"),)})
         found.activate("client", **{"four()": (Wire(node("server"), "three()"),)})
         assert until(lambda: "answered 42\n" in answered, STARTS), found.complaints
         judges["talker"].kill()

@@ -63,10 +63,16 @@ class Managed:
         self._events.put(told, struct.pack("<qqB16s", 1, 10**9, 16, b"m" * 16))
 
 
+def complete(found: BridgedDomain, managed: Managed) -> Managed:
+    """A lifecycle node that is advertised with all that makes it one."""
+    assert until(lambda: found.is_complete("map", "map/change_state", "map/get_state", "map/transition_event"))
+    return managed
+
+
 @pytest.mark.parametrize(("state", "made"), [(1, [1, 3, 4]), (2, [3, 4]), (3, [])])
 def test_a_node_is_made_active_and_put_back(living: LivingStage, tmp_path: Path, state: int, made: list[int]) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
-        managed = Managed(found.node("map"), state)
+        managed = complete(found, Managed(found.node("map"), state))
         found.activate("map")
         assert until(lambda: managed.state == 3), found.complaints
         released = found.stage.call(node("map"), "release", Release(2, living.supervisor, "task~1"))
@@ -84,19 +90,19 @@ def failed(found: BridgedDomain, managed: Managed) -> str:
 
 def test_a_transition_that_fails_is_a_failure(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
-        managed = Managed(found.node("map"), fails=3)
+        managed = complete(found, Managed(found.node("map"), fails=3))
         assert failed(found, managed) == "the transition 'activate' of the lifecycle node /map has failed"
 
 
 def test_a_node_that_is_finalized_cannot_be_activated(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
-        managed = Managed(found.node("map"), state=4)
+        managed = complete(found, Managed(found.node("map"), state=4))
         assert failed(found, managed).startswith("the lifecycle node /map is finalized, from where")
 
 
 def test_a_node_that_leaves_the_active_state_by_itself_has_failed(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
-        managed = Managed(found.node("map"))
+        managed = complete(found, Managed(found.node("map")))
         found.activate("map")
         assert until(lambda: managed.state == 3), found.complaints
 

@@ -13,9 +13,11 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Reserve, Wire
 from selfconf.sdk import Component, Refused, Response, Signal
 from tests.bridging.ros2.nodes import ADD_KEY, DOMAIN, BridgedDomain, StandIn, bridging_domain, node
-from tests.sdk.living import PATIENCE, LivingStage, until
+from tests.sdk.living import LivingStage, until
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+LONG = 40.0
+"""Seconds that a call may take on a busy machine: the first one of a service makes the code that reads it."""
 CALL, ADDER = "add()", IRI("urn:c:adder")
 PARTS = "https://w3id.org/selfconf/ros2/example_interfaces/srv/AddTwoInts"
 TYPES = f"sc:request <{PARTS}_Request> ; sc:response <{PARTS}_Response>"
@@ -72,7 +74,7 @@ def replies_to(found: BridgedDomain, client: StandIn, service: str, payload: byt
             calls.append(client.asks(service, payload))
         return bool(calls[-1])
 
-    assert until(replied), found.complaints
+    assert until(replied, LONG), found.complaints
     return calls[-1][0]
 
 
@@ -83,15 +85,16 @@ def test_a_component_calls_the_service_of_a_node(living: LivingStage, tmp_path: 
         server.serves("/lab/brew", lambda payload, attachment: (b"tea", attachment), OTHER_KEY)
         server.serves("/lab/garbled", lambda payload, attachment: (b"\x00", attachment))
         names = ("lab/add()", "lab/brew()", "lab/garbled()")
-        found.activate("server", callers=dict.fromkeys(names, (ADDER,)))
+        assert until(lambda: found.is_complete("server", "lab/add", "lab/brew", "lab/garbled"))
+        found.activate("server", dict.fromkeys(names, (ADDER,)))
         wires = {f"{name}()": (Wire(node("server"), other),) for name, other in zip("sbg", names, strict=True)}
         needs = " , ".join(f'[ sc:name "{name}" ; {TYPES} ]' for name in "sbg")
         component = adder(living, f"sc:needsOperation {needs}", inputs=wires)
 
         def ask(operation: str, request: Any, media: str = "") -> Response:
             known = len(component.answers)
-            component.call(operation, request, answered=component.answers.append, seconds=PATIENCE, media=media)
-            assert until(lambda: len(component.answers) > known)
+            component.call(operation, request, answered=component.answers.append, seconds=LONG, media=media)
+            assert until(lambda: len(component.answers) > known, LONG)
             return component.answers[-1]
 
         assert ask("s", {"a": 20, "b": 22}).value == {"sum": 42}
@@ -114,6 +117,7 @@ def test_a_node_calls_a_component_and_ros_sees_who_serves(living: LivingStage, t
         client.token("SC", "/add", key=ADD_KEY)
         client.bus.watch(f"@ros2_lv/{DOMAIN}/**/SS/**", lambda key, alive: tokens.append(key) if alive else None)
         component = adder(living, f'sc:hasOperation [ sc:name "add" ; {TYPES} ]', callers={"add()": (node("client"),)})
+        assert until(lambda: found.is_complete("client", "add"))
         found.activate("client", **{CALL: (Wire(ADDER, CALL),)})
         (sample,) = replies_to(found, client, "/add", asked(20, 22)).samples
         assert sample.payload == answered(42)
@@ -132,6 +136,7 @@ def test_a_call_of_several_clients_is_made_once(living: LivingStage, tmp_path: P
             client.token("SC", "/add", key=ADD_KEY)
         callers = tuple(node(client.name) for client in clients)
         component = adder(living, f'sc:hasOperation [ sc:name "add" ; {TYPES} ]', callers={CALL: callers})
+        assert until(lambda: found.advertised().count('sc:name "add"') == 2)
         for client in clients:
             found.activate(client.name, **{CALL: (Wire(ADDER, CALL),)})
         assert until(lambda: found.complained("/add: several nodes call it"))
@@ -147,7 +152,8 @@ def test_a_node_calls_another_one_by_another_name(living: LivingStage, tmp_path:
         server.serves("/one/add", adds)
         client.token("SC", "/two/add", key=ADD_KEY)
         client.token("SC", "/one/add", key=ADD_KEY)
-        found.activate("server", callers={"one/add()": (node("client"),)})
+        assert until(lambda: found.is_complete("server", "one/add") and found.is_complete("client", "two/add"))
+        found.activate("server", {"one/add()": (node("client"),)})
         wire = (Wire(node("server"), "one/add()"),)
         found.activate("client", **{"two/add()": wire, "one/add()": wire})
         assert replies_to(found, client, "/two/add", asked(1, 2)).samples[0].payload == answered(3)
