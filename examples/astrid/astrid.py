@@ -19,7 +19,7 @@ NEAR, FASTEST, TURNING = 0.15, 0.8, 2.0
 def room(what: str, value: Any = None) -> Any:
     """What the room answers to a question, or to being told something."""
     body = None if value is None else json.dumps(value).encode()
-    with urllib.request.urlopen(f"{os.environ['ROOM']}{what}", data=body, timeout=1.0) as answer:
+    with urllib.request.urlopen(f"{os.environ['ROOM']}{what}", data=body, timeout=1.8) as answer:
         return json.loads(answer.read() or b"null")
 
 

@@ -25,13 +25,13 @@ class CeilingCamera(Component):
 
     def look(self) -> None:
         """Issue a picture, and ask for light if it is dark."""
-        with urllib.request.urlopen(f"{os.environ['ROOM']}picture", timeout=1.0) as answer:
+        with urllib.request.urlopen(f"{os.environ['ROOM']}picture", timeout=1.8) as answer:
             head, pixels = answer.read().split(b"\n", 1)
         width, height = (int(word) for word in head.split()[1:3])
         if sum(pixels) < DARK * len(pixels) and not self.asking:
             self.asking = True
             print("it is dark", flush=True)
-            self.call("light", {"on": True}, answered=self.lit)
+            self.call("light", {"on": True}, answered=self.lit, seconds=10.0)
         picture = {"height": height, "width": width, "encoding": "mono8", "step": width, "data": list(pixels)}
         self.emit("picture", picture)
 

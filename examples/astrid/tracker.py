@@ -3,7 +3,7 @@
     python examples/astrid/tracker.py --port 7447
 
 It knows nothing of selfconf. It takes `sensor_msgs/msg/Image` on `/ceiling/image`, and publishes where Astrid is on
-`/astrid/pose`, as `geometry_msgs/msg/Pose2D`, with a deadline of 0.2 s. Where it is too dark to see her, or where she
+`/astrid/pose`, as `geometry_msgs/msg/Pose2D`, with a deadline of 0.5 s. Where it is too dark to see her, or where she
 has left the picture, it has nothing to publish.
 """
 
@@ -33,7 +33,7 @@ def main() -> None:
     parser.add_argument("--domain", type=int, default=0)
     given = parser.parse_args()
     node: dict[str, Any] = {"node_name": "tracker", "router_port": given.port, "domain_id": given.domain}
-    deadline = QosProfile(deadline=Duration(0, 200_000_000))
+    deadline = QosProfile(deadline=Duration(0, 500_000_000))
     pose = ROS2Publisher("/astrid/pose", qos=deadline, **kind("geometry_msgs/msg/Pose2D"), **node)
 
     def seen(image: Any) -> None:
