@@ -38,8 +38,8 @@ quick: $(VENV)/with-dev
 # thousand histories with faults, all that is recorded, drives of ten seeds, and a hundred kills of a server that writes
 # its history; about half an hour.
 nightly: $(VENV)/with-dev fuzz
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/composition/test_searches.py tests/test_certificate.py tests/faults \
-		tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/composition/test_searches.py \
+		tests/test_certificate.py tests/faults tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
 		tests/test_compare_benchmark.py tests/test_ci_for_users.py
 	$(BIN)/python -m benchmarks.history --kills 100
 

@@ -49,7 +49,7 @@ HUB_ANSWER = 2.0
 UNANSWERED = 3
 """How many questions in a row it may leave unanswered."""
 BUSY = 0.5
-"""Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear anything."""
+"""Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear it."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
 

@@ -14,13 +14,13 @@ def import_living_nodes(endpoint: str, domain: int, out: Path, namespace: str | 
     The namespace is what the IRIs of components begin with, by default as a bridge names them. Raises NetworkError
     where the router cannot be reached, and AuthorError as `import_descriptions` does.
     """
-    from selfconf.bridging.ros2 import living_documents
+    from selfconf.bridging.ros2 import living_graph
     from selfconf.bus.zenoh_bus import client
 
     def read(ledger: ImportLedger) -> Iterator[ImportedDocument]:
         bus = client([endpoint])
         try:
-            yield from living_documents(bus, domain, ledger)
+            yield from living_graph(bus, domain, ledger)
         finally:
             bus.close()
 

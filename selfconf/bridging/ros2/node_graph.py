@@ -18,7 +18,7 @@ TOKENS_NAMED = 5.0
 """Seconds that the router may take to name all tokens; it answers at once."""
 
 
-def living_documents(bus: Bus, domain: int, ledger: ImportLedger) -> Iterator[ImportedDocument]:
+def living_graph(bus: Bus, domain: int, ledger: ImportLedger) -> Iterator[ImportedDocument]:
     """The nodes that live in a domain, by their names; what of it cannot be described goes into the ledger."""
     found: list[tuple[str, ...]] = []
     bus.roll_call(f"{ROOT}/{domain}/**", TOKENS_NAMED, found.append)

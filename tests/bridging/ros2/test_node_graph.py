@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.api.living_import import import_living_nodes
-from selfconf.bridging.ros2 import living_documents
+from selfconf.bridging.ros2 import living_graph
 from selfconf.bus.zenoh_bus import client
 from selfconf.importing import FileState, ImportLedger, described_text
 from tests.bridging.ros2.nodes import ADD_KEY, DOMAIN, StandIn, bridging_domain
@@ -21,7 +21,7 @@ def graph(stage: LivingStage) -> tuple[dict[str, str], list[str]]:
     bus, complaints = client([stage.endpoint]), list[str]()
     ledger = ImportLedger("urn:test:", lambda error: complaints.append(str(error)))
     try:
-        found = {each.name: described_text(each) for each in living_documents(bus, DOMAIN, ledger)}
+        found = {each.name: described_text(each) for each in living_graph(bus, DOMAIN, ledger)}
     finally:
         bus.close()
     return found, [*complaints, *map(str, ledger.omissions())]
