@@ -13,7 +13,6 @@ import time
 from pathlib import Path
 
 from selfconf.sdk import Component, Host, Signal, Termination
-from selfconf.sdk.host import profile_of
 from selfconf.sdk.program import open_host
 
 UNTIL_OFF = 0.05
@@ -96,7 +95,7 @@ class Phoenix:
 def main() -> None:
     """Run one actor until told to end."""
     name = sys.argv[1]
-    host = open_host(components=[profile_of(actor(name)).component])
+    host = open_host(kinds=[actor(name)])
     ending = Termination(host.bus)
     if name.startswith("position"):
         Phoenix(host, actor(name))

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import client
-from selfconf.errors import NetworkError
+from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 from selfconf.termination import alive, start_time
@@ -245,18 +245,28 @@ def credentials(keys: Path | None, *kinds: str, name: str = "main") -> Credentia
 def component_credentials(keys: Path | None, components: Sequence[IRI]) -> Credentials | None:
     """What a process of components shows: by its own folder of keys, or by that of a site of this host.
 
-    Raises AuthorError.
+    Raises AuthorError for keys that are none, or that do not speak for each of the components, and ProgrammerError
+    where there are keys and no components.
     """
     folder = keys_folder(keys)
     if folder is None:
         return None
+    if not components:
+        raise ProgrammerError("with keys a process has to say which components it is, for it speaks for no others")
     from selfconf.access import KeysFolder, Principal, PrincipalKind  # what it needs is an extra
 
     opened = KeysFolder(folder)
-    if components and opened.serves_a_host:
+    if opened.serves_a_host:
         first, *others = map(Principal.component, components)
         opened = KeysFolder(opened.component(first, others))
-    return opened.credentials((PrincipalKind.COMPONENT,))
+    shown = opened.credentials((PrincipalKind.COMPONENT,))
+    speaks = opened.own().principals
+    for component in components:
+        if Principal.component(component) not in speaks:
+            raise AuthorError(
+                f"{folder} speaks for {speaks[0]}, not for {component} ({Principal.component(component)})"
+            )
+    return shown
 
 
 def find(ecology: str | None, connect: Sequence[str], credentials: Credentials | None = None) -> tuple[str, list[str]]:

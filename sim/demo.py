@@ -57,6 +57,18 @@ class DemoOptions:
     policy: str = "repair"
     serve: bool = False
     """Whether the ecology is shown in a browser, until Ctrl-C."""
+    keys: Path | None = None
+    """The folder of an authority; without one there are no keys."""
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The variables that its processes share."""
+        return {} if self.keys is None else {"SELFCONF_KEYS": str(self.keys.absolute())}
+
+    @property
+    def shown(self) -> str:
+        """The option by which a command shows a certificate of that authority."""
+        return "" if self.keys is None else f" --keys {self.keys}"
 
 
 class DemoError(Exception):
@@ -178,9 +190,9 @@ def _navigate(given: DemoOptions) -> int:
     _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act of self-configuration, what.")
     _tell("Act 1 asks the ecology, act 2 collects its answers, act 3 composes a configuration, act 4 deploys it.")
     record = given.out / "run.npz"
-    with Crew() as crew:
+    with Crew(given.environment) as crew:
         stage = Stage(crew, _tell)
-        _tell(f"meanwhile, in another terminal: selfconf discover --ecology {stage.ecology}")
+        _tell(f"meanwhile, in another terminal: selfconf discover --ecology {stage.ecology}{given.shown}")
         inside = given.scene == "composite"
         stage.site("living-room", EXAMPLES / "eyes" if inside else EXAMPLES / "peis-home" / "person-tracker.ttl")
         others = sorted(set((EXAMPLES / "peis-home").glob("*.ttl")) - {EXAMPLES / "peis-home" / "person-tracker.ttl"})
@@ -229,7 +241,7 @@ def _radio(given: DemoOptions) -> int:
     _tell("The radio plays in the living room; then somebody pulls the plug of a speaker.")
     sound = Path(tempfile.mkdtemp(prefix="selfconf-sound-"))
     try:
-        with Crew({"SIM_SOUND": str(sound)}) as crew:
+        with Crew({**given.environment, "SIM_SOUND": str(sound)}) as crew:
             stage = Stage(crew, _tell)
             stage.site("living-room", EXAMPLES / "radio")
             if given.serve:

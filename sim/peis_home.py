@@ -37,6 +37,8 @@ PROGRESS = 2.0
 """Simulated seconds between two words on how far she has come."""
 COVERED_AT = 3.0
 """Simulated seconds of driving after which a cloth covers the first camera, where there are two."""
+ON_ASTRID = (SonarArray, WheelEncoder, MotorDrive, AbsolutePosition)
+"""The components that share the world, and its process, besides those that see the living room."""
 REACH = 0.6
 """Metres from the place's standing point within which she is there."""
 
@@ -155,7 +157,8 @@ def main() -> int:
     parser.add_argument("--gui", action="store_true")
     parser.add_argument("--eyes", action="store_true", help="two cameras in place of the person tracker")
     given = parser.parse_args()
-    host = open_host(given.ecology, given.connect, given.keys)
+    seeing = (StereoEye, SpareEye) if given.eyes else (PersonTracker,)
+    host = open_host(given.ecology, given.connect, given.keys, [*ON_ASTRID, *seeing])
     home = PeisHome(host, read_apartment(), given.seed, given.speed, given.place, given.gui, given.eyes)
     say("ready", time=home.world.time)
     try:

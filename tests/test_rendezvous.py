@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from selfconf import rendezvous
-from selfconf.errors import AuthorError, NetworkError
+from selfconf.access import KeysFolder, Principal
+from selfconf.errors import AuthorError, NetworkError, ProgrammerError
+from selfconf.model.term import IRI
 from selfconf.rendezvous import LocalSite, usual_endpoints
 from selfconf.termination import start_time
 
@@ -223,3 +225,18 @@ def test_a_program_that_is_started_hears_of_the_ontologies_of_its_site(
     assert rendezvous.site_ontologies() == [tmp_path / "a.ttl", tmp_path / "b"]
     monkeypatch.setenv(rendezvous.ONTOLOGY_VARIABLE, rendezvous.environment("home", "x")[rendezvous.ONTOLOGY_VARIABLE])
     assert rendezvous.site_ontologies() == []
+
+
+def test_a_process_of_components_has_keys_that_speak_for_each_of_them(tmp_path: Path) -> None:
+    authority = KeysFolder.init(tmp_path / "keys")
+    lamp, bell = IRI("urn:lamp"), IRI("urn:bell")
+    authority.issue(Principal.component(lamp), tmp_path / "lamp")
+    for folder in (authority.path, tmp_path / "lamp"):
+        shown = rendezvous.component_credentials(folder, [lamp])
+        assert shown is not None
+        assert shown.name == Principal.component(lamp).common_name
+    assert rendezvous.component_credentials(authority.path, [lamp, bell]) is not None
+    with pytest.raises(AuthorError, match=r"lamp speaks for comp\.\w+, not for urn:bell"):
+        rendezvous.component_credentials(tmp_path / "lamp", [lamp, bell])
+    with pytest.raises(ProgrammerError, match="has to say which components it is"):
+        rendezvous.component_credentials(authority.path, [])

@@ -91,7 +91,7 @@ def main() -> None:
     name = sys.argv[1]
     witness = Witness(os.environ["FAULTS_WITNESS"])
     witness.note(name, "born")
-    host = open_host()
+    host = open_host(kinds=[actor(name, witness)])
     ending = Termination(host.bus)
     component = _joined(host, name, witness)
     signal.signal(signal.SIGUSR1, lambda *_: component.fail("told to"))

@@ -12,7 +12,10 @@ from pathlib import Path
 
 from selfconf.errors import AuthorError, InstallationError
 
-EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2"""
+EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2
+  selfconf demo --keys   # with keys, of an authority of its own"""
+OWN_KEYS = "keys"
+"""The folder of the authority that `--keys` alone makes, in the folder of the results."""
 ANSWERS = 5.0
 """Seconds within which a display on another machine must answer."""
 
@@ -45,6 +48,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--pictures", choices=["fine", "draft", "none"], default="fine", help="quality (default: %(default)s)"
     )
     parser.add_argument("--serve", action="store_true", help="show the ecology in a browser, until Ctrl-C")
+    parser.add_argument(
+        "--keys",
+        metavar="DIR",
+        nargs="?",
+        const=True,
+        type=Path,
+        help="with keys, so that links are TLS and who may do what is kept: those of the authority in DIR, which is"
+        f" made where there is none; without DIR in the folder {OWN_KEYS} of --out (default: $SELFCONF_KEYS, or else"
+        " none)",
+    )
     parser.add_argument("--policy", choices=["repair", "dismantle"], default="repair", help="default: %(default)s")
 
 
@@ -73,14 +86,31 @@ def run(given: argparse.Namespace) -> int:
         given.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise AuthorError(f"cannot write in {given.out}: {error.strerror}; choose another folder by --out") from None
+    keys = _keys(given)
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))
     demo = importlib.import_module("sim.demo")
     options = demo.DemoOptions(
-        given.out, given.scene, given.seed, given.speed, given.gui, given.pictures, given.policy, given.serve
+        given.out, given.scene, given.seed, given.speed, given.gui, given.pictures, given.policy, given.serve, keys
     )
     code: int = demo.run(options)
     return code
+
+
+def _keys(given: argparse.Namespace) -> Path | None:
+    """The folder of the authority of the demo, which is made where there is none; None without keys."""
+    from selfconf import rendezvous
+
+    folder = given.out / OWN_KEYS if given.keys is True else rendezvous.keys_folder(given.keys)
+    if folder is None:
+        return None
+    from selfconf.access import KeysFolder  # what it needs is an extra
+
+    there = folder.is_dir() and any(folder.iterdir())
+    keys = KeysFolder(folder) if there else KeysFolder.init(folder)
+    if not keys.is_authority:
+        raise AuthorError(f"{folder} is not the folder of an authority, and the demo makes keys for all its programs")
+    return folder
 
 
 def _display(name: str) -> bool:

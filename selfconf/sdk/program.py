@@ -13,7 +13,6 @@ from typing import NoReturn
 from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import SelfconfError
-from selfconf.model.term import IRI
 from selfconf.model.wording import plain
 from selfconf.sdk.component import Component
 from selfconf.sdk.host import Host, profile_of
@@ -42,9 +41,7 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     handler.setFormatter(_PlainFormatter("%(name)s: %(message)s"))
     logging.basicConfig(level=logging.WARNING, handlers=[handler])
     try:
-        with_keys = rendezvous.keys_folder(given.keys) is not None
-        components = [profile_of(kind).component for kind in kinds] if with_keys else []
-        host = open_host(given.ecology, given.connect, given.keys, components)
+        host = open_host(given.ecology, given.connect, given.keys, kinds)
         for kind in kinds:
             host.add(kind(), life)
         run_until_ended(host)
@@ -79,13 +76,15 @@ def open_host(
     ecology: str | None = None,
     connect: Sequence[str] = (),
     keys: Path | None = None,
-    components: Sequence[IRI] = (),
+    kinds: Sequence[type[Component]] = (),
 ) -> Host:
-    """A host for components, in the ecology that `selfconf.rendezvous.find` finds.
+    """A host for components of some kinds, in the ecology that `selfconf.rendezvous.find` finds.
 
     `keys` is a folder of keys: that of the process itself, or that of a site of this host, by which the process gets a
-    certificate for its `components`. Raises NetworkError, and AuthorError for keys that are none.
+    certificate for its components. Raises NetworkError, AuthorError for keys that are none or of others, and
+    ProgrammerError where there are keys and the kinds are not said.
     """
+    components = [] if rendezvous.keys_folder(keys) is None else [profile_of(kind).component for kind in kinds]
     shown = rendezvous.component_credentials(keys, components)
     name, endpoints = rendezvous.find(ecology, connect, shown)
     bus = client(endpoints, shared_memory=True, credentials=shown)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.access import KeysFolder, Principal, PrincipalKind
 from selfconf.cli import demo
 from tests.cli.command import run
 
@@ -65,6 +66,19 @@ def test_a_window_needs_a_display_that_answers(
     for display in ("", "nonsense", "127.0.0.1:x", f"127.0.0.1:{closed}"):
         monkeypatch.setenv("DISPLAY", display)
         assert run(capsys, "demo", "--gui").is_one_sentence("there is no display")
+
+
+@pytest.mark.sim
+def test_the_keys_of_a_demo_are_those_of_an_authority(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pybullet", reason="there is no PyBullet here")
+    authority = KeysFolder.init(tmp_path / "keys")
+    authority.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice")
+    out = str(tmp_path / "out")
+    assert run(capsys, "demo", "--out", out, "--keys", str(tmp_path / "alice")).is_one_sentence(
+        "alice is not the folder of an authority"
+    )
+    (tmp_path / "out/keys").write_text("no folder")
+    assert run(capsys, "demo", "--out", out, "--keys").is_one_sentence("exists and is not empty")
 
 
 @pytest.mark.sim

@@ -150,14 +150,35 @@ def test_a_dismantling_configurator_arrives_too(tmp_path: Path, demo: list[Demo]
     assert len(result["configurations"]) == 2
 
 
-def test_a_speaker_that_fails_is_replaced(tmp_path: Path, demo: list[Demo]) -> None:
-    demo.append(Demo(tmp_path, "--scene", "radio"))
+@pytest.mark.parametrize(
+    ("keys", "protocol"),
+    [pytest.param((), "tcp", marks=at_night, id="open"), pytest.param(("--keys",), "tls", id="keys")],
+)
+def test_a_speaker_that_fails_is_replaced(
+    keys: tuple[str, ...], protocol: str, tmp_path: Path, demo: list[Demo]
+) -> None:
+    demo.append(Demo(tmp_path, "--scene", "radio", *keys))
     assert demo[0].end() == 0, demo[0].said
     words = "".join(demo[0].said)
+    assert f"on {protocol}/127.0.0.1:" in words
     assert "before: tuner, left-speaker, right-speaker" in words
     assert re.search(r"after:  tuner, .*shelf-speaker", words)
     assert len(list(demo[0].out.glob("*.wav"))) == 3
     assert demo[0].gone()
+
+
+@at_night
+def test_astrid_arrives_with_keys_too(tmp_path: Path, demo: list[Demo]) -> None:
+    demo.append(Demo(tmp_path, "--keys", str(tmp_path / "authority"), "--speed", "max", "--pictures", "none"))
+    running = demo[0]
+    assert f"--keys {tmp_path}/authority" in running.until("in another terminal")
+    running.until("         running")
+    sites = json.loads(running.selfconf("access", "--keys", str(tmp_path / "authority"), "--format", "json"))["sites"]
+    assert [site["refused"] for site in sites] == [[], []], "every program of the demo does what it may"
+    assert running.end() == 0, running.said
+    result = json.loads((running.out / "result.json").read_text())
+    assert (result["outcome"], result["lost"], result["touched"]) == ("arrived", "person-tracker", [])
+    assert running.gone()
 
 
 @at_night
