@@ -38,6 +38,8 @@ MOST_LIVES = 16
 """How many lives of one component are followed: there should be one, and two where processes clash."""
 BETWEEN_DISCOVERIES = 0.2
 """Seconds between two discoveries of one ecology on average, however often something is said to have changed."""
+BACK = 0.3
+"""Seconds that all others may take to be back, when the hub of this node has gone and come again."""
 IN_A_ROW = 20
 """How many discoveries may begin without a pause after a quiet time, as where tasks contend for components."""
 
@@ -196,7 +198,11 @@ class EcologyView:
 class _Inquiry:
     """One discovery: roll-call of sites and components, a question to all sites, and again to those incomplete."""
 
-    def __init__(self, ecology: EcologyView, done: Callable[[Discovery], None]) -> None:
+    def __init__(
+        self, ecology: EcologyView, done: Callable[[Discovery], None], again: int = DISCOVERY_ATTEMPTS - 1
+    ) -> None:
+        """`again` is how often it begins anew when this node has lost its hub meanwhile, and others with it."""
+        self._again, self._link = again, ""
         self.ecology, self.bus, self.keys, self._done = ecology, ecology.bus, ecology.keys, done
         self._tokens: tuple[str, ...] = ()
         self._lives: dict[str, set[str]] = {}
@@ -209,6 +215,7 @@ class _Inquiry:
         self._segments = advertisements.SegmentCache()
 
     def start(self) -> None:
+        self._link = self.bus.link
         if self.ecology.followed:
             self._call_sites()
         else:
@@ -240,6 +247,8 @@ class _Inquiry:
         incomplete = [site for site in self._sites() if site not in self._answers or not self._answers[site].complete]
         if incomplete and self._attempt < DISCOVERY_ATTEMPTS and replies.complete:
             self._ask(incomplete[0][0] if len(incomplete) == 1 else "*")
+        elif self.bus.link != self._link and self._again:
+            self.bus.later(BACK, _Inquiry(self.ecology, self._done, self._again - 1).start)
         else:
             self.ecology.aside(lambda: self._finish(incomplete))
 

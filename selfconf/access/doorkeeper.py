@@ -128,7 +128,8 @@ class Doorkeeper:
         try:
             known = self._admit(decode(request.payload, Introduction).certificate)
             mine = self._credentials.certificate.read_text()
-            request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known)))
+            beside = tuple(sorted(self._of_this_host()))
+            request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known, beside)))
         except SelfconfError as error:
             request.refuse(str(error))
         except OSError as error:

@@ -115,7 +115,7 @@ def _component(keys: Keys, principal: Principal, process: Iterable[Principal]) -
         principal.common_name,
         "speaks on its own outputs, FAIL and calls; hears signals, FAIL and who lives, and asks for operations",
         says=own,
-        asked=(keys.any_output(), keys.any_fail(), keys.any_free()),
+        asked=(keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_call("state")),
         hears=(*own, *heard),
         about=mine,
     )

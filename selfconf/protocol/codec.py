@@ -362,6 +362,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (Page, "insecure"): _truth,
     (Introduction, "certificate"): _text,
     (Introduction, "known"): _truth,
+    (Introduction, "beside"): _labels,
     **{(kind, "principal"): _remark for kind in (Access, RefusedAttempt)},
     (Access, "sentence"): _remark,
     (Access, "says"): _labels,

@@ -247,6 +247,8 @@ class Introduction:
     """The certificate, as PEM. It is no secret: it helps nobody who lacks its key."""
     known: bool = False
     """In an answer: whether the site knew the one that asks, so that its rules stay as they are."""
+    beside: tuple[str, ...] = ()
+    """In an answer: the sites of its host. One that does not answer has lost its hub for a moment, or hangs."""
 
 
 @dataclass(frozen=True, slots=True)

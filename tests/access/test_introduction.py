@@ -25,9 +25,11 @@ def folder(tmp_path: Path) -> KeysFolder:
 class Door:
     """A site that knows who has shown a certificate often enough, or lets nobody in."""
 
-    def __init__(self, network: Network, known_after: int = 1, refuses: str = "") -> None:
+    def __init__(
+        self, network: Network, known_after: int = 1, refuses: str = "", beside: tuple[str, ...] = ()
+    ) -> None:
         self.shown: list[str] = []
-        self._known_after, self._refuses = known_after, refuses
+        self._known_after, self._refuses, self._beside = known_after, refuses, beside
         self._key = Keys("lab").introduce("home")
         network.node().serve(self._key, self.answer)
 
@@ -37,7 +39,8 @@ class Door:
         if self._refuses:
             request.refuse(self._refuses)
         else:
-            request.reply(self._key, encode(Introduction("mine", len(self.shown) > self._known_after)))
+            known = len(self.shown) > self._known_after
+            request.reply(self._key, encode(Introduction("mine", known, self._beside)))
         request.finish()
 
 
@@ -47,6 +50,22 @@ def test_a_certificate_is_shown_until_it_is_known(known_after: int, folder: Keys
     door, mine = Door(network, known_after), folder.credentials((PrincipalKind.READER,))
     introduce(network.node(), "lab", mine)
     assert door.shown == [mine.certificate.read_text()] * (known_after + 1)
+
+
+def test_a_site_of_the_same_host_that_has_lost_its_hub_for_a_moment_is_waited_for(folder: KeysFolder) -> None:
+    network = Network(1)
+    first, mine, seen = Door(network, known_after=0, beside=("home", "attic")), network.node(), []
+    attic = Keys("lab").introduce("attic")
+
+    def answer(request: Request) -> None:
+        seen.append(len(first.shown))
+        request.reply(attic, encode(Introduction("its own", True)))
+        request.finish()
+
+    mine.later(0.3, lambda: network.node().serve(attic, answer))
+    introduce(mine, "lab", folder.credentials((PrincipalKind.READER,)))
+    assert seen
+    assert 1 < seen[-1] < ROUNDS
 
 
 def test_who_is_not_let_in_hears_why(folder: KeysFolder) -> None:

@@ -44,6 +44,14 @@ def passes(principal: str, flow: str, message: str, key: str) -> bool:
 CAM, DRV = (Principal.component(component).common_name for component in (CAMERA, DRIVE))
 
 
+def test_all_components_are_asked_at_once_how_they_are_and_for_nothing_else() -> None:
+    """A question is delivered only by a grant that includes its whole key, wildcards and all."""
+    assert passes("conf.alice", "ingress", "query", KEYS.any_call("state"))
+    assert passes(CAM, "egress", "query", KEYS.any_call("state"))
+    assert not passes(CAM, "egress", "query", KEYS.any_call("release"))
+    assert not passes("read.alice", "ingress", "query", KEYS.any_call("state"))
+
+
 @pytest.mark.parametrize(
     ("principal", "message", "key", "allowed"),
     [

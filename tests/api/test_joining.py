@@ -125,7 +125,7 @@ def seen_at(home: Home, endpoint: str) -> set[str]:
     """The sites that are seen from an endpoint."""
     heard: list[tuple[str, ...]] = []
     with suppress(NetworkError):
-        bus = client([endpoint], seconds=0.5)
+        bus = client([endpoint], seconds=0.5, credentials=home.credentials())
         bus.roll_call(home.keys.any_site_life(), 1.0, heard.append)
         deadline = time.monotonic() + 2.0
         bus.run(lambda: bool(heard) or time.monotonic() > deadline)
@@ -144,7 +144,7 @@ def test_all_sites_that_were_stopped_together_see_each_other_again(home: Home) -
 
 
 def test_relays_of_several_hosts_see_each_other_again_after_one_was_stopped(home: Home) -> None:
-    options = "--ecology", home.ecology, "--listen", "tcp/127.0.0.1:0", "--name"
+    options = "--ecology", home.ecology, "--listen", home.anywhere, "--name"
     sites = []
     for name in "abc":
         sites.append(home.selfconf("site", "ads/drive.ttl", *options, name))

@@ -165,7 +165,8 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
 
 def run(house: Home, task: object = TASK, method: Method | None = None, **more: object) -> Run:
     """A run in the house."""
-    return Run(task, method or Method(), house.ecology, [house.endpoint()], **more)  # type: ignore[arg-type]  # by name
+    shown = {"credentials": house.credentials()}
+    return Run(task, method or Method(), house.ecology, [house.endpoint()], **shown, **more)  # type: ignore[arg-type]  # by name
 
 
 def kinds(events: list[RunEvent]) -> list[type[RunEvent]]:

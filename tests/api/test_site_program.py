@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,7 +12,6 @@ import pytest
 import selfconf as sc
 from selfconf import rendezvous
 from selfconf.api.site_program import serve
-from selfconf.bus.zenoh_bus import router
 from selfconf.errors import SelfconfError
 from tests.cli.command import run
 from tests.cli.processes import Home
@@ -94,10 +94,10 @@ def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(
     home: Home, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
-    somebody_else = router(rendezvous.usual_endpoints(home.ecology)[0])
-    site = home.site("a", "ads")
-    assert home.endpoint() == rendezvous.usual_endpoints(home.ecology)[1]
-    somebody_else.close()
+    usual = rendezvous.usual_endpoints(home.ecology, secure=home.authority is not None)
+    with socket.create_server(("127.0.0.1", int(usual[0].rpartition(":")[2]))):
+        site = home.site("a", "ads")
+        assert home.endpoint() == usual[1]
     assert site.end() == 0
     assert site.complaints.count("\n") == 1
 
@@ -120,7 +120,7 @@ def test_two_sites_of_a_name_that_meet_later_say_so(home: Home, tmp_path: Path) 
     first = home.site("a", "ads/tracker.ttl")
     home.environment, here = {**home.environment, "SELFCONF_RUNTIME_DIR": str(tmp_path / "elsewhere")}, home.environment
     second = home.selfconf("site", "ads/drive.ttl", "--ecology", home.ecology, "--name", "a")
-    assert home.until(lambda: " on tcp/" in second.complaints)
+    assert home.until(lambda: f" on {home.protocol}/" in second.complaints)
     there = second.complaints.rpartition(" on ")[2].strip()
     home.environment = here
     bridge = home.site("bridge", "ads/pippi.ttl", connect=(there,))

@@ -68,6 +68,9 @@ def test_a_flood_takes_bounded_memory() -> None:
     log = log_of(*(line for number in range(3 * MOST_ATTEMPTS) for line in denied(f"key/{number}")))
     assert len(log.refused) <= 2 * MOST_ATTEMPTS
     assert sum(one.number for one in log.refused) == 3 * MOST_ATTEMPTS
+    log = log_of(*(line.replace(PEER, f"{peer:032x}") for peer in range(2 * MOST_ATTEMPTS) for line in denied("x")))
+    assert [(one.principal, one.number) for one in log.refused] == [("comp.x", 2 * MOST_ATTEMPTS)]
+    assert len(log._names) == MOST_ATTEMPTS
 
 
 def test_nobody_is_asked_about_again_after_being_let_in() -> None:

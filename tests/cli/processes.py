@@ -249,6 +249,16 @@ class Home:
         endpoint: str = json.loads(path.read_text())["endpoint"]
         return endpoint
 
+    @property
+    def protocol(self) -> str:
+        """What links speak."""
+        return "tcp" if self.authority is None else "tls"
+
+    @property
+    def anywhere(self) -> str:
+        """An endpoint on any free port of loopback."""
+        return f"{self.protocol}/127.0.0.1:0"
+
     def arguments(self) -> tuple[str, ...]:
         """The options by which a command in this process finds the ecology."""
         return "--ecology", self.ecology, "--connect", self.endpoint()

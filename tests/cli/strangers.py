@@ -8,8 +8,10 @@ import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from selfconf.access import KeysFolder, PrincipalKind, introduce
 from selfconf.bus.port import Request
 from selfconf.bus.zenoh_bus import router
+from selfconf.bus.zenoh_session import Security
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
@@ -75,10 +77,21 @@ class Strangers:
     """A site that advertises what it likes, and a configurator that claims to have deployed what it likes."""
 
     def __init__(
-        self, keys: Keys, neighbour: str, said: Mapping[IRI, bytes], extra: Sequence[tuple[bytes, bytes]] = ()
+        self,
+        keys: Keys,
+        neighbour: str,
+        said: Mapping[IRI, bytes],
+        extra: Sequence[tuple[bytes, bytes]] = (),
+        authority: KeysFolder | None = None,
     ) -> None:
+        """With an `authority` the strangers have a certificate of a site: they are insiders that cannot be trusted."""
         self._keys, self._said, self._extra = keys, said, extra
-        self._bus = router(connect=[neighbour])
+        shown = None if authority is None else authority.credentials((PrincipalKind.SITE,), "strangers")
+        if shown is None:
+            self._bus = router(connect=[neighbour])
+        else:
+            self._bus = router("tls/127.0.0.1:0", [neighbour], security=Security(shown))
+            introduce(self._bus, keys.ecology, shown)
         self._bus.serve(keys.advertisements("strangers"), self._advertise)
         self._bus.serve(keys.configuration("stranger"), self._configuration)
         self._bus.announce(keys.site_life("strangers", "1"))

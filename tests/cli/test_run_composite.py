@@ -32,7 +32,7 @@ def heard(home: Home) -> str:
 def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_be(home: Home) -> None:
     home.site("harbour", str(EXAMPLE / "harbour"))
     connect = (home.endpoint("harbour"),)
-    home.site("ferry", str(EXAMPLE / "ferry"), connect=connect, options=("--listen", "tcp/127.0.0.1:0"))
+    home.site("ferry", str(EXAMPLE / "ferry"), connect=connect, options=("--listen", home.anywhere))
     where = ("--ecology", home.ecology, "--connect", home.endpoint("ferry"), "--format", "json")
     run = home.selfconf("run", str(EXAMPLE / "approach.ttl"), *where)
     roles = run.act("running")["configuration"]["roles"]

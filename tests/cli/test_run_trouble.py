@@ -22,7 +22,7 @@ def test_run_with_wait_goes_on_when_another_run_lets_go_of_a_component(inhabited
     first.act("running")
     second = inhabited.run("--wait")
     lost = second.act("waiting")["lost"]
-    assert all("configurator c" in why and why.endswith(" holds it") for why in lost.values())
+    assert all("configurator " in why and why.endswith(" holds it") for why in lost.values())
     third = inhabited.run()
     assert third.ended() == 1
     assert first.end(signal.SIGINT) == 0
@@ -37,7 +37,7 @@ def test_people_are_told_which_configurator_holds_what_they_need(inhabited: Home
     arguments = ("navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x", "--ecology", inhabited.ecology)
     refused = inhabited.selfconf("run", *arguments)
     assert refused.ended() == 1
-    assert "refused, the task navigate (priority 0, configurator c" in refused.complaints
+    assert "refused, the task navigate (priority 0, configurator " in refused.complaints
     assert "start it again" not in refused.complaints
     assert "run again when it is free" in refused.complaints
     assert holder.end(signal.SIGINT) == 0

@@ -56,8 +56,9 @@ def test_a_file_that_is_added_while_it_runs_is_served(home: Home, capsys: pytest
 
 
 @pytest.fixture
-def taken() -> ZenohBus:
-    """Somebody else who listens."""
+def taken(monkeypatch: pytest.MonkeyPatch) -> ZenohBus:
+    """Somebody else who listens, without keys."""
+    monkeypatch.delenv("SELFCONF_KEYS", raising=False)
     return router()
 
 

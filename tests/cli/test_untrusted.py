@@ -76,7 +76,8 @@ def home(tmp_path_factory: pytest.TempPathFactory, trap: Trap) -> Iterator[Home]
     said[IRI("urn:linked")] = LINKED.replace(b"WEB", trap.web.encode())
     said[IRI("urn:bytes")] = b"\xff\x00\xfe"
     said[IRI("urn:much")] = OWN.encode() + b"#" * (2 << 20)
-    strangers = Strangers(home.keys, home.endpoint("peis-home"), said, [(b"", b"no page"), (b"", b"\xff" * 100)])
+    nonsense = [(b"", b"no page"), (b"", b"\xff" * 100)]
+    strangers = Strangers(home.keys, home.endpoint("peis-home"), said, nonsense, home.authority)
     home.environment["PYTHONPATH"] = os.pathsep.join((str(trap.program), home.environment["PYTHONPATH"]))
     yield home
     strangers.close()
