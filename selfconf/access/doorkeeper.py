@@ -26,7 +26,7 @@ from selfconf.errors import NetworkError, PeerError, SelfconfError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import Keys, site_of
-from selfconf.protocol.messages import Introduction, Known, Page
+from selfconf.protocol.messages import Introduction, Known, Page, RefusedAttempt
 
 log = logging.getLogger(__name__)
 
@@ -46,6 +46,8 @@ INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 INTRODUCE_AGAIN = 5.0
 LOOKS = 3
 """After how many looks a refused attempt is told of: what somebody has tried who is let in by then does not count."""
+LIFE = "Liveliness Token"
+"""What Zenoh calls it when somebody says that somebody lives."""
 MOST_TOLD = 20
 """How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
 
@@ -101,6 +103,8 @@ class Doorkeeper:
         """The components that other sites advertise."""
         self._revisions: dict[str, int] = {}
         self._disputed: frozenset[IRI] = frozenset()
+        self._strangers: frozenset[str] = frozenset()
+        """Who is known to the rules, but not to the hub yet."""
         self._seen: dict[tuple[str, str, str], int] = {}
         """How often each refused attempt was seen in the log."""
         self._tellings: list[float] = []
@@ -139,15 +143,9 @@ class Doorkeeper:
         self._bus.later(0.0, self._renew_rules)  # after the answer is on its way
 
     def _admit(self, certificate: str) -> bool:
-        """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good.
-
-        What it has tried before it was known was not refused for what it is.
-        """
+        """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good."""
         name = self._folder.admit(self._keys.ecology, certificate.encode()).common_name
-        known = any(access.principal == name for access in self.rules.accesses)
-        if not known:
-            self._refusals.forget(name)
-        return known
+        return name in self.rules.principals
 
     def _introduce(self) -> None:
         """Show the certificate of this site to all others, and learn theirs."""
@@ -253,6 +251,7 @@ class Doorkeeper:
             self._tell_fault(str(error))
             return
         if rules != self.rules:
+            self._strangers |= rules.principals - self.rules.principals
             self.rules = rules
             self._enforced()
 
@@ -261,6 +260,9 @@ class Doorkeeper:
         self._undo_retry()
         try:
             self._enforce(self.rules)
+            for name in self._strangers:  # what it tried before it was known was not refused for what it is
+                self._refusals.forget(name)
+            self._strangers = frozenset()
         except NetworkError as error:
             self._tell_fault(f"the hub cannot be opened with its new rules: {error}; trying again")
             self._undo_retry = self._bus.later(self._pause, self._enforced)
@@ -273,11 +275,28 @@ class Doorkeeper:
         self._bus.later(LOOK, self._look)
         self._renew_certificates()
         self._renew_rules()
-        refused = [(one.principal, one.attempt, one.key) for one in self._refusals.refused]
+        refused = {(one.principal, one.attempt, one.key): one for one in self._refusals.refused}
         self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
-        for what in refused:
+        for what, one in refused.items():
             if self._seen[what] == LOOKS:
-                self._tell_refused(*what)
+                self._judge(one)
+
+    def _judge(self, refused: RefusedAttempt) -> None:
+        """Tell of an attempt, unless a site has passed on that somebody lives who does.
+
+        Zenoh answers who asks for lives with those that it has heard of from others, whatever the rules of its end say.
+        """
+
+        def judge(living: tuple[str, ...] = ()) -> None:
+            if refused.key in living:
+                self._refusals.drop(refused)
+            else:
+                self._tell_refused(refused.principal, refused.attempt, refused.key)
+
+        if refused.attempt == LIFE and "*" not in refused.key:
+            self._bus.roll_call(refused.key, SITES_ANSWER, judge)
+        else:
+            judge()
 
     def _renew_certificates(self) -> None:
         """Renew what is half over, and have the hub show the certificate that lies in the folder now."""

@@ -33,6 +33,11 @@ class AccessRules:
 
     accesses: tuple[Access, ...]
 
+    @property
+    def principals(self) -> frozenset[str]:
+        """The common names that they speak of."""
+        return frozenset(access.principal for access in self.accesses)
+
     def access_control(self) -> dict[str, Any]:
         """The rules as the member `access_control` of a configuration of Zenoh."""
         rules, subjects, policies = [], [], []
@@ -68,6 +73,9 @@ def rules_of(
     speaks: dict[Principal, dict[Principal, None]] = {}
     for process in (*processes, *shown):
         speaks.setdefault(process[0], {}).update(dict.fromkeys(process))
+    here = sorted({one.name for process in speaks.values() for one in process if one.kind is PrincipalKind.COMPONENT})
+    said_here = [*keys.all_of_site(site), *keys.all_of_configurators("*"), keys.task()]
+    said_here += [key for chunk in here for key in keys.all_of_component(chunk)]
     found = [_everybody(keys), _site_itself(keys, site)]
     for principal in sorted(speaks, key=str):
         if principal.kind is PrincipalKind.COMPONENT:
@@ -77,7 +85,7 @@ def rules_of(
         elif principal.kind is PrincipalKind.READER:
             found.append(_reader(keys, principal))
         elif principal.name != site:
-            found.append(_other_site(keys, principal, others.get(principal.name, ())))
+            found.append(_other_site(keys, principal, others.get(principal.name, ()), said_here))
     return AccessRules(tuple(found))
 
 
@@ -161,7 +169,11 @@ def _configurator(keys: Keys, principal: Principal) -> Access:
     )
 
 
-def _other_site(keys: Keys, principal: Principal, components: Collection[IRI]) -> Access:
+def _other_site(keys: Keys, principal: Principal, components: Collection[IRI], said_here: Collection[str]) -> Access:
+    """What a hub passes on to another site is what is said on its own host.
+
+    It would pass on what third sites say as well, to sites that refuse it from there.
+    """
     vouched = tuple(sorted(map(component_chunk, components)))
     said = [*keys.all_of_site(principal.name), *keys.all_of_configurators("*"), keys.task()]
     said += [key for chunk in vouched for key in keys.all_of_component(chunk)]
@@ -173,6 +185,7 @@ def _other_site(keys: Keys, principal: Principal, components: Collection[IRI]) -
         asked=(*keys.everything(), any_ecology()),
         hears=(*keys.everything(), any_ecology()),
         about=vouched,
+        told=tuple(said_here),
     )
 
 
@@ -182,7 +195,7 @@ def _rules(identity: str, access: Access) -> list[dict[str, Any]]:
         (BY, SPEAK, access.says),
         (TO, LISTEN, (*access.says, *access.asked)),
         (BY, LISTEN, access.hears),
-        (TO, SPEAK, access.hears),
+        (TO, SPEAK, access.told or access.hears),
     )
     return [
         {

@@ -369,6 +369,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (Access, "asked"): _labels,
     (Access, "hears"): _labels,
     (Access, "about"): _labels,
+    (Access, "told"): _labels,
     (RefusedAttempt, "attempt"): _remark,
     (RefusedAttempt, "key"): _remark,
     (RefusedAttempt, "number"): _whole,

@@ -266,6 +266,8 @@ class Access:
     """Under which keys it may ask and listen."""
     about: tuple[str, ...] = ()
     """The components that it speaks for, by their chunks."""
+    told: tuple[str, ...] = ()
+    """What it is told of what it hears; empty: all of it. Another site is told by each host what is said there."""
 
 
 @dataclass(frozen=True, slots=True)

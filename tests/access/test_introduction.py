@@ -25,9 +25,7 @@ def folder(tmp_path: Path) -> KeysFolder:
 class Door:
     """A site that knows who has shown a certificate often enough, or lets nobody in."""
 
-    def __init__(
-        self, network: Network, known_after: int = 1, refuses: str = "", beside: tuple[str, ...] = ()
-    ) -> None:
+    def __init__(self, network: Network, known_after: int = 1, refuses: str = "", beside: tuple[str, ...] = ()) -> None:
         self.shown: list[str] = []
         self._known_after, self._refuses, self._beside = known_after, refuses, beside
         self._key = Keys("lab").introduce("home")

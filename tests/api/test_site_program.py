@@ -55,7 +55,9 @@ def test_a_site_that_cannot_be_announces_nothing(
     words: str,
     tmp_path: Path,
     runtime_folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.delenv("SELFCONF_KEYS", raising=False)  # a site with keys takes over what its process prints
     said: list[str] = []
     with pytest.raises(SelfconfError, match=words):
         serve([tmp_path], ecology, name, listen, connect, said.append)
@@ -117,6 +119,8 @@ def test_a_second_site_of_a_name_does_not_start_and_says_who_has_it(home: Home, 
 
 @pytest.mark.process
 def test_two_sites_of_a_name_that_meet_later_say_so(home: Home, tmp_path: Path) -> None:
+    if home.authority is not None:
+        pytest.skip("with keys a third site passes nothing on, so the two do not meet by it")
     first = home.site("a", "ads/tracker.ttl")
     home.environment, here = {**home.environment, "SELFCONF_RUNTIME_DIR": str(tmp_path / "elsewhere")}, home.environment
     second = home.selfconf("site", "ads/drive.ttl", "--ecology", home.ecology, "--name", "a")

@@ -306,9 +306,11 @@ class Home:
         """Wait for a condition, until a deadline."""
         deadline = time.monotonic() + seconds
         moment = threading.Event()
-        while not condition() and time.monotonic() < deadline:
+        while not condition():
+            if time.monotonic() > deadline:
+                return False
             moment.wait(0.02)
-        return condition()
+        return True
 
     def close(self) -> None:
         """End everything that was started."""
