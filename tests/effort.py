@@ -14,6 +14,10 @@ import pytest
 PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "selfconf")
 NIGHTLY = PROFILE == "nightly"
 at_night = pytest.mark.skipif(not NIGHTLY, reason="takes long, and goes wrong where others do: `make nightly` runs it")
+of_keys = pytest.mark.skipif(
+    not NIGHTLY and "SELFCONF_TEST_KEYS" not in os.environ,
+    reason="takes long, and is about keys alone: `make test-keys` and `make nightly` run it",
+)
 _SHARES = {"quick": 0.1, "nightly": 20.0}
 
 

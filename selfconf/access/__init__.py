@@ -2,13 +2,15 @@
 
 `KeysFolder` is what `--keys` names: it issues, renews and revokes certificates, and gives a program what it shows to
 others. `Principal` is whom a certificate speaks for, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
-`Doorkeeper` keeps the rules of a site, from `first_rules` on; `introduce` shows a program's certificate to the sites.
+`Doorkeeper` keeps the rules of a site, from `first_rules` on; `introduce` shows a program's certificate to the sites,
+and `CertificateWatch` shows it again when it is renewed, and says that it expires.
 `believe` notes whose a component is that two sites advertise. It needs the extra `keys`.
 """
 
 from selfconf.access.beliefs import believe, believed
 from selfconf.access.certificates import Certificate
 from selfconf.access.doorkeeper import Doorkeeper, first_rules
+from selfconf.access.expiry import CertificateWatch
 from selfconf.access.introduction import introduce
 from selfconf.access.keys_folder import DAYS, KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
@@ -18,6 +20,7 @@ __all__ = [
     "DAYS",
     "AccessRules",
     "Certificate",
+    "CertificateWatch",
     "Doorkeeper",
     "KeysFolder",
     "Principal",

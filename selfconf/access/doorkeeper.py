@@ -16,11 +16,12 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TypeGuard
 
 from selfconf.access.beliefs import believed
+from selfconf.access.expiry import CertificateWatch
 from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.rules import AccessRules, rules_of
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.port import Bus, Replies, Request
+from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.bus.refusals import RefusalLog
 from selfconf.errors import NetworkError, PeerError, SelfconfError
 from selfconf.model.term import IRI
@@ -39,6 +40,8 @@ FAULT_AGAIN = 600.0
 SOON = 0.05
 """Seconds after which others are asked what they advertise, when something has changed: mostly more does. However many
 changes are told of, others are asked no oftener than that."""
+WARNED = 0.05
+"""Seconds between the word that a hub is about to be opened anew and that."""
 SITES_ANSWER = 3.0
 """Seconds that other sites may take to say what they advertise."""
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
@@ -86,6 +89,7 @@ class Doorkeeper:
         credentials: Credentials,
         own: Callable[[], Mapping[IRI, IRI]],
         of_this_host: Callable[[], Iterable[str]],
+        relays: Callable[[], bool],
         enforce: Callable[[AccessRules], None],
         complain: Callable[[str], None],
         refusals: RefusalLog,
@@ -93,12 +97,15 @@ class Doorkeeper:
     ) -> None:
         """`own` are the components of this site, each with the one whose certificate its process has.
 
-        `of_this_host` are the names of the sites of this host, whose components connect to its hub. `rules` are those
-        in force; `enforce` opens the hub with others, and raises NetworkError.
+        `of_this_host` are the names of the sites of this host, whose components connect to the hub of the one that
+        `relays`. `rules` are those in force; `enforce` opens the hub with others, and raises NetworkError.
         """
         self._bus, self._keys, self._name, self._folder = bus, Keys(ecology), site, keys_folder
         self._credentials, self._own, self._enforce, self._complain = credentials, own, enforce, complain
-        self._of_this_host, self._refusals = of_this_host, refusals
+        self._of_this_host, self._relays, self._refusals = of_this_host, relays, refusals
+        self._warned = False
+        """Whether the hub is about to be opened anew."""
+        self._warning = bus.publisher(self._keys.reopens(site), Urgency.EVENT)
         self._others: dict[str, frozenset[IRI]] = {}
         """The components that other sites advertise."""
         self._revisions: dict[str, int] = {}
@@ -120,6 +127,7 @@ class Doorkeeper:
         bus.serve(self._keys.access(site), self._tell)
         bus.subscribe(self._keys.changed(), lambda _: self._others_changed())
         bus.watch(self._keys.any_site_life(), lambda *_: self._others_changed())
+        CertificateWatch(bus, ecology, credentials, complain)
         for pause in INTRODUCTIONS:
             bus.later(pause, self._introduce)
         bus.later(INTRODUCE_AGAIN, self._introduce_again)
@@ -253,11 +261,21 @@ class Doorkeeper:
         if rules != self.rules:
             self._strangers |= rules.principals - self.rules.principals
             self.rules = rules
+            self._open_anew()
+
+    def _open_anew(self) -> None:
+        """Have the hub opened anew, and tell everybody before: a hub takes its clients off one after the other."""
+        if not self._relays():
             self._enforced()
+        elif not self._warned:
+            self._warned = True
+            self._warning.put(b"")
+            self._bus.later(WARNED, self._enforced)
 
     def _enforced(self) -> None:
         """Have the hub opened anew; as long as that fails try again, more and more rarely."""
         self._undo_retry()
+        self._warned = False
         try:
             self._enforce(self.rules)
             for name in self._strangers:  # what it tried before it was known was not refused for what it is
@@ -299,10 +317,8 @@ class Doorkeeper:
             judge()
 
     def _renew_certificates(self) -> None:
-        """Renew what is half over, and have the hub show the certificate that lies in the folder now."""
+        """Renew those of components, and have the hub show the certificate that lies in the folder now."""
         try:
-            if self._folder.is_authority:
-                self._folder.credentials((PrincipalKind.SITE,), self._name)
             changed = self._credentials.certificate.stat().st_mtime_ns
             self._folder.renew_components()
         except (SelfconfError, OSError) as error:
@@ -310,7 +326,7 @@ class Doorkeeper:
             return
         if changed != self._renewed_at:
             self._renewed_at = changed
-            self._enforced()
+            self._open_anew()
 
     # What is told.
 

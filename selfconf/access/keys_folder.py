@@ -20,6 +20,7 @@ import fcntl
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import TypeVar
 
@@ -175,12 +176,22 @@ class KeysFolder:
         folder = self.path / "components" / principal.common_name
         with self._turn():
             authority, key = self._host_authority()
-            if self._stale(folder) or self._certificate(folder / f"{_OWN}.pem").principals[1:] != tuple(also):
-                mine = new_key()
-                certificate = issue(authority, key, principal, mine.public_key(), (), COMPONENT_DAYS, also)
+            ends = self._component_ends()
+            if self._stale(folder) or not self._fits(self._certificate(folder / f"{_OWN}.pem"), also, ends):
+                mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
+                certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
                 _write_holder(folder, self.authority, certificate, mine)
                 _write_file(folder / f"{_HOST_AUTHORITY}.pem", authority.pem)
         return folder
+
+    def _component_ends(self) -> datetime:
+        """Until when a component gets a certificate: for no longer than its site has one."""
+        ends = datetime.now(timezone.utc) + timedelta(days=COMPONENT_DAYS)
+        return min(ends, self.own().ends) if (self.path / f"{_OWN}.pem").is_file() else ends
+
+    def _fits(self, certificate: Certificate, also: Sequence[Principal], ends: datetime) -> bool:
+        """Whether a certificate is for a process with these other components, and ends in time."""
+        return certificate.principals[1:] == tuple(also) and certificate.ends <= ends
 
     def renew_components(self) -> None:
         """Renew the certificates of the processes of this host that are to be. Raises AuthorError."""

@@ -134,6 +134,7 @@ def _looking(keys: Keys) -> tuple[str, ...]:
     return (
         keys.advertisements(),
         keys.changed(),
+        keys.reopens(),
         keys.access(),
         keys.any_site_life(),
         keys.any_life(),

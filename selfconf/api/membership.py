@@ -17,10 +17,11 @@ def member(ecology: str, endpoints: Sequence[str], credentials: Credentials | No
     """A bus that is connected to a hub which lets this program in. Raises NetworkError."""
     bus = client(list(endpoints), credentials=credentials)
     if credentials is not None:
-        from selfconf.access import introduce  # what it needs is an extra
+        from selfconf.access import CertificateWatch, introduce  # what it needs is an extra
 
         try:
             introduce(bus, ecology, credentials)
+            CertificateWatch(bus, ecology, credentials)
         except BaseException:
             bus.close()
             raise

@@ -78,6 +78,7 @@ class SecuredSite:
             self._credentials,
             self._programs,
             lambda: (one.site for one in rendezvous.local_sites(site.keys.ecology)),
+            lambda: bool(site.bus.endpoint),
             lambda rules: joining.secure(self._security(rules)),
             complain,
             self._refusals,

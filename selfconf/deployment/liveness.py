@@ -39,6 +39,8 @@ AUDITED = 20
 """How many components are looked at in one of them; they take turns."""
 SILENT_AUDITS = 3
 """How many audits in a row a component may leave unanswered; each waits for as long as a call."""
+MOST_REOPENINGS, REOPENINGS_WITHIN = 6, 60.0
+"""How many hubs that are about to be opened anew are believed in how many seconds: they are, as others join."""
 SETTLING = 1.0
 """Seconds that other nodes may take to be connected again after this one.
 
@@ -77,6 +79,8 @@ class Liveness:
         self.cut_off = False
         """Whether this node was found to be cut off, and has not been connected again for long enough since."""
         self._ask_again: Undo = lambda: None
+        self._reopenings: list[float] = []
+        """When a site has last said that its hub is about to be opened anew."""
         self._audited = 0
         self._silences: dict[IRI, int] = {}
         """How often in a row each component has not answered an audit."""
@@ -234,6 +238,18 @@ class Liveness:
             self._sites.discard(key)
             if owner_of(key) not in map(owner_of, self._sites):
                 self._calls.site_ended(owner_of(key))
+
+    def reopens(self) -> None:
+        """A hub is about to be opened anew: lives seem to end, one after the other, and sites among the last.
+
+        A site that says so again and again is not believed: no end would be any more.
+        """
+        now = self.bus.now()
+        self._reopenings = [at for at in self._reopenings if now - at < REOPENINGS_WITHIN]
+        if len(self._reopenings) < MOST_REOPENINGS and self.ecology.followed:
+            self._reopenings.append(now)
+            self._link = ""
+            self._await_link()
 
     def suspended(self) -> None:
         """This program stood still for a while, as if it had been cut off: so it was, or nearly."""

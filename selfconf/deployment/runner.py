@@ -154,6 +154,7 @@ class TaskRunner:
             bus.subscribe(self.keys.any_free(), self._received_free, Urgency.EVENT),
             bus.subscribe(self.keys.any_moved(), self._received_moved, Urgency.EVENT),
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
+            bus.subscribe(self.keys.reopens(), lambda _: self._liveness.reopens(), Urgency.EVENT),
         ]
 
     def start(self) -> None:

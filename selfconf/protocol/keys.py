@@ -3,6 +3,7 @@
     selfconf/{ecology}/site/{site}/live/{life}              a site is alive (liveliness token)
     selfconf/{ecology}/site/{site}/ads/{component}          an advertisement (queryable, one reply each)
     selfconf/{ecology}/site/{site}/changed                  its advertisements have changed (put)
+    selfconf/{ecology}/site/{site}/reopens                  its hub is about to be opened anew (put)
     selfconf/{ecology}/site/{site}/@ctl/wake                start a dormant component (call)
     selfconf/{ecology}/site/{site}/@ctl/end                 end a component that does not obey (call)
     selfconf/{ecology}/site/{site}/@ctl/keep                keep a task, or hear that it has ended (call)
@@ -93,6 +94,9 @@ class Keys:
 
     def changed(self, site: str = "*") -> str:
         return self._site(site, "changed")
+
+    def reopens(self, site: str = "*") -> str:
+        return self._site(site, "reopens")
 
     def wake(self, site: str) -> str:
         return self._site(site, "@ctl/wake")

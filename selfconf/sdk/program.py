@@ -89,9 +89,10 @@ def open_host(
     name, endpoints = rendezvous.find(ecology, connect, shown)
     bus = client(endpoints, shared_memory=True, credentials=shown)
     if shown is not None:
-        from selfconf.access import introduce  # what it needs is an extra
+        from selfconf.access import CertificateWatch, introduce  # what it needs is an extra
 
         introduce(bus, name, shown)
+        CertificateWatch(bus, name, shown)
 
     def hung(what: str) -> None:
         print(plain(what), file=sys.stderr, flush=True)

@@ -40,6 +40,7 @@ class Door:
             credentials,
             lambda: {LAMP: LAMP},
             lambda: ["home"],
+            lambda: True,
             self.enforce,
             self.said.append,
             self.refusals,
@@ -187,7 +188,7 @@ def test_a_site_that_passes_on_who_lives_is_not_complained_of(door: Door) -> Non
     advertise(door, "attic", BELL)
     line = "2126-01-01T00:00:00Z TRACE rx ThreadId(1) x: {}"
     for life in ("1", "0bad"):
-        peer = f"a1 on Interface(lo)+CertCommonName(site.cellar) is unauthorized to Liveliness Token (ingress) on {{}}"
+        peer = "a1 on Interface(lo)+CertCommonName(site.cellar) is unauthorized to Liveliness Token (ingress) on {}"
         door.refusals.take(line.format(peer.format(KEYS.site_life("attic", life))))
         door.refusals.take(line.format("Msg intercepted!"))
     door.pass_time(10.0)

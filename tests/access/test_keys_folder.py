@@ -179,3 +179,16 @@ def test_nothing_is_written_over(authority: KeysFolder, tmp_path: Path) -> None:
         authority.issue(ALICE, tmp_path / "alice")
     with pytest.raises(AuthorError, match="there is no folder"):
         KeysFolder(tmp_path / "nowhere")
+
+
+def test_a_component_has_no_certificate_for_longer_than_its_site(authority: KeysFolder, tmp_path: Path) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic", days=0.5)
+    attic, lamp = KeysFolder(tmp_path / "attic"), Principal.component(IRI("urn:lamp"))
+    component = KeysFolder(attic.component(lamp))
+    assert component.own().ends == attic.own().ends
+    authority.renew(attic.path, days=0.25)
+    attic.renew_components()
+    assert component.own().ends == attic.own().ends
+    authority.renew(attic.path, days=30.0)
+    attic.renew_components()
+    assert not component.own().half_over(), "it is renewed when half of its time has passed"

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from selfconf.access import KeysFolder, PrincipalKind
+from selfconf.access import KeysFolder, PrincipalKind, introduce
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh_bus import ZenohBus, client
@@ -270,7 +270,11 @@ class Home:
     def node(self) -> ZenohBus:
         """A client of the sites, which may do what a configurator may."""
         endpoints = [json.loads(path.read_text())["endpoint"] for path in sorted(self.runtime.glob("*.json"))]
-        return client(endpoints, credentials=self.credentials())
+        shown = self.credentials()
+        bus = client(endpoints, credentials=shown)
+        if shown is not None:
+            introduce(bus, self.ecology, shown)
+        return bus
 
     # Observing.
 

@@ -12,7 +12,7 @@ from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import liveness
-from selfconf.deployment.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, SETTLING
+from selfconf.deployment.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, MOST_REOPENINGS, SETTLING
 from selfconf.discovery import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
@@ -409,3 +409,30 @@ def test_a_site_that_is_cut_off_before_lives_are_followed_is_news_when_it_is_bac
     lab.rejoin(astrid)
     lab.let_pass(0.1)
     assert len(lab.acts("query")) == asked + 1
+
+
+def test_where_a_hub_is_opened_anew_no_end_is_believed_but_not_for_ever(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    node = lab.network.node()
+    warning = node.publisher(lab.keys.reopens("home"), Urgency.EVENT)
+    warning.put(b"")
+    lab.let_pass(0.02)
+    for component in ("tracker", "sonar"):
+        for other in lab.network.nodes:
+            if other is not lab.runtimes[component].bus:
+                lab.network.cut(lab.runtimes[component].bus, other)
+    lab.let_pass(0.5)
+    for component in ("tracker", "sonar"):
+        for other in lab.network.nodes:
+            lab.network.reconnect(lab.runtimes[component].bus, other)
+    lab.let_pass(5.0)
+    assert lab.acts("lost") == []
+    assert lab.active() == TASK | {"tracker"}
+    for _ in range(10 * MOST_REOPENINGS):
+        warning.put(b"")
+        lab.let_pass(0.5)
+    lab.crash("tracker")
+    assert lab.until(lambda: iri("person-tracker") in agent.state.lost, 5.0), (
+        "whoever says it without an end is not heard"
+    )

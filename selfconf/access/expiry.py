@@ -1,0 +1,104 @@
+"""A program's certificate while the program runs: shown again when it is renewed, and spoken of before it expires.
+
+Links have to be made anew with another certificate, and Zenoh does that by itself: the other end closes a link as the
+certificate of this end expires, and the next link is made with what lies in the file by then. But sites let in who has
+*shown* a good certificate, so a renewed one is shown as soon as it is there. Nothing is noticed of that.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from datetime import datetime, timezone
+
+from selfconf.access.certificates import Certificate
+from selfconf.access.introduction import ANSWER
+from selfconf.access.keys_folder import KeysFolder
+from selfconf.access.principal import Principal
+from selfconf.bus.credentials import Credentials
+from selfconf.bus.port import Bus
+from selfconf.errors import PeerError, SelfconfError
+from selfconf.protocol.codec import encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Introduction
+
+log = logging.getLogger(__name__)
+
+LOOK = 1.0
+"""How often, in seconds, the certificate is looked at."""
+LAST_PART = 4
+"""A certificate is spoken of in the last quarter of its time, if nobody has renewed it by then."""
+
+
+class CertificateWatch:
+    """Keeps an eye on the certificate of a program, from its making until its bus is closed."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        ecology: str,
+        credentials: Credentials,
+        complain: Callable[[str], None] = log.error,  # a person has to do something
+        now: Callable[[], datetime] = lambda: datetime.now(timezone.utc),
+    ) -> None:
+        """To be made before the bus runs on its own thread, or on that thread."""
+        self._bus, self._key, self._credentials = bus, Keys(ecology).introduce("*"), credentials
+        self._complain, self._now = complain, now
+        self._certificate = Certificate.read(credentials.certificate.read_bytes())
+        self._changed_at, self._link = self._modified(), bus.link
+        self._said = ""
+        bus.later(LOOK, self._look)
+
+    def _modified(self) -> int:
+        return self._credentials.certificate.stat().st_mtime_ns
+
+    def _look(self) -> None:
+        self._bus.later(LOOK, self._look)
+        try:
+            self._renew_own()
+            changed, link = self._modified(), self._bus.link
+            if changed != self._changed_at:
+                self._certificate = Certificate.read(self._credentials.certificate.read_bytes())
+            if (changed, link) != (self._changed_at, self._link) and link:  # by another link, another site may hear it
+                self._changed_at, self._link = changed, link
+                self._show()
+        except (OSError, PeerError, SelfconfError) as error:
+            self._tell(f"{self._whose} cannot be renewed: {error}")
+            return
+        self._tell(self._sentence())
+
+    def _renew_own(self) -> None:
+        """A program that is given the folder of an authority renews its certificate by itself."""
+        if self._certificate.half_over(self._now()):
+            folder = KeysFolder(self._credentials.folder)
+            if folder.is_authority:
+                own = Principal.of(self._credentials.name)
+                folder.credentials((own.kind,), own.name)
+
+    def _show(self) -> None:
+        shown = Introduction(self._certificate.pem.decode())
+        self._bus.ask(self._key, encode(shown), ANSWER, lambda replies: None)
+
+    def _sentence(self) -> str:
+        """What is to be said of the certificate; nothing most of the time."""
+        ends, now = self._certificate.ends, self._now()
+        renew = f"renew it with `selfconf keys renew {self._credentials.certificate.parent}`"
+        if ends < now:
+            return f"{self._whose} has expired at {_at(ends)}: nobody believes it any more; {renew}"
+        if ends - now < (ends - self._certificate.issued) / LAST_PART:
+            return f"{self._whose} expires at {_at(ends)}; {renew}"
+        return ""
+
+    def _tell(self, sentence: str) -> None:
+        """Say it once; when it is over, say that."""
+        if sentence != self._said:
+            self._said = sentence
+            self._complain(sentence or f"{self._whose} is good until {_at(self._certificate.ends)}")
+
+    @property
+    def _whose(self) -> str:
+        return f"the certificate of {self._credentials.name}"
+
+
+def _at(moment: datetime) -> str:
+    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"

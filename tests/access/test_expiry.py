@@ -1,0 +1,150 @@
+"""A certificate that expires: spoken of ahead, shown again when it is renewed; a task goes on over it."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+import pytest
+
+from selfconf.access import CertificateWatch, KeysFolder, Principal, PrincipalKind
+from selfconf.access.certificates import Certificate
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Request
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Introduction
+from tests.cli.processes import Home, Program, component_of, dormant
+from tests.effort import of_keys
+
+ALICE = Principal(PrincipalKind.CONFIGURATOR, "alice")
+SECOND = 1 / 86_400
+"""A second in days."""
+
+
+class Watched:
+    """A program with a certificate, the sites that it shows it to, and a clock turned by hand."""
+
+    def __init__(self, folder: Path, keys: KeysFolder) -> None:
+        credentials = keys.credentials((PrincipalKind.CONFIGURATOR,))
+        self.path, self.said, self.shown = folder, list[str](), list[str]()
+        self.now = Certificate.read(credentials.certificate.read_bytes()).issued
+        network = Network(1)
+        network.node().serve(Keys("lab").introduce("home"), self._hear)
+        self._bus = network.node()
+        CertificateWatch(self._bus, "lab", credentials, self.said.append, lambda: self.now)
+
+    def _hear(self, request: Request) -> None:
+        self.shown.append(decode(request.payload, Introduction).certificate)
+        request.finish()
+
+    def pass_days(self, days: float) -> None:
+        """Let days pass; to the bus it is a few seconds."""
+        self.now += timedelta(days=days)
+        until = self._bus.now() + 5.0
+        self._bus.run(lambda: self._bus.now() >= until)
+
+
+def test_a_certificate_is_spoken_of_before_it_expires_and_shown_again_when_it_is_renewed(tmp_path: Path) -> None:
+    authority = KeysFolder.init(tmp_path / "keys")
+    authority.issue(ALICE, tmp_path / "alice", days=8.0)
+    watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
+    watched.pass_days(5.9)
+    assert watched.said == []
+    watched.pass_days(0.2)
+    (ahead,) = watched.said
+    assert "the certificate of conf.alice expires at " in ahead
+    assert ahead.endswith(f"; renew it with `selfconf keys renew {tmp_path / 'alice'}`")
+    watched.pass_days(2.0)
+    assert "the certificate of conf.alice has expired at " in watched.said[1]
+    assert watched.shown == []
+    renewed = authority.renew(tmp_path / "alice", days=30.0)
+    watched.pass_days(0.0)
+    assert "is good until" in watched.said[2]
+    assert watched.shown == [renewed.pem.decode()]
+    watched.pass_days(1.0)
+    assert len(watched.said) == 3, "each is said once"
+
+
+def test_a_certificate_that_cannot_be_read_any_more_is_told_of_once(tmp_path: Path) -> None:
+    KeysFolder.init(tmp_path / "keys").issue(ALICE, tmp_path / "alice")
+    watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
+    (tmp_path / "alice/certificate.pem").write_text("nonsense")
+    watched.pass_days(0.0)
+    (tmp_path / "alice/certificate.pem").unlink()
+    watched.pass_days(0.0)
+    assert ["cannot be renewed" in one for one in watched.said] == [True, True]
+
+
+def test_a_program_that_has_the_folder_of_an_authority_renews_its_certificate_by_itself(tmp_path: Path) -> None:
+    authority = KeysFolder.init(tmp_path / "keys")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("selfconf.access.keys_folder.DAYS", 10 * SECOND)
+        (authority.path / "own/conf.main/certificate.pem").unlink()
+        watched = Watched(tmp_path, authority)
+    watched.pass_days(0.0)
+    assert watched.shown == []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Certificate, "half_over", lambda self, now=None: self.ends < watched.now + timedelta(days=1))
+        watched.pass_days(0.0)
+    assert len(watched.shown) == 1
+    assert Certificate.read(watched.shown[0].encode()).ends > watched.now + timedelta(days=6)
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Iterator[Home]:
+    """An ecology with keys."""
+    home = Home(tmp_path, keys=True)
+    yield home
+    home.close()
+
+
+@of_keys
+@pytest.mark.process
+def test_a_task_goes_on_over_the_expiry_of_every_certificate_in_it(home: Home) -> None:
+    """Those of the site, of its components and of the configurator; then nobody renews them."""
+    assert home.authority is not None
+    kitchen, alice = home.folder / "kitchen", home.folder / "alice"
+    home.authority.issue(Principal(PrincipalKind.SITE, "kitchen"), kitchen)
+    home.authority.issue(ALICE, alice)
+    names = ("sonar", "encoder", "tracker", "control", "drive")
+    for name in names:
+        dormant(home, name)
+    site = home.site("kitchen", "ads", options=("--keys", str(kitchen)))
+    task = home.run("--keys", str(alice))
+    task.act("running")
+    lives = {name: home.state(component_of(name)) for name in names}
+
+    def renewed(days: float) -> None:
+        for folder in (alice, kitchen):
+            again = home.selfconf(
+                "keys", "renew", str(folder), "--keys", home.environment["SELFCONF_KEYS"], "--days", str(days)
+            )
+            assert again.ended() == 0, again.complaints
+
+    def say(words: str, *programs: Program) -> bool:
+        return home.until(lambda: all(words in one.complaints for one in programs))
+
+    renewed(12 * SECOND)
+    assert say("expires at ", site, task)
+    expired = [KeysFolder(folder).own() for folder in (alice, kitchen)]
+    expired += [KeysFolder(folder).own() for folder in (kitchen / "components").iterdir()]
+    renewed(1.0)
+    assert say("is good until ", site, task)
+    assert home.until(lambda: all(one.ends < datetime.now(timezone.utc) for one in expired))
+    for name in names:
+        before, after = lives[name], None
+        assert home.until(lambda name=name: home.state(component_of(name)) is not None)
+        after = home.state(component_of(name))
+        assert before is not None
+        assert after is not None
+        assert (after.life, after.active) == (before.life, True)
+    (home.folder / "tracker.fail").touch()
+    assert task.act("lost")["component"] == component_of("tracker"), "nothing was lost before"
+
+    renewed(5 * SECOND)
+    assert say("has expired at ", site, task)
+    assert "renew it with `selfconf keys renew" in site.complaints
+    assert task.end(signal.SIGKILL)
