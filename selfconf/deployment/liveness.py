@@ -144,7 +144,7 @@ class Liveness:
     def _judge(self, asked: Sequence[tuple[str, str]]) -> None:
         """Believe that lives have ended, unless they are back, or this node is or was cut off."""
         for chunk, life in asked:
-            if self.bus.link != self._link:
+            if self._cut_off or self.bus.link != self._link:
                 self._await_link()
                 return
             component, now = self._component(chunk), self.ecology.lives.get(chunk, ())
@@ -248,7 +248,6 @@ class Liveness:
         self._reopenings = [at for at in self._reopenings if now - at < REOPENINGS_WITHIN]
         if len(self._reopenings) < MOST_REOPENINGS and self.ecology.followed:
             self._reopenings.append(now)
-            self._link = ""
             self._await_link()
 
     def suspended(self) -> None:

@@ -56,7 +56,7 @@ def test_a_certificate_is_spoken_of_before_it_expires_and_shown_again_when_it_is
     watched.pass_days(0.2)
     (ahead,) = watched.said
     assert "the certificate of conf.alice expires at " in ahead
-    assert ahead.endswith(f"; renew it with `selfconf keys renew {tmp_path / 'alice'}`")
+    assert ahead.endswith(f"; renew it: selfconf keys renew {tmp_path / 'alice'}")
     watched.pass_days(2.0)
     assert "the certificate of conf.alice has expired at " in watched.said[1]
     assert watched.shown == []
@@ -146,5 +146,5 @@ def test_a_task_goes_on_over_the_expiry_of_every_certificate_in_it(home: Home) -
 
     renewed(5 * SECOND)
     assert say("has expired at ", site, task)
-    assert "renew it with `selfconf keys renew" in site.complaints
+    assert "renew it: selfconf keys renew" in site.complaints
     assert task.end(signal.SIGKILL)
