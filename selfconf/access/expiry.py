@@ -84,7 +84,9 @@ class CertificateWatch:
         ends, now = self._certificate.ends, self._now()
         folder = self._credentials.certificate.parent
         its_site = (folder / "components.pem").is_file()
-        renew = "its site renews it, while it has a certificate" if its_site else f"renew it: selfconf keys renew {folder}"
+        renew = (
+            "its site renews it, while it has a certificate" if its_site else f"renew it: selfconf keys renew {folder}"
+        )
         if ends < now:
             return f"{self._whose} has expired at {_at(ends)}: nobody believes it any more; {renew}"
         if ends - now < (ends - self._certificate.issued) / LAST_PART:

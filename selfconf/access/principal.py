@@ -2,6 +2,8 @@
 
 site.NAME   a site                       comp.KEY    a component; KEY is its chunk of the keys of the ecology
 conf.NAME   who may run and stop tasks   read.NAME   who may discover, query and watch
+
+The configurators of conf.NAME are called NAME-... in keys, so their NAME has no hyphen itself.
 """
 
 from __future__ import annotations
@@ -61,6 +63,12 @@ class Principal:
             found = cls(PrincipalKind(kind), checked_name(name, "the holder of a certificate"))
         except (ValueError, AuthorError):
             raise PeerError(f"{common_name!r} is no name of a site, component, configurator or reader") from None
+        if (
+            found.kind is PrincipalKind.CONFIGURATOR and "-" in name
+        ):  # conf.a speaks for all a-..., so for an a-b as well
+            raise PeerError(
+                f"{common_name!r} has a hyphen: the programs of a configurator are told apart by what follows one"
+            )
         if not dot or len(name) > LONGEST_NAME or (kind == "comp" and not _CHUNK.fullmatch(name)):
             raise PeerError(f"{common_name!r} is no name of a site, component, configurator or reader")
         return found
@@ -75,5 +83,6 @@ class Principal:
         except PeerError:
             raise AuthorError(
                 f"{text!r} names nobody who can have a certificate; write site.NAME, conf.NAME, read.NAME, or the IRI"
-                f" of a component; a NAME has at most {LONGEST_NAME} letters, digits, '.', '-' and '_'"
+                f" of a component; a NAME has at most {LONGEST_NAME} letters, digits, '.', '-' and '_', that of"
+                " conf.NAME no hyphen"
             ) from None

@@ -17,6 +17,15 @@ def test_a_common_name_stands_for_a_principal_and_back(name: str) -> None:
     assert Principal.of(name).common_name == name == str(Principal.written(name))
 
 
+def test_the_name_of_a_configurator_has_no_hyphen() -> None:
+    """The configurators of conf.a are called a-...: a conf.a-b would be one of them."""
+    with pytest.raises(PeerError, match="has a hyphen"):
+        Principal.of("conf.a-b")
+    with pytest.raises(AuthorError, match=r"names nobody.*conf.NAME no hyphen"):
+        Principal.written("conf.a-b")
+    assert Principal.of("site.a-b").name == "a-b"
+
+
 @pytest.mark.parametrize(
     "name",
     [
