@@ -12,11 +12,11 @@ only that this is still the one.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from selfconf.bus.port import Bus, Replies, Sample, Undo
-from selfconf.errors import PeerError, TurtleError
+from selfconf.errors import PeerError, SelfconfError, TurtleError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import Keys, component_chunk, life_of, owner_of, site_of
@@ -73,6 +73,8 @@ class Discovery:
     """What was left out, and why, in sentences."""
 
 
+Beliefs = Callable[[], Mapping[IRI, str]]
+"""Whose a component is that several sites advertise, by their names, as far as somebody has said so."""
 SiteLife = tuple[str, str]
 """A site by its name and its life; the life is empty for a site of before that does not say it."""
 
@@ -121,8 +123,9 @@ class _SiteAnswer:
 class EcologyView:
     """One ecology as seen from a bus: it can be discovered, and its lives followed."""
 
-    def __init__(self, bus: Bus, name: str) -> None:
-        self.bus, self.keys = bus, Keys(name)
+    def __init__(self, bus: Bus, name: str, believed: Beliefs | None = None) -> None:
+        """With keys, `believed` says whose a component is; without, it is that of the first site by name."""
+        self.bus, self.keys, self.believed = bus, Keys(name), believed
         self.lives: dict[str, tuple[str, ...]] = {}
         """The lives of each living component, sorted, by the component's chunk: more than one where processes clash."""
         self.discovery = Discovery()
@@ -286,23 +289,13 @@ class _Inquiry:
             self._complaints.append(f"left out {page.component} of site {name}: its page {page.index} is that of {of}")
 
     def _result(self, missing: list[SiteLife]) -> Discovery:
-        found: dict[IRI, FoundAdvertisement] = {}
         read = {site: self._read(site, answer) for site, answer in sorted(self._answers.items())}
         self.ecology.known = {site: known for site, known in read.items() if site not in missing}
         names = _Names(self._sites())
         self._complaints = _few(self._complaints, "of several sites")
-        for site, known in read.items():
+        for known in read.values():
             self._complaints += known.complaints
-            twice: list[str] = []
-            for one in known.found:
-                component = one.advertisement.component
-                if component in found:
-                    other = names.of((found[component].site, found[component].site_life))
-                    text = f"left out {component} of site {names.of(site)}: site {other} advertises it too"
-                    twice.append(text)
-                else:
-                    found[component] = one
-            self._complaints += _few(twice, f"of site {names.of(site)}")
+        found = self._undisputed([one for known in read.values() for one in known.found], names)
         self._complaints += names.complaints()
         self._complaints += [
             f"site {site} is insecure: it listens beyond its host without keys" for site in sorted(self._insecure)
@@ -316,6 +309,49 @@ class _Inquiry:
             answered,
             self._complaints,
         )
+
+    def _undisputed(self, advertised: Sequence[FoundAdvertisement], names: _Names) -> dict[IRI, FoundAdvertisement]:
+        """The advertisement of each component; of one that several sites advertise, that of the site that is believed.
+
+        Without keys it is the first by name, and the others are named. With keys nobody is believed until a person has
+        said whose it is: then it is left out.
+        """
+        claims: dict[IRI, list[FoundAdvertisement]] = {}
+        for one in advertised:
+            claims.setdefault(one.advertisement.component, []).append(one)
+        found = {component: claim[0] for component, claim in claims.items()}
+        disputed = [component for component, claim in claims.items() if len(claim) > 1]
+        decided = self._decided() if disputed else {}
+        said: list[str] = []
+        for component in disputed:
+            claim = claims[component]
+            sites = [names.of((one.site, one.site_life)) for one in claim]
+            if decided is None:
+                said += [
+                    f"left out {component} of site {site}: site {sites[0]} advertises it too" for site in sites[1:]
+                ]
+                continue
+            theirs = [one for one in claim if one.site == decided.get(component)]
+            if len(theirs) == 1:
+                found[component] = theirs[0]
+            else:
+                del found[component]
+                said.append(
+                    f"left out {component}: it is disputed, for the sites {' and '.join(sites)} advertise it; say whose"
+                    f" it is: selfconf access --believe SITE {component}"
+                )
+        self._complaints += _few(said, "that are disputed" if decided is not None else "of components that others have")
+        return found
+
+    def _decided(self) -> Mapping[IRI, str] | None:
+        """Whose disputed components are, as somebody has said; None without keys."""
+        if self.ecology.believed is None:
+            return None
+        try:
+            return self.ecology.believed()
+        except SelfconfError as error:
+            self._complaints.append(str(error))
+            return {}
 
     def _read(self, site: SiteLife, answer: _SiteAnswer) -> KnownSite:
         """What a site has answered, now or before."""

@@ -10,6 +10,7 @@ import pytest
 from selfconf.bus.memory import Faults, Network, _Request
 from selfconf.bus.port import Request
 from selfconf.discovery import DISCOVERY, LARGEST_ADVERTISEMENT, Discovery, EcologyView
+from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
@@ -357,3 +358,39 @@ def test_a_lossy_network_shows_as_missing_sites_never_as_wrong_ones(tmp_path: Pa
         at = {found.site for found in discovery.found.values()}
         assert at | set(discovery.missing) == {"living-room", "astrid"}
         assert not at & set(discovery.missing)
+
+
+def test_without_keys_a_component_of_two_sites_is_that_of_the_first(field: Field) -> None:
+    for name in ("attic", "cellar"):
+        field.site(name, "tracker")
+    found = field.discover()
+    assert found.found[TRACKER].site == "attic"
+    assert found.complaints == [f"left out {TRACKER} of site cellar: site attic advertises it too"]
+
+
+@pytest.mark.parametrize(
+    ("believed", "site"), [({}, None), ({TRACKER: "cellar"}, "cellar"), ({TRACKER: "elsewhere"}, None)]
+)
+def test_with_keys_a_disputed_component_is_nobodys_until_somebody_says_whose(
+    believed: dict[IRI, str], site: str | None, field: Field
+) -> None:
+    field.ecology.believed = lambda: believed
+    field.site("attic", "tracker", "drive")
+    field.site("cellar", "tracker")
+    found = field.discover()
+    assert iri("astrid-drive") in found.found
+    assert (found.found[TRACKER].site if TRACKER in found.found else None) == site
+    disputed = f"left out {TRACKER}: it is disputed, for the sites attic and cellar advertise it; say whose it is: "
+    assert [one.startswith(disputed) for one in found.complaints] == [True] * (site is None)
+
+
+def test_a_note_of_beliefs_that_cannot_be_read_is_told_and_believes_nobody(field: Field) -> None:
+    def broken() -> dict[IRI, str]:
+        raise AuthorError("is no object of components", file="believed.json")
+
+    field.ecology.believed = broken
+    for name in ("attic", "cellar"):
+        field.site(name, "tracker")
+    found = field.discover()
+    assert TRACKER not in found.found
+    assert "believed.json: is no object of components" in found.complaints

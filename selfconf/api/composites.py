@@ -25,6 +25,7 @@ from selfconf.api.reading import text_of
 from selfconf.bus.port import Bus, Urgency
 from selfconf.composition import Composer
 from selfconf.deployment import RunRequest, TaskRunner
+from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.profile import Profile
@@ -143,13 +144,14 @@ class Composites:
         document_of: Callable[[Advertisement], Document],
         complain: Callable[[str], None],
         aside: Aside = lambda work: work(),
+        believed: Beliefs | None = None,
     ) -> None:
         """`document_of` reads the document in which a composite is advertised, and raises SelfconfError.
 
-        `complain` hears why a composite does not live.
+        `complain` hears why a composite does not live. With keys, `believed` says whose a component is.
         """
         self._bus, self._ecology, self._document_of = bus, ecology, document_of
-        self._complain, self._aside = complain, aside
+        self._complain, self._aside, self._believed = complain, aside, believed
         self._advertisements: Mapping[IRI, Advertisement] = {}
         self.living: dict[IRI, InsideOfComposite] = {}
         self._told: dict[IRI, str] = {}
@@ -199,6 +201,7 @@ class Composites:
             not_judged=composer.not_judged,
             passed_over=composer.passed_over,
             name=safe_name(component.short),
+            believed=self._believed,
             aside=self._aside,
         )
 

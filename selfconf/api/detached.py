@@ -14,6 +14,7 @@ from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator.state import Policy
 from selfconf.deployment import RunRequest
+from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome
@@ -86,7 +87,7 @@ def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Compos
         return task, method, method.composer(task)
 
 
-def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
+def request_of(record: TaskRecord, aside: Aside, believed: Beliefs | None = None) -> RunRequest:
     """The request by which a site runs a task that it keeps. Raises SelfconfError for what cannot be read."""
     task, method, composer = recorded_task(record)
     options = record.options
@@ -105,6 +106,7 @@ def request_of(record: TaskRecord, aside: Aside) -> RunRequest:
         patient=True,
         priority=record.priority,
         upgrade=options.get("upgrade"),
+        believed=believed,
         aside=aside,
         record=record,
     )

@@ -89,6 +89,11 @@ class Joining:
         return self.bus.endpoint or self._reached_at
 
     @property
+    def relays(self) -> bool:
+        """Whether others are connected to a hub of this site."""
+        return bool(self.bus.endpoint)
+
+    @property
     def endpoints(self) -> list[str]:
         """Where a component of this site looks for a hub: where the site is reached first."""
         return list(dict.fromkeys([self.endpoint, *self._usual]))

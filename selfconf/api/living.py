@@ -17,7 +17,7 @@ from selfconf.api.deployed import deployed_body
 from selfconf.api.detached import task_record
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
-from selfconf.api.membership import MEMBERS, check_may_run, member
+from selfconf.api.membership import MEMBERS, beliefs, check_may_run, member
 from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.site_logs import LogSource
 from selfconf.api.task import TaskSpecification
@@ -153,7 +153,7 @@ class LivingEcology(Ecology):
         """Connects, with keys by showing a certificate; raises NetworkError if no site of the ecology answers."""
         self.name, self.endpoints, self._credentials = name, tuple(endpoints), credentials
         self._bus = member(name, endpoints, credentials)
-        self._view = EcologyView(self._bus, name)
+        self._view = EcologyView(self._bus, name, beliefs(credentials))
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self.silent: tuple[str, ...] = ()

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.discovery import Beliefs
 from selfconf.errors import NetworkError
 
 MEMBERS = ("conf", "read", "site")
@@ -26,6 +27,16 @@ def member(ecology: str, endpoints: Sequence[str], credentials: Credentials | No
             bus.close()
             raise
     return bus
+
+
+def beliefs(credentials: Credentials | None) -> Beliefs | None:
+    """Whose disputed components are for a program, by the folder of keys that it was given; None without keys."""
+    if credentials is None:
+        return None
+    from selfconf.access import believed  # what it needs is an extra
+
+    folder = credentials.folder
+    return lambda: believed(folder)
 
 
 def check_may_run(credentials: Credentials | None) -> None:

@@ -8,7 +8,7 @@ from types import TracebackType
 
 from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.detached import task_record
-from selfconf.api.membership import check_may_run, configurator_name, member
+from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
 from selfconf.api.places import Places
 from selfconf.api.task import TaskSpecification
 from selfconf.api.work_queue import WorkQueue
@@ -84,6 +84,7 @@ class Run:
                 passed_over=self._composer.passed_over,
                 policy=policy,
                 patient=wait,
+                believed=beliefs(credentials),
                 name=name,
                 priority=self.task.document.task.priority if priority is None else priority,
                 upgrade=upgrade,

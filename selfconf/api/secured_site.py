@@ -14,6 +14,7 @@ from selfconf.access import (
     KeysFolder,
     Principal,
     PrincipalKind,
+    believed,
     first_rules,
     introduce,
 )
@@ -67,6 +68,13 @@ class SecuredSite:
         sharing = sorted(c for c, first in self._programs().items() if first == program and c != program)
         return self._folder.component(Principal.component(program), [Principal.component(c) for c in sharing])
 
+    def believed(self) -> Mapping[IRI, str]:
+        """Whose a component is for the tasks that this site runs: its own are its own, unless somebody says otherwise.
+
+        Raises AuthorError.
+        """
+        return {**dict.fromkeys(self._programs(), self.name), **believed(self._folder.path)}
+
     def keep_door(self, site: Site, joining: Joining, complain: Callable[[str], None]) -> None:
         """From now on, let in who shows a good certificate, and renew what expires."""
         self._programs = lambda: site.programs
@@ -78,7 +86,7 @@ class SecuredSite:
             self._credentials,
             self._programs,
             lambda: (one.site for one in rendezvous.local_sites(site.keys.ecology)),
-            lambda: bool(site.bus.endpoint),
+            lambda: joining.relays,
             lambda rules: joining.secure(self._security(rules)),
             complain,
             self._refusals,

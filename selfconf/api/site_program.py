@@ -23,6 +23,7 @@ from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.port import Bus
 from selfconf.bus.zenoh_bus import client
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
+from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
@@ -92,12 +93,13 @@ def serve(
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
         log_path = _log_path(log, ecology, name).absolute()
         joining.log = str(log_path)
-        composites = Composites(bus, ecology, described_in, complain, work.work)
+        believed = None if secured is None else secured.believed
+        composites = Composites(bus, ecology, described_in, complain, work.work, believed)
         keys_of = None if secured is None else secured.keys_of
         site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond, changed=composites.refresh)
         if secured is not None:
             secured.keep_door(site, joining, complain)
-        keeper = Keeper(bus, ecology, name, records, partial(_request_of, work))
+        keeper = Keeper(bus, ecology, name, records, partial(_request_of, work, believed))
         joining.announce()
         bus.watch(site.keys.site_life(name, "*"), partial(_met, complain, site))
     for unknown in unknown_in_ecology(site.shelf.advertisements):
@@ -186,8 +188,8 @@ def _log_path(folder: Path | None, ecology: str, name: str) -> Path:
     return folder / f"{ecology}@{name}.log"
 
 
-def _request_of(work: WorkQueue, record: TaskRecord) -> RunRequest:
+def _request_of(work: WorkQueue, believed: Beliefs | None, record: TaskRecord) -> RunRequest:
     """The request to run a task that the site keeps; what reads it is loaded with the first one."""
     from selfconf.api.detached import request_of
 
-    return request_of(record, work.work)
+    return request_of(record, work.work, believed)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from selfconf.configurator.state import Policy
+from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Outcome, Refusal, Undecided
@@ -38,6 +39,8 @@ class RunRequest:
     """The name of the task in the ecology; by default that of its template."""
     priority: int = 0
     """Of several tasks that want one component, the one of the highest priority has it."""
+    believed: Beliefs | None = None
+    """With keys: whose a component is that several sites advertise, as far as somebody has said so."""
     outside: IRI | None = None
     """The composite of which the task is the inside, if it is one."""
     received: Callable[[], Mapping[str, tuple[Wire, ...]]] = dict

@@ -13,9 +13,10 @@ from types import FrameType
 
 import uvicorn
 
-from selfconf.api.membership import member
+from selfconf.api.membership import beliefs, member
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
+from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
@@ -56,7 +57,7 @@ def serve_ecology(
         try:
             bus = member(ecology, endpoints, credentials)
             try:
-                asyncio.run(_serve(bus, ecology, record, place, seconds, listening))
+                asyncio.run(_serve(bus, ecology, record, place, seconds, listening, beliefs(credentials)))
             finally:
                 bus.close()
         finally:
@@ -104,6 +105,7 @@ async def _serve(
     place: socket.socket,
     seconds: float,
     listening: Callable[[str], None],
+    believed: Beliefs | None,
 ) -> None:
     loop, metrics = asyncio.get_running_loop(), Metrics()
     board = Board(ecology, metrics)
@@ -122,7 +124,7 @@ async def _serve(
     def tell(change: EcologyChange) -> None:
         record.hands.submit(take, change)
 
-    watcher = EcologyWatcher(bus, ecology, tell, aside=record.hands.submit)
+    watcher = EcologyWatcher(bus, ecology, tell, aside=record.hands.submit, believed=believed)
     bus.run_aside()
     bus.wake_up(watcher.begin)
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 
 from selfconf.bus.port import Bus
-from selfconf.discovery import Discovery, EcologyView
+from selfconf.discovery import Beliefs, Discovery, EcologyView
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.rdf import turtle
@@ -33,10 +33,14 @@ class EcologyWatcher:
         tell: Callable[[EcologyChange], None],
         clock: Callable[[], float] = time.time,
         aside: Callable[[Callable[[], None]], object] = lambda work: work(),
+        believed: Beliefs | None = None,
     ) -> None:
-        """`aside` reads what the sites have answered on another thread than the bus's."""
+        """`aside` reads what the sites have answered on another thread than the bus's.
+
+        With keys, `believed` says whose a component is that several sites advertise.
+        """
         self.bus, self._tell, self._clock = bus, tell, clock
-        self.view = EcologyView(bus, ecology)
+        self.view = EcologyView(bus, ecology, believed)
         self.view.aside = lambda work: (aside(work), None)[1]
         self.keys = self.view.keys
         self._components: dict[IRI, Body] = {}
