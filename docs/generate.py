@@ -45,8 +45,8 @@ def project_file() -> str:
 
 A project says once, in a file `{PROJECT_FILE}`, what its commands would have to be told each time. It is looked for in
 the current folder and upward from it. Each key is the option of that name; what is typed goes before what the
-environment says (`$SELFCONF_ECOLOGY`, `$SELFCONF_CONNECT`), and that before the file. `--help` shows where each value
-comes from now, and `selfconf validate` checks the file.
+environment says (`$SELFCONF_ECOLOGY`, `$SELFCONF_CONNECT`, `$SELFCONF_KEYS`), and that before the file. `--help` shows
+where each value comes from now, and `selfconf validate` checks the file.
 
 ```toml
 ecology = "home"

@@ -88,6 +88,7 @@ def _is_value(value: object) -> str:
 PROJECT_KEYS: Mapping[str, ProjectKey] = {
     "ecology": ProjectKey("the name of the living ecology", _is_name),
     "connect": ProjectKey("where its sites listen, such as tcp/10.0.0.2:7447; one or a list", _is_texts),
+    "keys": ProjectKey("a folder of keys, as `selfconf keys` makes them", _is_text, paths=True),
     "ads": ProjectKey("advertisements in files and folders; one or a list", _is_texts, paths=True),
     "endpoint": ProjectKey("a SPARQL endpoint that holds the advertisements, in place of ads", _is_text),
     "ontology": ProjectKey(
@@ -108,7 +109,10 @@ class Project:
     path: Path = Path(PROJECT_FILE)
     """The file, as seen from the current folder."""
     values: Mapping[str, Any] = field(default_factory=dict)
-    """By key: texts, numbers, and for `ads`, `ontology` and `connect` lists, the paths as seen from the folder."""
+    """By key: texts, numbers, and for `ads`, `ontology` and `connect` lists, the paths as seen from the folder.
+
+    `keys` is one path.
+    """
     bound: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """The bindings by template and parameter."""
     lines: Mapping[tuple[str, ...], int] = field(default_factory=dict)
@@ -267,7 +271,8 @@ def _settled(body: Mapping[str, Any], folder: Path) -> Iterator[tuple[str, Any]]
         if key in PROJECT_KEYS:
             setting = PROJECT_KEYS[key]
             if setting.paths:
-                yield key, [Path(os.path.relpath(folder / text)) for text in _listed(value)]
+                found = [Path(os.path.relpath(folder / text)) for text in _listed(value)]
+                yield key, found if setting.wrong is _is_texts else found[0]
             else:
                 yield key, _listed(value) if setting.wrong is _is_texts else value
 

@@ -17,7 +17,11 @@ from typing import Any
 from selfconf.errors import AuthorError
 from selfconf.project import PROJECT_KEYS, Project, project_path, read_project
 
-VARIABLES: Mapping[str, str] = {"ecology": "SELFCONF_ECOLOGY", "connect": "SELFCONF_CONNECT"}
+VARIABLES: Mapping[str, str] = {
+    "ecology": "SELFCONF_ECOLOGY",
+    "connect": "SELFCONF_CONNECT",
+    "keys": "SELFCONF_KEYS",
+}
 # Those of `selfconf.rendezvous`, which is not loaded to parse arguments; a test compares them.
 NAMING = ("ads", "endpoint", "ecology", "connect")
 """The options that say which ecology is meant: where one of them is given, the file's `ads` and `endpoint` are not."""
@@ -47,7 +51,7 @@ class Settings:
     def fill(self, given: argparse.Namespace) -> None:
         """Give every option that was not typed its value, and the arguments the project."""
         from_environment = {dest for dest, variable in VARIABLES.items() if self._environment.get(variable)}
-        named = from_environment | {dest for dest in NAMING if getattr(given, dest, None)}
+        named = (from_environment & set(NAMING)) | {dest for dest in NAMING if getattr(given, dest, None)}
         given.project, given.from_project = self.project, set()
         for dest, default in self._defaults.items():
             if hasattr(given, dest):

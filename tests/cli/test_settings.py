@@ -39,7 +39,11 @@ def configure(capsys: pytest.CaptureFixture[str], *arguments: str) -> Outcome:
 
 
 def test_the_variables_are_those_of_the_programs() -> None:
-    assert set(VARIABLES.values()) == {rendezvous.ECOLOGY_VARIABLE, rendezvous.CONNECT_VARIABLE}
+    assert set(VARIABLES.values()) == {
+        rendezvous.ECOLOGY_VARIABLE,
+        rendezvous.CONNECT_VARIABLE,
+        rendezvous.KEYS_VARIABLE,
+    }
 
 
 @pytest.mark.usefixtures("project")
@@ -162,3 +166,37 @@ def test_in_a_project_site_and_run_need_no_options_and_run_starts_a_site_only_wh
     assert joined.act("running")["configuration"]["roles"]
     assert joined.children() == []
     assert joined.end() == 0
+
+
+@pytest.mark.process
+def test_the_keys_of_a_project_are_those_of_its_commands(tmp_path: Path) -> None:
+    home = Home(tmp_path, keys=True)
+    try:
+        given = home.environment.pop("SELFCONF_KEYS")
+        (tmp_path / "selfconf.toml").write_text(f'ecology = "{home.ecology}"\nkeys = "{Path(given).name}"\n')
+        home.site("a", "ads/tracker.ttl")
+        assert home.endpoint().startswith("tls/")
+        found = home.selfconf("discover", "--format", "json")
+        assert found.ended() == 0, found.complaints
+        home.environment["SELFCONF_KEYS"] = str(tmp_path / "nowhere")
+        refused = home.selfconf("discover")
+        assert refused.ended() == 2
+        assert "there is no folder" in refused.complaints
+    finally:
+        home.close()
+
+
+def test_keys_in_a_project_file_are_one_folder_that_is_there(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for text, code, words in (
+        ('keys = ["a", "b"]', "SC-P03", "takes a text in quotes"),
+        ("keys = 3", "SC-P03", "takes a text in quotes"),
+        ('keys = "nowhere"', "SC-P05", "no file or folder nowhere"),
+    ):
+        (tmp_path / "selfconf.toml").write_text(text)
+        outcome = run(capsys, "validate", "selfconf.toml")
+        assert outcome.code == 1
+        assert f"selfconf.toml:1:1: error[{code}]" in outcome.out
+        assert words in outcome.out
