@@ -22,6 +22,7 @@ from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
+from selfconf.serve.connections import BoundedConnection
 from selfconf.serve.fits import Fits
 from selfconf.serve.history import History
 from selfconf.serve.metrics import Metrics
@@ -128,7 +129,9 @@ async def _serve(
     bus.run_aside()
     bus.wake_up(watcher.begin)
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))
-    config = uvicorn.Config(app, log_level="warning", access_log=False, lifespan="off", ws="none")
+    config = uvicorn.Config(
+        app, log_level="warning", access_log=False, lifespan="off", ws="none", http=BoundedConnection
+    )
     server = _Server(config, board, onlookers)
     config.timeout_graceful_shutdown = LAST_ANSWERS
     listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")

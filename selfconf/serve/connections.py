@@ -1,0 +1,59 @@
+"""Connections of HTTP that cannot be held for ever: bounds on how many there are, and how long a request takes.
+
+A client that sends a byte now and then, in the head of a request or in its body, would otherwise keep a connection for
+as long as it likes, and some hundreds of them all that a process can have ("slowloris"). uvicorn bounds the size of a
+head and the time between two requests, not the time of one.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import h11
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+REQUEST_SECONDS = 15.0
+"""Seconds from the opening of a connection, or the first byte of a further request, to the last byte of the request."""
+MOST_CONNECTIONS = 400
+"""Connections at a time; a browser has up to six, one of them for the stream of events."""
+
+
+class BoundedConnection(H11Protocol):
+    """One connection: closed if its request does not arrive in time, or if there are too many."""
+
+    _late: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: Any) -> None:
+        """Begin to wait for a request."""
+        super().connection_made(transport)
+        if len(self.connections) > MOST_CONNECTIONS:
+            self.transport.close()
+        else:
+            self._wait()
+
+    def data_received(self, data: bytes) -> None:
+        """Wait for the rest of a request, if there is one."""
+        self._wait()
+        super().data_received(data)
+        if self.conn.their_state not in (h11.IDLE, h11.SEND_BODY):
+            self._wait_no_more()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Wait for nothing."""
+        self._wait_no_more()
+        super().connection_lost(exc)
+
+    def _wait(self) -> None:
+        if self._late is None:
+            self._late = self.loop.call_later(REQUEST_SECONDS, self._give_up)
+
+    def _wait_no_more(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
+
+    def _give_up(self) -> None:
+        self._late = None
+        if not self.transport.is_closing():
+            self.transport.abort()  # not `close`, which waits until what is to be sent has been taken

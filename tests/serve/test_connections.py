@@ -1,0 +1,108 @@
+"""Who sends a request byte by byte, or opens connections without an end, keeps nobody else from being served."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import uvicorn
+
+from selfconf.serve import connections
+from selfconf.serve.connections import BoundedConnection
+
+SHORT = 0.3
+HEAD = b"POST /x HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\n"
+
+
+async def app(scope: Any, receive: Any, send: Any) -> None:
+    """Answers with the body of the request, once it is there."""
+    body, more = b"", True
+    while more:
+        event = await receive()
+        if event["type"] == "http.disconnect":
+            return
+        body, more = body + event.get("body", b""), event.get("more_body", False)
+    await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"%d" % len(body))]})
+    if scope["path"] == "/slow":
+        await asyncio.sleep(3 * SHORT)  # an answer that takes its time
+    await send({"type": "http.response.body", "body": body})
+
+
+@pytest.fixture
+def place(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, int]]:
+    """A server that has little patience and few connections."""
+    monkeypatch.setattr(connections, "REQUEST_SECONDS", SHORT)
+    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 20)
+    listening = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(app, log_level="error", lifespan="off", ws="none", http=BoundedConnection)
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=lambda: asyncio.run(server.serve(sockets=[listening])))
+    thread.start()
+    yield listening.getsockname()
+    server.should_exit = True
+    thread.join()
+    listening.close()
+
+
+def connected(place: tuple[str, int]) -> socket.socket:
+    """A connection."""
+    return socket.create_connection(place, 5.0)
+
+
+def closed(link: socket.socket) -> bool:
+    """Whether the other end closes a connection, without an answer."""
+    try:
+        return link.recv(100) == b""
+    except ConnectionResetError:
+        return True
+
+
+def sends(link: socket.socket) -> bool:
+    """Whether one more byte can be sent."""
+    try:
+        link.sendall(b"G")
+    except OSError:
+        return False
+    return True
+
+
+def answered(place: tuple[str, int], path: bytes = b"/x") -> bool:
+    """Whether an honest request is answered."""
+    with connected(place) as link:
+        link.sendall(HEAD.replace(b"/x", path) + b"hello")
+        said = b""
+        while b"hello" not in said and (more := link.recv(1000)):
+            said += more
+        return said.startswith(b"HTTP/1.1 200") and said.endswith(b"hello")
+
+
+@pytest.mark.parametrize("sent", [b"", b"GET /", HEAD, HEAD + b"hel"], ids=["nothing", "head", "no body", "body"])
+def test_a_request_that_does_not_arrive_in_time_is_not_waited_for(sent: bytes, place: tuple[str, int]) -> None:
+    with connected(place) as link:
+        link.sendall(sent)
+        assert closed(link)
+
+
+def test_a_byte_now_and_then_does_not_help(place: tuple[str, int]) -> None:
+    began = time.monotonic()
+    with connected(place) as link:
+        while sends(link) and time.monotonic() < began + 20 * SHORT:
+            threading.Event().wait(SHORT / 10)
+    assert time.monotonic() < began + 20 * SHORT
+
+
+def test_an_answer_may_take_longer(place: tuple[str, int]) -> None:
+    assert answered(place, b"/slow")
+
+
+def test_who_opens_connections_without_an_end_is_served_no_longer_than_the_others(place: tuple[str, int]) -> None:
+    held = [connected(place) for _ in range(40)]
+    assert sum(map(closed, held)) == 40
+    assert answered(place)
+    for link in held:
+        link.close()
