@@ -213,7 +213,8 @@ class LivingEcology(Ecology):
         A component that lives and does not answer is named among the `complaints`.
         """
         discovery = self.discover()
-        replies = self._ask(self._view.keys.any_call("state"), seconds=STATES)
+        asked = self._view.keys.any_call("state")
+        replies = Replies() if self._looks_on_only else self._ask(asked, seconds=STATES)  # nobody would hear it
         found = []
         silent: list[str] = []
         for one in component_states(discovery, self._view.keys, replies):

@@ -110,7 +110,7 @@ def test_a_task_goes_on_over_the_expiry_of_every_certificate_in_it(home: Home) -
     home.authority.issue(Principal(PrincipalKind.SITE, "kitchen"), kitchen)
     home.authority.issue(ALICE, alice)
     names = ("sonar", "encoder", "tracker", "control", "drive")
-    for name in names:
+    for name in (*names, "odometry"):
         dormant(home, name)
     site = home.site("kitchen", "ads", options=("--keys", str(kitchen)))
     task = home.run("--keys", str(alice))

@@ -19,7 +19,7 @@ from selfconf.access import KeysFolder, PrincipalKind, introduce
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh_bus import ZenohBus, client
-from selfconf.errors import PeerError
+from selfconf.errors import NetworkError, PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
@@ -137,6 +137,13 @@ class Program:
     def line(self) -> str:
         """The next line on stdout; empty if none comes."""
         return (self._line(time.monotonic() + PATIENCE) or b"").decode()
+
+    def rest(self) -> str:
+        """What is left on stdout, until it ends."""
+        deadline, said = time.monotonic() + PATIENCE, list[bytes]()
+        while (line := self._line(deadline)) is not None:
+            said.append(line)
+        return b"\n".join((*said, self._unread)).decode()
 
     def send(self, number: int) -> None:
         """Send a signal to the process."""
@@ -283,7 +290,11 @@ class Home:
         if self._bus is None or not self._bus.link:
             if self._bus is not None:
                 self._bus.close()
-            self._bus = self.node()
+                self._bus = None
+            try:
+                self._bus = self.node()
+            except NetworkError:  # the hub is opened anew
+                return Replies()
         replies: list[Replies] = []
         self._bus.ask(key, payload, seconds, replies.append)
         bus = self._bus

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import believed
+from selfconf.access import Principal, PrincipalKind, believed
 from tests.cli.command import run
 from tests.cli.processes import Home, component_of, dormant
+from tests.effort import of_keys
 
 pytestmark = pytest.mark.process
 
@@ -27,6 +28,14 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
         task.act("running")
         yield home
     home.close()
+
+
+@pytest.fixture(scope="module")
+def alice(running: Home) -> Path:
+    """The keys of a reader."""
+    assert running.authority is not None
+    running.authority.issue(Principal(PrincipalKind.READER, "alice"), running.folder / "alice")
+    return running.folder / "alice"
 
 
 @pytest.fixture(autouse=True)
@@ -64,6 +73,39 @@ def test_a_reader_looks_on_and_is_told_that_it_may_do_no_more(
     run(capsys, "keys", "issue", "read.alice", "--out", str(tmp_path / "alice"))
     assert "person-tracker" in run(capsys, "discover", *running.arguments(), *keys).out
     assert run(capsys, "stop", "walk", *running.arguments(), *keys).is_one_sentence("read.alice may look on only")
+
+
+@pytest.mark.parametrize(
+    ("command", "code", "words"),
+    [
+        (("discover",), 0, ("person-tracker", "takes keys of conf.NAME")),
+        (("top", "--format", "json"), 0, ("person-tracker", "takes keys of conf.NAME")),
+        (("status",), 0, ("running for",)),
+        (("tasks",), 0, ("walk",)),
+        (("why", "person-tracker"), 0, ("person-tracker", "walk")),
+        (("query", "SELECT (COUNT(?c) AS ?n) { ?c a sc:Component }"), 0, ("7",)),
+        (("echo", "person-tracker", "pose"), 2, ("keys of conf.NAME",)),
+        (("run", "navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x"), 2, ("read.alice may look on only",)),
+        (("site", "restart", "person-tracker"), 2, ("read.alice may look on only",)),
+    ],
+    ids=lambda value: value[0] if isinstance(value, tuple) else "",
+)
+@of_keys
+def test_each_command_of_a_reader_shows_what_it_may_see_or_says_what_it_takes(
+    command: tuple[str, ...], code: int, words: tuple[str, ...], running: Home, alice: Path
+) -> None:
+    program = running.selfconf(*command, *running.arguments(), "--keys", str(alice))
+    said = program.rest()
+    assert program.ended() == code, program.complaints
+    assert all(word in said + program.complaints for word in words), said + program.complaints
+
+
+@of_keys
+def test_a_reader_that_uses_these_commands_is_accused_of_nothing(
+    running: Home, alice: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (site,) = run(capsys, "access", *running.arguments(), "--format", "json").body["sites"]
+    assert [one for one in site["refused"] if one["principal"] == "read.alice"] == []
 
 
 def test_whose_a_component_is_is_noted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
