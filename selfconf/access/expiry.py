@@ -83,7 +83,7 @@ class CertificateWatch:
         """What is to be said of the certificate; nothing most of the time."""
         ends, now = self._certificate.ends, self._now()
         folder = self._credentials.certificate.parent
-        its_site = (folder / "components.pem").is_file()
+        its_site = (folder / "components.pem").is_file() and not (folder / "components.key").is_file()
         renew = (
             "its site renews it, while it has a certificate" if its_site else f"renew it: selfconf keys renew {folder}"
         )
