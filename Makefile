@@ -26,9 +26,12 @@ test: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
 	$(BIN)/python -m pytest $(PARALLEL) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.alone $(VENV)/tests.xml
 
-# The tests that start programs once more, each ecology with keys.
+# The tests that start programs once more, each ecology with keys: a job of its own, as it takes as long as the others.
+# One that starves among others is run once more, alone, as by `make test`.
 test-keys: $(VENV)/with-dev
-	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) -m process tests/access tests/cli tests/api
+	@rm -f $(VENV)/tests.xml
+	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) -m process --junitxml $(VENV)/tests.xml \
+		tests/access tests/cli tests/api || SELFCONF_TEST_KEYS=1 $(BIN)/python -m tests.alone $(VENV)/tests.xml
 
 # The inner loop: without tests that start processes or are slow, and a tenth of the examples of each property.
 quick: $(VENV)/with-dev
@@ -40,7 +43,8 @@ quick: $(VENV)/with-dev
 nightly: $(VENV)/with-dev fuzz
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/composition/test_searches.py \
 		tests/test_certificate.py tests/faults tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
-		tests/test_compare_benchmark.py tests/test_ci_for_users.py
+		tests/test_compare_benchmark.py tests/test_ci_for_users.py tests/access/test_expiry.py \
+		tests/access/test_intruder.py tests/access/test_two_hosts.py tests/cli/test_access.py
 	$(BIN)/python -m benchmarks.history --kills 100
 
 # Ten thousand mangled messages, payloads, advertisements, certificates and HTTP requests each; some minutes.

@@ -2,11 +2,17 @@
 
     python -m benchmarks.access [--rounds 3] [--smoke]
 
+It takes four minutes a round.
+
 All processes are real, and each round has a new ecology of either kind.
 
     failover    FAIL to the first message of the new source, without the search (`benchmarks.failover`)
     discovery   `living.discover()` in a joined ecology of 1,000 components of one site
-    signal      put to callback over the hub, both ends in this process, as raw bytes on a declared key
+    signal      put to callback over the hub, both ends in this process, as raw bytes on a declared key; one after the
+                other, and many a second
+
+With keys a site reads in Zenoh's log what its hub refuses, and Zenoh writes a line for each message that passes. What
+that costs is what differs between `with keys` and `with keys, log off` (RUST_LOG=off).
 """
 
 from __future__ import annotations
@@ -34,8 +40,12 @@ from selfconf.protocol.keys import Keys
 SIZES = (100, 300_000)
 """Bytes of a signal."""
 PATIENCE = 20.0
-Times = dict[tuple[str, bool], list[float]]
-"""Seconds by what was measured, and whether with keys."""
+SETTLED = 0.2
+RATES = (1_000, 10_000)
+"""Signals of 100 bytes a second."""
+PLAIN, KEYED, UNREAD = "without keys", "with keys", "with keys, log off"
+Times = dict[tuple[str, str], list[float]]
+"""Seconds by what was measured, and in which of the three ways."""
 
 
 def main() -> None:
@@ -44,26 +54,32 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--smoke", action="store_true", help="one short round, to see that it works")
     given = parser.parse_args()
-    trials, components, signals = (2, 20, 20) if given.smoke else (20, 1000, 300)
+    trials, components, signals, seconds = (2, 20, 20, 0.2) if given.smoke else (20, 1000, 300, 5.0)
     times: Times = {}
+    ways = (PLAIN, KEYED, UNREAD)
     for number in range(1 if given.smoke else given.rounds):
-        for keyed in (False, True) if number % 2 == 0 else (True, False):
-            with tempfile.TemporaryDirectory() as folder, ecology_of(Path(folder), keyed) as keys:
-                found = failover.measure(trials, keys=keys)
-                times.setdefault(("failover", keyed), []).extend(found["undecided"])
-                observe(Path(folder), keyed, keys, components, signals, times)
+        for way in ways if number % 2 == 0 else ways[::-1]:
+            with tempfile.TemporaryDirectory() as folder, ecology_of(Path(folder), way) as keys:
+                if way != UNREAD:  # for these, signals are few
+                    found = failover.measure(trials, keys=keys)
+                    times.setdefault(("failover", way), []).extend(found["undecided"])
+                    observe(Path(folder), way, keys, components, signals, times)
+                flood(Path(folder), way, keys, seconds, times)
     print(report(times))
 
 
 @contextmanager
-def ecology_of(folder: Path, keyed: bool) -> Iterator[Path | None]:
+def ecology_of(folder: Path, way: str) -> Iterator[Path | None]:
     """A runtime folder of its own, and the folder of an authority if there are to be keys."""
     os.environ["SELFCONF_RUNTIME_DIR"] = str(folder / "runtime")
-    os.environ.pop("SELFCONF_KEYS", None)
-    yield KeysFolder.init(folder / "keys").path if keyed else None
+    for name in ("SELFCONF_KEYS", "RUST_LOG"):
+        os.environ.pop(name, None)
+    if way == UNREAD:
+        os.environ["RUST_LOG"] = "off"
+    yield None if way == PLAIN else KeysFolder.init(folder / "keys").path
 
 
-def observe(folder: Path, keyed: bool, keys: Path | None, components: int, signals: int, times: Times) -> None:
+def observe(folder: Path, way: str, keys: Path | None, components: int, signals: int, times: Times) -> None:
     """Measure discovery and signals in an ecology of one site."""
     (folder / "ads").mkdir()
     (folder / "ads/all.ttl").write_text(
@@ -80,12 +96,12 @@ def observe(folder: Path, keyed: bool, keys: Path | None, components: int, signa
                 began = time.perf_counter()
                 if len(living.discover().found) != components:
                     raise SystemExit("the discovery is not complete")
-                times.setdefault(("discovery", keyed), []).append(time.perf_counter() - began)
+                times.setdefault(("discovery", way), []).append(time.perf_counter() - began)
                 living._view.known.clear()  # as if it were the first
         shown = None if keys is None else KeysFolder(keys).credentials((PrincipalKind.SITE,), site.name)
         for size in SIZES:
             ends = [client(list(site.endpoints), credentials=shown) for _ in range(2)]
-            what = f"signal of {size:,} bytes", keyed
+            what = f"signal of {size:,} bytes", way
             times.setdefault(what, []).extend(latencies(ends[0], ends[1], name, size, signals))
             for end in ends:
                 end.close()
@@ -112,13 +128,65 @@ def latencies(source: ZenohBus, sink: ZenohBus, ecology: str, size: int, number:
     return found
 
 
+def flood(folder: Path, way: str, keys: Path | None, seconds: float, times: Times) -> None:
+    """Measure signals at their rates, and how much of a processor the hub takes for each, in an ecology of one site."""
+    name = f"access-{secrets.token_hex(3)}"
+    (folder / "none").mkdir()
+    with SiteProcess([folder / "none"], name, keys=keys) as site:
+        shown = None if keys is None else KeysFolder(keys).credentials((PrincipalKind.SITE,), site.name)
+        (hub,) = (one.process for one in sc.sites(name))
+        for rate in RATES:
+            ends = [client(list(site.endpoints), credentials=shown) for _ in range(2)]
+            before = processor_seconds(hub)
+            found = paced(ends[0], ends[1], name, rate, seconds)
+            what = f"100 bytes at {rate:,} a second"
+            times.setdefault((what, way), []).extend(found)
+            times.setdefault((f"{what}: the hub's processor, for each", way), []).append(
+                (processor_seconds(hub) - before) / len(found)
+            )
+            for end in ends:
+                end.close()
+
+
+def processor_seconds(process: int) -> float:
+    """Seconds that a process has had a processor for."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def paced(source: ZenohBus, sink: ZenohBus, ecology: str, rate: int, seconds: float) -> list[float]:
+    """Seconds from put to callback of signals at a rate; some may be dropped, as signals are."""
+    key, found, matched = Keys(ecology).output(IRI("urn:bench:c1"), "o"), list[float](), threading.Event()
+    sink.subscribe(key, lambda sample: found.append(time.perf_counter() - float(sample.payload)), direct=True)
+    source.run_aside()
+    publisher = source.publisher(key, Urgency.SIGNAL, lambda there: matched.set() if there else None)
+    if not matched.wait(PATIENCE):
+        raise SystemExit("the two ends do not see each other")
+    began, sent = time.perf_counter(), 0
+    while (now := time.perf_counter()) - began < seconds:
+        while sent < (now - began) * rate:
+            publisher.put(f"{time.perf_counter():100.9f}".encode())
+            sent += 1
+        time.sleep(0.5 / rate)  # the rate of the signals
+    arrived, deadline = -1, time.monotonic() + PATIENCE
+    while arrived != len(found) and time.monotonic() < deadline:
+        arrived = len(found)
+        time.sleep(SETTLED)  # what was sent last has arrived when nothing more does
+    if not found:
+        raise SystemExit("no signal has arrived")
+    return found
+
+
 def report(times: Times) -> str:
     """The table: medians, and what keys cost as a ratio of them."""
     rows = []
     for what in dict.fromkeys(name for name, _ in times):
-        plain, keyed = (quantile(times[what, with_keys], 0.5) for with_keys in (False, True))
-        rows.append([what, f"{plain * 1000:.2f}", f"{keyed * 1000:.2f}", f"{keyed / plain:.2f}"])
-    head = ["", "without keys, median ms", "with keys, median ms", "with / without"]
+        ways = [way for way in (PLAIN, KEYED, UNREAD) if (what, way) in times]
+        medians = {way: quantile(times[what, way], 0.5) for way in ways}
+        shown = [f"{medians[way] * 1000:.3f}" if way in medians else "" for way in (PLAIN, KEYED, UNREAD)]
+        ratios = [f"{medians[KEYED] / max(medians[way], 1e-9):.2f}" if way in ways else "" for way in (PLAIN, UNREAD)]
+        rows.append([what, *shown, *ratios])
+    head = ["median ms", PLAIN, KEYED, UNREAD, "keys / none", "log / no log"]
     return f"{table(head, rows)}\n\n{described('eclipse-zenoh', 'cryptography')}"
 
 
