@@ -144,7 +144,7 @@ class Liveness:
     def _judge(self, asked: Sequence[tuple[str, str]]) -> None:
         """Believe that lives have ended, unless they are back, or this node is or was cut off."""
         for chunk, life in asked:
-            if self._cut_off or self.bus.link != self._link:
+            if self.cut_off or self.bus.link != self._link:
                 self._await_link()
                 return
             component, now = self._component(chunk), self.ecology.lives.get(chunk, ())
