@@ -24,7 +24,7 @@ from selfconf.protocol.messages import Introduction
 
 log = logging.getLogger(__name__)
 
-LOOK = 1.0
+CERTIFICATE_CHECK = 1.0
 """How often, in seconds, the certificate is looked at."""
 LAST_PART = 4
 """A certificate is spoken of in the last quarter of its time, if nobody has renewed it by then."""
@@ -47,13 +47,13 @@ class CertificateWatch:
         self._certificate = Certificate.read(credentials.certificate.read_bytes())
         self._changed_at, self._link = self._modified(), bus.link
         self._said = ""
-        bus.later(LOOK, self._look)
+        bus.later(CERTIFICATE_CHECK, self._look)
 
     def _modified(self) -> int:
         return self._credentials.certificate.stat().st_mtime_ns
 
     def _look(self) -> None:
-        self._bus.later(LOOK, self._look)
+        self._bus.later(CERTIFICATE_CHECK, self._look)
         try:
             self._renew_own()
             changed, link = self._modified(), self._bus.link

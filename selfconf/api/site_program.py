@@ -93,9 +93,8 @@ def serve(
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
         log_path = _log_path(log, ecology, name).absolute()
         joining.log = str(log_path)
-        believed = None if secured is None else secured.believed
+        keys_of, believed = (None, None) if secured is None else (secured.keys_of, secured.believed)
         composites = Composites(bus, ecology, described_in, complain, work.work, believed)
-        keys_of = None if secured is None else secured.keys_of
         site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond, changed=composites.refresh)
         if secured is not None:
             secured.keep_door(site, joining, complain)

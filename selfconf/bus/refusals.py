@@ -34,7 +34,7 @@ FILTER = "zenoh::net::routing::interceptor=trace,zenoh_link_tls::unicast=warn"
 """What Zenoh logs, as the variable RUST_LOG has it."""
 ROOM = 1 << 20
 """Bytes that the pipe holds: a hub that writes into a full one would stand still."""
-PAUSE = 0.05
+BETWEEN_READS = 0.05
 """Seconds between two looks into the pipe: a hub that relays 20,000 signals a second fills half of it meanwhile."""
 MOST_ATTEMPTS = 1000
 """How many different attempts are told apart; further ones are counted as those of their principal alone."""
@@ -152,4 +152,6 @@ def _read(pipe: int, log: RefusalLog) -> None:
         rest = last[-ROOM:]
         if newline:
             log.take_chunk(whole)
-        time.sleep(PAUSE)  # lines come without an end: what waits for each of them costs more than the hub itself
+        time.sleep(
+            BETWEEN_READS
+        )  # lines come without an end: what waits for each of them costs more than the hub itself
