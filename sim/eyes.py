@@ -1,4 +1,4 @@
-"""The stereo cameras of the living room as components of their own: one at its mount, and a spare one below it.
+"""The stereo cameras of the living room as components of their own: one at its mount, and one below it.
 
 What a camera sees goes out as two signals of one time, the image and the depths. A camera whose lens is covered sees
 nothing but what covers it, and raises FAIL.
@@ -21,9 +21,11 @@ from sim.signals import PlanarPose2D
 from sim.stereo import StereoCamera, StereoFrame
 from sim.world import World, camera_of
 
-STEREO, SPARE = "stereo-camera", "spare-camera"
+MOUNT = "stereo-camera"
+"""What the description of the apartment calls the place of the upper camera."""
+UPPER, LOWER = "upper-camera", "lower-camera"
 BELOW = 0.5
-"""Metres from the first camera down to the other one."""
+"""Metres from the upper camera down to the lower one."""
 COVERED = 0.45
 """A lens is covered when half of what it sees is nearer than this, in metres."""
 CURTAIN = 0.25
@@ -32,8 +34,8 @@ CURTAIN = 0.25
 
 def mount_of(apartment: Apartment, name: str) -> CameraMount:
     """Return where one of the two cameras hangs."""
-    mount = apartment.camera(STEREO)
-    if name == STEREO:
+    mount = apartment.camera(MOUNT)
+    if name == UPPER:
         return mount
     x, y, z = mount.position
     return replace(mount, name=name, position=(x, y, z - BELOW))
@@ -59,14 +61,14 @@ def curtain(apartment: Apartment, name: str) -> Block:
 class StereoEye(Component):
     """A stereo camera: five exposures a second."""
 
-    advertisement = f"../examples/eyes/{STEREO}.ttl"
-    name = STEREO
+    advertisement = f"../examples/eyes/{UPPER}.ttl"
+    name = UPPER
     every_ticks = 2
     """It looks at every second period."""
 
     def __init__(self, world: World, seed: int) -> None:
         self._world, self._ticks = world, 0
-        chance = stream(seed, "stereo" if self.name == STEREO else self.name)
+        chance = stream(seed, "stereo" if self.name == UPPER else self.name)
         self._stereo = StereoCamera(calibration(world.apartment, self.name), chance)
         self.told = float("-inf")
         """The simulated time of the newest exposure that it issued."""
@@ -94,7 +96,7 @@ class StereoEye(Component):
 
 
 class SpareEye(StereoEye):
-    """The camera below the first one."""
+    """The camera below the upper one."""
 
-    advertisement = f"../examples/eyes/{SPARE}.ttl"
-    name = SPARE
+    advertisement = f"../examples/eyes/{LOWER}.ttl"
+    name = LOWER

@@ -21,7 +21,7 @@ from selfconf.sdk import Host, Termination
 from selfconf.sdk.program import add_connection_arguments, open_host
 from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
-from sim.eyes import STEREO, SpareEye, StereoEye, curtain
+from sim.eyes import UPPER, SpareEye, StereoEye, curtain
 from sim.geometry import Pose
 from sim.logbook import Logbook
 from sim.say import say
@@ -124,8 +124,8 @@ class PeisHome:
         self._drove += PERIOD if self._moved else 0.0
         if self._drove >= self._covered_at:
             self._covered_at = float("inf")
-            self.world.put(curtain(self.world.apartment, STEREO))
-            say("covered", name=STEREO, time=self.world.time)
+            self.world.put(curtain(self.world.apartment, UPPER))
+            say("covered", name=UPPER, time=self.world.time)
         for _ in range(round(PERIOD / TIME_STEP)):
             self.world.step()
             self.logbook.touched.update(touch.other for touch in self.world.contacts())

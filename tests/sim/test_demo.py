@@ -134,7 +134,7 @@ def test_a_camera_is_replaced_inside_of_a_composite_and_the_composite_by_odometr
     assert (result["lost"], result["cause"], result["touched"]) == ("position-service", "fail", [])
     assert len(result["configurations"]) == 2
     words = "".join(demo[0].said)
-    told = [words.index(part) for part in ("a cloth covers the lens", "the spare-camera looks", "LOST")]
+    told = [words.index(part) for part in ("a cloth covers the lens", "the lower-camera looks", "LOST")]
     assert told == sorted(told)
     assert words.count("LOST") == 1
     assert "no component is eligible for the role tracker" in words

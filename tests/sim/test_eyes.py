@@ -11,7 +11,7 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed: install the e
 
 from sim import astrid
 from sim.apartment import Apartment
-from sim.eyes import COVERED, SPARE, STEREO, calibration, curtain
+from sim.eyes import COVERED, LOWER, UPPER, calibration, curtain
 from sim.noise import stream
 from sim.stereo import StereoCamera, StereoFrame
 from sim.tracker import Tracker
@@ -33,7 +33,7 @@ def seen(world: World, name: str) -> StereoFrame:
     return StereoCamera(camera, stream(3, name)).expose(world.capture(camera))
 
 
-@pytest.mark.parametrize("name", [STEREO, SPARE])
+@pytest.mark.parametrize("name", [UPPER, LOWER])
 def test_each_camera_sees_her_where_she_is(world: World, name: str) -> None:
     tracker = Tracker(calibration(world.apartment, name), astrid.PLATE_HEIGHT, "frame")
     pose = tracker.look(seen(world, name))
@@ -41,7 +41,7 @@ def test_each_camera_sees_her_where_she_is(world: World, name: str) -> None:
     assert np.hypot(pose["x"] - world.pose().x, pose["y"] - world.pose().y) < 0.1
 
 
-@pytest.mark.parametrize(("covered", "free"), [(STEREO, SPARE), (SPARE, STEREO)])
+@pytest.mark.parametrize(("covered", "free"), [(UPPER, LOWER), (LOWER, UPPER)])
 def test_a_cloth_covers_one_camera_and_leaves_the_other_free(world: World, covered: str, free: str) -> None:
     world.put(curtain(world.apartment, covered))
     assert float(np.median(seen(world, covered).depth)) < COVERED < float(np.median(seen(world, free).depth))
