@@ -77,6 +77,12 @@ class Onlooker:
             self._look(output)
         self._ask_log("")
 
+    def excuse(self) -> None:
+        """Tell why nothing can be seen, in place of looking."""
+        why = {"trouble": "the keys of this server are for looking on only; signals and logs take keys of conf.NAME"}
+        self._tell("signals", dict.fromkeys(self._outputs, why))
+        self._tell("log", why)
+
     def end(self) -> None:
         """Look no more."""
         self._ended = True

@@ -29,8 +29,9 @@ _Told = tuple[str, Body] | None
 class Onlookers:
     """Those who look at a component; used on the thread that serves, while its onlookers are on that of the bus."""
 
-    def __init__(self, bus: Bus, board: Board) -> None:
-        self._bus, self._board = bus, board
+    def __init__(self, bus: Bus, board: Board, may_hear: bool = True) -> None:
+        """`may_hear` is whether the keys of the server, if there are any, let it hear signals and ask for logs."""
+        self._bus, self._board, self._may_hear = bus, board, may_hear
         self._queues: set[asyncio.Queue[_Told]] = set()
 
     def close(self) -> None:
@@ -59,7 +60,7 @@ class Onlookers:
 
         onlooker = Onlooker(self._bus, self._board.keys, found, tell)
         self._queues.add(queue)
-        self._bus.wake_up(onlooker.begin)
+        self._bus.wake_up(onlooker.begin if self._may_hear else onlooker.excuse)
         try:
             yield b"retry: 2000\n\n"
             while True:

@@ -58,7 +58,9 @@ def serve_ecology(
         try:
             bus = member(ecology, endpoints, credentials)
             try:
-                asyncio.run(_serve(bus, ecology, record, place, seconds, listening, beliefs(credentials)))
+                reads = credentials is not None and credentials.name.startswith("read.")
+                believed = beliefs(credentials)
+                asyncio.run(_serve(bus, ecology, record, place, seconds, listening, believed, may_hear=not reads))
             finally:
                 bus.close()
         finally:
@@ -107,13 +109,14 @@ async def _serve(
     seconds: float,
     listening: Callable[[str], None],
     believed: Beliefs | None,
+    may_hear: bool,
 ) -> None:
     loop, metrics = asyncio.get_running_loop(), Metrics()
     board = Board(ecology, metrics)
     sparql = SparqlEndpoint(record.dataset, metrics, seconds)
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
-    onlookers = Onlookers(bus, board)
+    onlookers = Onlookers(bus, board, may_hear)
     app = application(
         board, metrics, sparql, onlookers, Fits(bus, board), lambda: bool(bus.link), LOOPBACK if local else ()
     )

@@ -139,6 +139,14 @@ def test_who_prints_more_than_an_answer_holds_is_followed_from_the_end_on(stage:
     assert asked[:4] == ["", "7", "", "7"]
 
 
+def test_a_server_that_may_look_on_only_says_so(stage: Stage) -> None:
+    stage.onlooker.excuse()
+    stage.put_each(0.1, 5)
+    (signals,), (log,) = stage.all("signals"), stage.all("log")
+    assert "keys of conf.NAME" in signals["pose"]["trouble"]
+    assert signals["pose"] == log
+
+
 def test_where_no_log_is_told_the_reason_is(stage: Stage) -> None:
     stage.onlooker.begin()
     stage.let_pass(4.0)
