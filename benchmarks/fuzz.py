@@ -77,6 +77,8 @@ def converted(text: str, chance: random.Random) -> Changed | None:
 
 
 _STATEMENT_END = r'(?<=[\w"\]]) (\.)\n'
+_LOOSE_PORT = '_:x sc:name "x" ; sc:signalType <https://w3id.org/selfconf/robotics#Audio> .\n'
+"""A port that no component has; not every file has a prefix for its signal type."""
 MISTAKES: dict[str, Change] = {
     "two letters of a term swapped": misspelt,
     "a prefix that is not declared": _put(r"(?<=[\s,;\[(])(rob|sc):\w", "robb:x", "SC-S01"),
@@ -91,7 +93,7 @@ MISTAKES: dict[str, Change] = {
     "a signal type forgotten": _put(r"\[ sc:name \"[^\"]*\"( ; sc:signalType rob:\w+)", "", "SC-L18", group=1),
     "a preference in words": _put(r"sc:preference (\d+)", r'"high"', "SC-A04", group=1),
     "two preferences": _put(r"sc:preference (\d+)", r"\1 , 99", "SC-A04", group=1),
-    "a port that nothing has": _put(r"\Z", '_:x sc:name "x" ; sc:signalType rob:Audio .\n', "SC-L17"),
+    "a port that nothing has": _put(r"\Z", _LOOSE_PORT, "SC-L17"),
     "a type in quotation marks": _put(r"a (sc:Component), ", r'"sc:Component"', "SC-A02", "SC-A03", group=1),
 }  # fmt: skip
 HARMLESS: dict[str, Change] = {

@@ -24,7 +24,7 @@ from pathlib import Path
 
 import selfconf as sc
 from benchmarks.machine import described, table
-from benchmarks.recruiting.engines import ENGINES, LIMIT, Engine
+from benchmarks.recruiting.engines import ENGINES, LIMIT, PACKAGES, Engine
 from benchmarks.recruiting.services import CONCEPTS, TASK, Services, made
 from selfconf.model.configuration import Configuration
 
@@ -128,7 +128,7 @@ def main() -> int:
         rows.append(measured(number, seed))
         print(*rows[-1], file=sys.stderr, flush=True)
     head = ["services", "seed", "planted", "recruits", "load", "partition and search", *ENGINES]
-    text = f"{table(head, rows)}\n\n{described('clingo', 'ortools')}"
+    text = f"{table(head, rows)}\n\n{described(*PACKAGES)}"
     print(text)
     if given.write:
         PAGE.write_text(f"{INTRODUCTION}{text}\n", "utf-8")

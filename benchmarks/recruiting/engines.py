@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from importlib.util import find_spec
 
 from benchmarks.recruiting.services import Services
 
@@ -135,4 +136,8 @@ def cp_sat(given: Services) -> list[str] | None:
 
 
 Engine = Callable[[Services], "list[str] | None"]
-ENGINES: Mapping[str, Engine] = {"clingo": clingo, "CP-SAT": cp_sat}
+_ALL: Mapping[str, tuple[Engine, str]] = {"clingo": (clingo, "clingo"), "CP-SAT": (cp_sat, "ortools")}
+"""The general solvers, each with its package."""
+ENGINES: Mapping[str, Engine] = {name: engine for name, (engine, package) in _ALL.items() if find_spec(package)}
+"""Those that are installed."""
+PACKAGES = tuple(_ALL[name][1] for name in ENGINES)

@@ -146,7 +146,7 @@ def test_an_answer_that_is_not_proved_says_so(watch: Watch, monkeypatch: pytest.
         assert isinstance(first, best.Configuration)
         return best.Optimum(first, tuple(2 * level for level in found.cost), found.bound, (), proved=False)
 
-    monkeypatch.setattr("selfconf.composition.composer.best_configuration", hasty)
+    monkeypatch.setattr("selfconf.composition.searches.best_configuration", hasty)
     text = watch.run("--strategy", "best").out
     assert "level 1  0.22  (bound 0.11)" in text
     assert "not proved" in text
