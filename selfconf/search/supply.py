@@ -78,7 +78,9 @@ class Supply:
         return found
 
     def _fed_by(self, output: Output) -> Iterable[tuple[int, int]]:
-        return (one for signal in self.hierarchy.served(output.signals) for one in self._waiting.get(signal, ()))
+        # In the order of their names, so that the answer does not depend on the order of a set.
+        served = sorted(self.hierarchy.served(output.signals))
+        return (one for signal in served for one in self._waiting.get(signal, ()))
 
     def available(self, numbers: Iterable[int], role: int | None = None) -> Available:
         """Return what some recruits issue; with a role, those that may supply it."""

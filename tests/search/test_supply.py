@@ -49,3 +49,11 @@ def test_a_signal_serves_every_class_above_it() -> None:
     found = supply(component("a", "", "s:S"), hierarchy=above)
     assert found.available([0], role=0).serves(WantedSignal((iri("A"),)))
     assert not found.available([0], role=1).serves(WantedSignal((iri("A"),)))
+
+
+def test_the_order_does_not_depend_on_that_of_the_classes_above_a_signal() -> None:
+    classes = [f"A{number:02}" for number in range(30)]
+    above = Hierarchy([(iri("S"), iri(name)) for name in classes])
+    fed = [component(f"c{name}", f"s:{name}", "t:T") for name in reversed(classes)]
+    found = supply(*fed, hierarchy=above).usable(component("player", "", "s:S").outputs)
+    assert found == list(reversed(range(30)))
