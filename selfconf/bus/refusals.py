@@ -152,6 +152,4 @@ def _read(pipe: int, log: RefusalLog) -> None:
         rest = last[-ROOM:]
         if newline:
             log.take_chunk(whole)
-        time.sleep(
-            BETWEEN_READS
-        )  # lines come without an end: what waits for each of them costs more than the hub itself
+        time.sleep(BETWEEN_READS)  # lines come without an end, and a look at each costs more than the hub itself
