@@ -13,7 +13,7 @@ from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.deployment.runner import AT_LEISURE
 from selfconf.model.profile import Profile
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
@@ -134,7 +134,7 @@ class Lab:
         self.runtimes: dict[str, ComponentRuntime] = {}
         self.complaints: list[str] = []
         self.events: list[RunEvent] = []
-        self.ended: list[Refusal | None] = []
+        self.ended: list[Refusal | Undecided | None] = []
 
     def site(self, name: str, *names: str) -> Site:
         """A site with those advertisements, and with whatever else lies in its folder already."""

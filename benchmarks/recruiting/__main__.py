@@ -2,12 +2,12 @@
 
     python -m benchmarks.recruiting [--seed 1] [--services 158 558 ...] [--smoke] [--write]
 
-The sizes are those of the contest WSC 2008, then 10,000 and 100,000 services (`services.py`). selfconf gets
-advertisements in Turtle and reports the time to load them apart from the time for partition and search; the general
-solvers (`engines.py`) get numbers, and report the time for model and search, up to a limit. Each engine has a process
-of its own, one after another. All are asked for the fewest services; each answer is checked by forward chaining
-(`Services.enough`), which shares no code with any of them. `planted` is the number of services of the solution that
-was built in; fewer may be enough.
+The sizes are those of the contest WSC 2008, then 10,000 and 100,000 services, in two families (`services.py`).
+selfconf gets advertisements in Turtle and reports the time to load them apart from the time for partition and search;
+the general solvers (`engines.py`) get numbers, and report the time for model and search, up to a limit. Each engine has
+a process of its own, one after another. All are asked for the fewest services; each answer is checked by forward
+chaining (`Services.enough`), which shares no code with any of them. `planted` is the number of services of the solution
+that was built in; fewer may be enough.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from pathlib import Path
 import selfconf as sc
 from benchmarks.machine import described, table
 from benchmarks.recruiting.engines import ENGINES, LIMIT, PACKAGES, Engine
-from benchmarks.recruiting.services import CONCEPTS, TASK, Services, made
+from benchmarks.recruiting.services import CONCEPTS, FAMILIES, TASK, Services, decoys
 from selfconf.model.configuration import Configuration
 
 GROWTH = (10_000, 100_000)
 """The sizes beyond those of the contest."""
-SMALL = made(40, 0)
+SMALL = decoys(40, 0)
 """What each engine solves before its time begins."""
 PAGE = Path(__file__).parents[2] / "docs" / "benchmarks" / "recruiting.md"
 INTRODUCTION = f"""# Recruits
@@ -96,14 +96,14 @@ class Timed:
         return timed(ENGINES[self.name], given)
 
 
-def measured(number: int, seed: int) -> list[str]:
+def measured(family: str, number: int, seed: int) -> list[str]:
     """A row of the table. Raises AssertionError where an answer is none."""
-    given = made(number, seed)
+    given = FAMILIES[family](number, seed)
     ours = alone(configured, given, 600)
     assert isinstance(ours, tuple), "selfconf has no answer"
     chosen, load, search = ours
     assert given.enough(chosen), chosen
-    row = [*map(str, (number, seed, given.planted, len(chosen))), f"{load:.2f}", f"{search:.2f}"]
+    row = [*map(str, (family, number, seed, given.planted, len(chosen))), f"{load:.2f}", f"{search:.2f}"]
     for name in ENGINES:
         found = alone(Timed(name), given, LIMIT)
         services, seconds = found if isinstance(found, tuple) else (None, LIMIT)
@@ -119,15 +119,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.recruiting", description="chains of services")
     parser.add_argument("--seed", type=int, action="append", help="may be repeated; 1 and 2 if it is not said")
     parser.add_argument("--services", type=int, nargs="+", default=(*CONCEPTS, *GROWTH))
-    parser.add_argument("--smoke", action="store_true", help="two small instances, to see that it works")
+    parser.add_argument("--smoke", action="store_true", help="small instances, to see that it works")
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} among the docs")
     given = parser.parse_args()
     sizes, seeds = ((40, 80), (1,)) if given.smoke else (given.services, given.seed or (1, 2))
     rows = []
-    for number, seed in product(sizes, seeds):
-        rows.append(measured(number, seed))
+    for family, number, seed in product(FAMILIES, sizes, seeds):
+        rows.append(measured(family, number, seed))
         print(*rows[-1], file=sys.stderr, flush=True)
-    head = ["services", "seed", "planted", "recruits", "load", "partition and search", *ENGINES]
+    head = ["family", "services", "seed", "planted", "recruits", "load", "partition and search", *ENGINES]
     text = f"{table(head, rows)}\n\n{described(*PACKAGES)}"
     print(text)
     if given.write:

@@ -6,9 +6,13 @@ that of the input or lies below it. Only the concepts of the instances matter to
 here. What is given is issued by one component without inputs; the request is the only role, a component whose inputs
 are the wanted concepts.
 
-Services are made around a solution: layers of services, each of which needs what the layer before issues, or something
-below that in the taxonomy. Beside them stand decoys: services with concepts that are alike, of which some lead nowhere
-and others are detours.
+There are two families:
+
+* `contest`, as the sets of the contest are built: a few solutions, each a row of steps of which one needs all that the
+  step before issues, each step offered by several services that ask for less or issue more; the other services take and
+  give what is drawn at random, and can mostly not be fed.
+* `decoys`: layers of services, each of which needs what the layer before issues, or something below that in the
+  taxonomy; the other services resemble them, so that most can be fed, and many are detours.
 """
 
 from __future__ import annotations
@@ -26,6 +30,10 @@ TASK = PREFIXES + (
 )
 CONCEPTS = {158: 1540, 558: 1565, 604: 3089, 1041: 3135, 1090: 3067, 2198: 12468, 4113: 3075, 8119: 12337}
 """For each of the eight sets of the contest, by its number of services, the number of concepts."""
+STEPS = {158: 10, 558: 5, 604: 40, 1041: 10, 1090: 20, 2198: 35, 4113: 20, 8119: 30}
+"""For each of the eight sets, about as many services as its best published solution has."""
+SOLUTIONS = {604: 1, 1090: 1, 2198: 1}
+"""How many solutions a set has; three if nothing is said."""
 MOST_CONCEPTS = 20_000
 """How many concepts instances of other sizes have at most; else twice as many as services."""
 
@@ -74,39 +82,126 @@ def _advertised(name: str, inputs: list[int], outputs: list[int]) -> str:
     return " ;\n    ".join([f":{name} a sc:Component, :{kind}", *ports]) + " .\n"
 
 
-def made(number: int, seed: int) -> Services:
-    """An instance of a number of services."""
-    rng = random.Random(f"{number}/{seed}")
-    concepts = CONCEPTS.get(number) or min(MOST_CONCEPTS, 2 * number)
-    parent = {low: rng.randrange(max(0, low // 3 - 2), low) for low in range(1, concepts)}
-    children: dict[int, list[int]] = {}
-    for low, high in parent.items():
-        children.setdefault(high, []).append(low)
+@dataclass(frozen=True)
+class Taxonomy:
+    """A tree of concepts, of which 0 is the root."""
 
-    def below(concept: int) -> int:
-        while children.get(concept) and rng.random() < 0.5:
-            concept = rng.choice(children[concept])
+    rng: random.Random
+    parent: dict[int, int]
+    children: dict[int, list[int]]
+
+    @classmethod
+    def of(cls, number: int, rng: random.Random) -> Taxonomy:
+        """A tree for a number of services."""
+        concepts = CONCEPTS.get(number) or min(MOST_CONCEPTS, 2 * number)
+        parent = {low: rng.randrange(max(0, low // 3 - 2), low) for low in range(1, concepts)}
+        children: dict[int, list[int]] = {}
+        for low, high in parent.items():
+            children.setdefault(high, []).append(low)
+        return cls(rng, parent, children)
+
+    def __len__(self) -> int:
+        return len(self.parent) + 1
+
+    def any(self) -> int:
+        """Some concept."""
+        return self.rng.randrange(len(self))
+
+    def below(self, concept: int) -> int:
+        """The concept, or one below it."""
+        while self.children.get(concept) and self.rng.random() < 0.5:
+            concept = self.rng.choice(self.children[concept])
         return concept
 
+    def above(self, concept: int) -> int:
+        """The concept, or one a little above it, but not among the first, which nearly everything lies below."""
+        while self.parent.get(concept, 0) > 3 and self.rng.random() < 0.3:
+            concept = self.parent[concept]
+        return concept
+
+
+def decoys(number: int, seed: int) -> Services:
+    """An instance of a number of services of which most can be fed."""
+    rng = random.Random(f"{number}/{seed}")
+    tree = Taxonomy.of(number, rng)
     depth, width = rng.randint(3, 23), rng.randint(1, 5)
-    layer = [rng.randrange(concepts) for _ in range(rng.randint(2, 4))]
-    services = {"given": (list[int](), [below(concept) for concept in layer])}
+    layer = [tree.any() for _ in range(rng.randint(2, 4))]
+    services = {"given": (list[int](), [tree.below(concept) for concept in layer])}
     for place in range(depth):
         following: list[int] = []
         for k in range(width):
-            issued = [rng.randrange(concepts) for _ in range(rng.randint(1, 3))]
+            issued = [tree.any() for _ in range(rng.randint(1, 3))]
             needed = rng.sample(layer, min(len(layer), rng.randint(1, 3)))
-            services[f"planted{place}.{k}"] = needed, [below(concept) for concept in issued]
+            services[f"planted{place}.{k}"] = needed, [tree.below(concept) for concept in issued]
             following += issued
         layer = following
     planted = len(services)
     names = list(services)
     while len(services) < number:
         inputs, outputs = services[rng.choice(names)]
-        needed = [below(concept) if rng.random() < 0.7 else rng.randrange(concepts) for concept in inputs or layer]
-        issued = [concept if rng.random() < 0.3 else rng.randrange(concepts) for concept in outputs]
+        needed = [tree.below(concept) if rng.random() < 0.7 else tree.any() for concept in inputs or layer]
+        issued = [concept if rng.random() < 0.3 else tree.any() for concept in outputs]
         services[f"service{len(services)}"] = needed, issued
         names.append(f"service{len(services) - 1}")
+    return _shuffled(rng, tree, services, rng.sample(layer, min(len(layer), 4)), planted)
+
+
+def contest(number: int, seed: int) -> Services:
+    """An instance of a number of services that are built as those of the contest are."""
+    rng = random.Random(f"contest/{number}/{seed}")
+    tree = Taxonomy.of(number, rng)
+    unused = rng.sample(range(len(tree) // 4, len(tree)), len(tree) - len(tree) // 4)
+    layer, wanted = [unused.pop() for _ in range(rng.randint(2, 5))], [unused.pop() for _ in range(rng.randint(1, 3))]
+    services = {"given": (list[int](), [tree.below(concept) for concept in layer])}
+    steps = STEPS.get(number, min(20, 1 + number // 60))
+    for solution in range(SOLUTIONS.get(number, 3)):
+        # The first is the shortest that is planted.
+        name = "planted" if not solution else f"other{solution}."
+        length = steps if not solution else steps + rng.randint(1, steps)
+        services |= _solution(tree, name, layer, wanted, length, unused)
+    leaves = [concept for concept in range(len(tree)) if concept not in tree.children]
+    while len(services) < number:
+        issued = [tree.any() for _ in range(rng.randint(3, 9))]
+        services[f"service{len(services)}"] = [rng.choice(leaves) for _ in range(rng.randint(2, 7))], issued
+    return _shuffled(rng, tree, services, wanted, steps + 1)
+
+
+def _solution(
+    tree: Taxonomy, name: str, given: list[int], wanted: list[int], length: int, unused: list[int]
+) -> dict[str, tuple[list[int], list[int]]]:
+    """A row of steps, some of which stand beside each other; each is offered by one to nine services."""
+    rng = tree.rng
+    services: dict[str, tuple[list[int], list[int]]] = {}
+    layer, place = given, 0
+    while place < length:
+        wide = min(length - place, rng.choice((1, 1, 1, 2, 2, 3, 4)))
+        if place + wide == length and wide > len(wanted):
+            wide = 1
+        if place + wide == length:
+            issued = [wanted[k::wide] for k in range(wide)]
+        else:
+            most = 9 if wide == 1 else 2
+            issued = [[unused.pop() for _ in range(min(most, rng.choice((1, 2, 2, 3, 4))))] for _ in range(wide)]
+        for outputs in issued:
+            for k in range(rng.choice((1, 1, 1, 2, 2, 3, 3, 4, 5, 6, 9))):
+                more = [tree.any() for _ in range(rng.randint(0, 4))]
+                inputs = [tree.above(concept) for concept in layer]
+                services[f"{name}{place}.{k}"] = inputs, [tree.below(concept) for concept in outputs] + more
+            place += 1
+        layer = [concept for outputs in issued for concept in outputs]
+    return services
+
+
+def _shuffled(
+    rng: random.Random,
+    tree: Taxonomy,
+    services: dict[str, tuple[list[int], list[int]]],
+    wanted: list[int],
+    planted: int,
+) -> Services:
     order = list(services)
     rng.shuffle(order)
-    return Services(parent, {name: services[name] for name in order}, rng.sample(layer, min(len(layer), 4)), planted)
+    return Services(tree.parent, {name: services[name] for name in order}, wanted, planted)
+
+
+FAMILIES = {"contest": contest, "decoys": decoys}

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from selfconf.api.arguments import Paths, listed_paths, option
+from selfconf.api.collector import collector_at_rest, collector_looking_at_new
 from selfconf.api.ecology import Ecology
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.places import Places
@@ -205,7 +206,8 @@ class Inquiry:
         """Who holds components that this task cannot have: tasks of the same or a higher priority."""
         self.seconds["load"] = ecology.read_seconds + time.perf_counter() - began
         began = time.perf_counter()
-        partition = self.composer.partition(self.ecology)
+        with collector_at_rest():
+            partition = self.composer.partition(self.ecology)
         self.seconds["partition"] = time.perf_counter() - began
         self.eligible: Mapping[str, int] = {
             str(role.iri): len(candidates)
@@ -227,7 +229,8 @@ class Inquiry:
         """The configuration, or why there is none, within the time of the method."""
         limit = TimeLimit(self.method.seconds)
         began = time.perf_counter()
-        found = composed(self.composer, self.ecology, frozenset(self.holders), None, limit)
+        with collector_looking_at_new():
+            found = composed(self.composer, self.ecology, frozenset(self.holders), None, limit)
         self.seconds["search"] = time.perf_counter() - began
         if isinstance(found, Undecided):
             return found

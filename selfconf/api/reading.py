@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import gc
 import re
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
 from selfconf import files
+from selfconf.api.collector import collector_at_rest
 from selfconf.api.ecology import Ecology, EndpointEcology, LoadedEcology
 from selfconf.errors import AuthorError
 from selfconf.model.left_out import LeftOut
@@ -152,24 +151,6 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
                     other = found[advertisement.component].profile.place
                     left_out.append(LeftOut(name, advertisement.component, f"it is advertised in {other} already"))
         return AdvertisementIndex(found), tuple(left_out)
-
-
-@contextmanager
-def collector_at_rest() -> Iterator[None]:
-    """No garbage collection while much is read that will stay; afterwards it counts as old, and is looked at rarely.
-
-    Values are not garbage, but looking at a million of them again and again takes as long as making them.
-    """
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if not gc.get_freeze_count():  # a program that has frozen something itself does so for its own reasons
-            gc.freeze()
-            gc.unfreeze()  # moves everything to the oldest generation, without a look at it
-        if collecting:
-            gc.enable()
 
 
 def listed_files(paths: Sequence[Path], endings: tuple[str, ...] = files.TURTLE) -> list[Path]:

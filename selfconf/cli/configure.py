@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import json
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
@@ -51,6 +52,7 @@ def run(given: argparse.Namespace) -> int:
     method = method_of(given, task)
     with closing(given_ecology(given)) as ecology:
         inquiry = Inquiry(task, ecology, method)
+        gc.freeze()  # the partition stays until the command ends, as the files do
         if given.ads is None:
             complain_of(ecology)
     for one in inquiry.left_out:

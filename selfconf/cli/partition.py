@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
@@ -61,6 +62,7 @@ def run(given: argparse.Namespace) -> int:
     with closing(given_ecology(given)) as ecology:
         strategy = "best" if given.why else "first"
         inquiry = Inquiry(task, ecology, Method.of(strategy, given.reasoning, given.ontology))
+        gc.freeze()  # the partition stays until the command ends, as the files do
         if given.ads is None:
             complain_of(ecology)
     for one in inquiry.left_out:

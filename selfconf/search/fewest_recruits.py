@@ -9,19 +9,39 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines import FoundedSolver, minimise, solver_available
 from selfconf.search.recruit_choice import RecruitChoice
 
+MOST_RECRUITS_LOOKED_AT = 250_000
+"""How many recruits are looked at, at most, to exchange one after the other: a part of a second."""
 WithoutSpare = Callable[[Sequence[int]], list[int]]
 """Recruits that are enough, by number, without those that can be spared."""
 
 
 def fewest(choice: RecruitChoice, budget: Budget) -> tuple[list[int], bool]:
     """Return the fewest recruits that are enough, the first of them by preference, and whether that is proved."""
-    met = choice.without_spare(choice.chain())
+    met = _improved(choice, choice.without_spare(choice.chain()), budget)
     if not met or not solver_available():
         return met, not met
     reduced, wanted = choice.reduced()
     with FoundedSolver(reduced, wanted) as clauses:
         order = [option.number for option in reduced.options[-1]]
         return fewest_of(clauses, order, met, choice.without_spare, budget)
+
+
+def _improved(choice: RecruitChoice, met: list[int], budget: Budget) -> list[int]:
+    """Return recruits that are enough, fewer than some if one of these can be exchanged for what the others feed.
+
+    Local search, which finds in a moment what the solver would take long for where most recruits can be fed. Which are
+    found does not matter where their number is proved to be the least: then the first of all such are taken.
+    """
+    looks = budget.part(MOST_RECRUITS_LOOKED_AT // max(1, len(choice.needs)))
+    tried: set[int] = set()
+    while looks.steps and (left := [number for number in reversed(met) if number not in tried]):
+        looks.spend(1)
+        tried.add(left[0])
+        other = choice.exchanged(met, left[0])
+        fewer = met if other is None else choice.without_spare(other)
+        if len(fewer) < len(met):
+            met, tried = fewer, set()
+    return met
 
 
 def fewest_of(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from heapq import heapify, heappop, heappush
+from operator import or_
 
 from selfconf.model.configuration import Configuration, Connection, ordered_connections
 from selfconf.model.partition import Recruit
@@ -149,41 +151,44 @@ class RecruitChoice:
         return len(placed) == len(chosen) and all(placed.intersection(need.suppliers) for need in self.wanted)
 
     def chain(self) -> list[int]:
-        """Recruits that are enough: for each need the supplier that takes the fewest, with what it needs in turn."""
-        supplier = self._least_suppliers()
-        chosen: set[int] = set()
-        waiting = list(self.wanted)
-        while waiting:
-            number = supplier[id(waiting.pop().suppliers)]
-            if number not in chosen:
-                chosen.add(number)
-                waiting += self.needs[number]
-        return sorted(chosen)
+        """Recruits that are enough: for each need the supplier that takes the fewest, with all that feed it in turn."""
+        return self._joined(self._least_chains())
 
-    def _least_suppliers(self) -> dict[int, int]:
-        """For each choice of suppliers, by identity, the one of least cost: one, and the costs of what it needs.
+    def exchanged(self, chosen: Collection[int], number: int) -> list[int] | None:
+        """Recruits that are enough without one of those chosen, of which the others cost nothing; None if none are."""
+        free = sum(1 << other for other in chosen if other != number)
+        chains = self._least_chains(free, number)
+        return self._joined(chains) if all(id(need.suppliers) in chains for need in self.wanted) else None
 
-        What several need is counted for each (the additive heuristic of Bonet and Geffner, Artificial Intelligence 129,
-        2001), by the generalisation of Dijkstra's algorithm by Knuth (1977). A supplier costs more than each that feeds
-        it, so there is no cycle among those of least cost.
+    def _joined(self, chains: Mapping[int, int]) -> list[int]:
+        whole = reduce(or_, (chains[id(need.suppliers)] for need in self.wanted), 0)
+        return [number for number in sorted(self.needs) if whole >> number & 1]
+
+    def _least_chains(self, free: int = 0, without: int | None = None) -> dict[int, int]:
+        """For each choice of suppliers, by identity, a short chain that ends in one of them; bit k is recruit k.
+
+        Its length, without those that are free, is the cost of a need; that of a recruit is the number of all in the
+        chains of its needs, each counted once (the set-additive heuristic of Keyder and Geffner, ECAI 2008), by the
+        generalisation of Dijkstra's algorithm by Knuth (1977). What is settled has a chain of what was settled before
+        it, so there is no cycle in one.
         """
         place = {number: at for at, number in enumerate(self.ordered(self.needs))}
-        cost = dict.fromkeys(self.needs, 1)
+        chain = {number: 1 << number for number in self.needs}
         lacking = {number: len(needs) for number, needs in self.needs.items()}
-        settled = [(1, place[number], number) for number, count in lacking.items() if not count]
+        settled = [(0, place[number], number) for number, count in lacking.items() if not count and number != without]
         heapify(settled)
         least: dict[int, int] = {}
         while settled:
-            spent, _, number = heappop(settled)
+            number = heappop(settled)[2]
             for suppliers in self._feeds.get(number, ()):
                 if id(suppliers) in least:
                     continue
-                least[id(suppliers)] = number
+                least[id(suppliers)] = chain[number]
                 for fed in self._consumers.get(id(suppliers), ()):
-                    cost[fed] += spent
+                    chain[fed] |= chain[number]
                     lacking[fed] -= 1
-                    if not lacking[fed]:
-                        heappush(settled, (cost[fed], place[fed], fed))
+                    if not lacking[fed] and fed != without:
+                        heappush(settled, ((chain[fed] & ~free).bit_count(), place[fed], fed))
         return least
 
     def without_spare(self, chosen: Sequence[int]) -> list[int]:

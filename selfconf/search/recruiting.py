@@ -35,7 +35,7 @@ from selfconf.search.reduction import (
     with_recruits,
 )
 
-RECRUIT_STEPS = 20_000
+RECRUIT_STEPS = 5_000
 """Steps spent at most on finding the fewest recruits, each a conflict of the solver or a call of it: seconds."""
 
 

@@ -7,7 +7,7 @@ recruits never feeds itself. Forward chaining finds it in time linear in the por
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
 
 from selfconf.model.hierarchy import Hierarchy
@@ -43,17 +43,22 @@ class Supply:
 
     def __init__(self, recruits: Sequence[Recruit], hierarchy: Hierarchy) -> None:
         self.recruits, self.hierarchy = recruits, hierarchy
+        self._served: dict[tuple[IRI, ...], Sequence[IRI]] = {}
+        """For the types of an output, once that is known, the signals that it serves."""
         self._lacking = [len(recruit.profile.required) for recruit in recruits]
         self._waiting: dict[IRI, list[tuple[int, int]]] = {}
         """For each signal the inputs that wait for it: the number of the recruit, and that of the required input."""
+        self._asking: dict[IRI, list[tuple[int, int]]] = {}
+        """For each signal the inputs that wait for it, but do not take it from every output that issues it."""
         for number, recruit in enumerate(recruits):
             for place, port in enumerate(recruit.profile.required):
+                waiting = self._waiting if port.condition is None else self._asking
                 for signal in port.signals:
-                    self._waiting.setdefault(signal, []).append((number, place))
+                    waiting.setdefault(signal, []).append((number, place))
 
     def usable(self, outputs: Iterable[Output], without: Set[IRI] = frozenset()) -> list[int]:
         """Return the numbers of the recruits that are usable beside some outputs, each after those that feed it."""
-        lacking, met = list(self._lacking), set[tuple[int, int]]()
+        lacking, met, issued = list(self._lacking), set[tuple[int, int]](), set[IRI]()
         found = [
             number
             for number, recruit in enumerate(self.recruits)
@@ -61,14 +66,10 @@ class Supply:
         ]
         waiting = [*outputs, *(output for number in found for output in self.recruits[number].profile.outputs)]
         while waiting:
-            output = waiting.pop()
-            for one in self._fed_by(output):
-                number, place = one
+            for one in self._fed_by(waiting.pop(), issued):
+                number, _ = one
                 recruit = self.recruits[number]
                 if one in met or recruit.component in without:
-                    continue
-                condition = recruit.profile.required[place].condition
-                if condition is not None and not condition.met_by(output):
                     continue
                 met.add(one)
                 lacking[number] -= 1
@@ -77,10 +78,19 @@ class Supply:
                     waiting += recruit.profile.outputs
         return found
 
-    def _fed_by(self, output: Output) -> Iterable[tuple[int, int]]:
-        # In the order of their names, so that the answer does not depend on the order of a set.
-        served = sorted(self.hierarchy.served(output.signals))
-        return (one for signal in served for one in self._waiting.get(signal, ()))
+    def _fed_by(self, output: Output, issued: set[IRI]) -> Iterator[tuple[int, int]]:
+        """Yield the inputs that an output feeds, but for those that take any output; these once for each signal."""
+        if output.signals not in self._served:
+            # In the order of their names, so that the answer does not depend on the order of a set.
+            self._served[output.signals] = sorted(self.hierarchy.served(output.signals))
+        for signal in self._served[output.signals]:
+            if signal not in issued:
+                issued.add(signal)
+                yield from self._waiting.get(signal, ())
+            for number, place in self._asking.get(signal, ()):
+                condition = self.recruits[number].profile.required[place].condition
+                if condition is None or condition.met_by(output):
+                    yield number, place
 
     def available(self, numbers: Iterable[int], role: int | None = None) -> Available:
         """Return what some recruits issue; with a role, those that may supply it."""

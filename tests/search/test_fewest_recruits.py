@@ -38,3 +38,15 @@ def test_where_no_steps_are_left_it_is_what_cannot_be_spared() -> None:
     found, proved = fewest(given, Budget(0))
     assert given.sufficient(found)
     assert not proved
+
+
+def test_one_is_exchanged_for_another_where_no_steps_are_left_to_prove_it() -> None:
+    pytest.importorskip("pysat")
+    given = choice(
+        component("a", "t:T u:U", "s:S"),
+        component("b", "", "t:T"),
+        component("c", "", "u:U"),
+        component("d", "", "t:T u:U"),
+    )
+    assert fewest(given, Budget(0)) == ([0, 1, 2], False)
+    assert fewest(given, Budget(1)) == ([0, 3], False)

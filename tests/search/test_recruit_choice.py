@@ -30,3 +30,22 @@ def test_a_chain_is_enough_and_what_can_be_spared_leaves_it() -> None:
     given = choice(component("a", "t:T u:U", "s:S"), component("b", "", "t:T"), component("c", "", "t:T u:U"))
     assert given.sufficient(given.chain())
     assert given.without_spare([0, 1, 2]) == [0, 2]
+
+
+def test_a_supplier_of_two_needs_is_counted_once() -> None:
+    given = choice(
+        component("a", "t:T u:U", "s:S"),
+        component("b", "x:X", "t:T u:U"),
+        component("c", "", "x:X"),
+        component("d", "y:Y z:Z", "s:S"),
+        component("e", "", "y:Y"),
+        component("f", "", "z:Z"),
+        component("g", "s:S y:Y", "s:S"),
+    )
+    assert given.chain() == [0, 1, 2]
+
+
+def test_one_is_exchanged_for_what_the_others_feed() -> None:
+    given = choice(component("a", "t:T", "s:S"), component("b", "", "t:T"), component("c", "t:T", "s:S"))
+    assert given.exchanged([0, 1], 0) == [1, 2]
+    assert given.exchanged([0, 1], 1) is None

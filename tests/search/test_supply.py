@@ -44,6 +44,15 @@ def test_an_optional_input_is_not_waited_for_and_a_condition_is() -> None:
     assert sorted(supply(*some).usable([centimetres._replace(unit=iri("M"))])) == [0, 1]
 
 
+def test_a_second_output_of_a_signal_is_asked_by_those_with_a_condition() -> None:
+    strict = component("a", "s:S", "t:T")
+    asking = strict.inputs[0]._replace(condition=Condition(unit=iri("M")))
+    some = supply(Profile(strict.component, ports=strict.ports._replace(inputs=(asking,))))
+    output = component("player", "", "s:S").outputs[0]
+    for unit in ("CM", "M"):
+        assert some.usable([output._replace(unit=iri("CM")), output._replace(unit=iri(unit))]) == [0] * (unit == "M")
+
+
 def test_a_signal_serves_every_class_above_it() -> None:
     above = Hierarchy([(iri("S"), iri("A"))])
     found = supply(component("a", "", "s:S"), hierarchy=above)

@@ -18,7 +18,7 @@ from hashlib import blake2s
 from operator import attrgetter
 from typing import Any
 
-from selfconf.model.profile import Input, OperationalParameter, Output, Place, Profile, shared_ports
+from selfconf.model.profile import Input, OperationalParameter, Output, Place, Ports, Profile, shared_ports
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
@@ -145,11 +145,11 @@ def _merged(component: IRI, types: frozenset[IRI], statements: tuple[Statement, 
             properties += statement.keyed or _keyed(statement, component)
             continue
         part = statement.part or statement.read()
-        if part.inputs:
-            inputs += part.inputs
-        elif part.outputs:
-            outputs += part.outputs
-        elif part.parameters:
+        inputs += part.inputs
+        outputs += part.outputs
+        if isinstance(part, Ports):
+            continue
+        if part.parameters:
             parameters += part.parameters
         elif statement.predicate in _SETTINGS:
             member = _SETTINGS[statement.predicate]

@@ -34,6 +34,7 @@ _SIMPLE = re.compile(
     r"|(?P<decimal>[+-]?[0-9]*\.[0-9]+)"
     r")"
 )
+_HAS_INPUT, _HAS_OUTPUT = f"<{SC.hasInput}>", f"<{SC.hasOutput}>"
 _RARE = frozenset((SC.unit, SC.frame, SC.optional, SC.accepts))
 """What few ports say of themselves: it is read carefully."""
 _KINDS = r"a <[^<>]*>(?: , <[^<>]*>)*"
@@ -121,13 +122,13 @@ def port_of(link: str, text: str) -> PortText | None:
     return PortText(name, type_, rate, depth)
 
 
-def ported(link: str, port: PortText) -> Profile:
+def ported(link: str, port: PortText) -> Profile | Ports:
     """The part of a statement with one port."""
-    name, type_, rate, depth = port.name, IRI(port.type), port.rate, port.depth
-    if link == f"<{SC.hasInput}>":
-        return Profile(SUBJECT, ports=Ports(inputs=(Input(name, (type_,), None if depth is None else int(depth)),)))
-    if link == f"<{SC.hasOutput}>":
-        return Profile(SUBJECT, ports=Ports(outputs=(Output(name, (type_,), None if rate is None else float(rate)),)))
+    name, type_ = port.name, IRI(port.type)
+    if link == _HAS_INPUT:
+        return Ports((Input(name, (type_,), None if port.depth is None else int(port.depth)),))
+    if link == _HAS_OUTPUT:
+        return Ports((), (Output(name, (type_,), None if port.rate is None else float(port.rate)),))
     return Profile(SUBJECT, parameters=(OperationalParameter(name, type_),))
 
 

@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from operator import attrgetter
 
-from selfconf.model.profile import Profile
+from selfconf.model.profile import Ports, Profile
 from selfconf.model.term import IRI, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
@@ -50,8 +50,8 @@ class Statement(ABC):
         """Its predicate, in angle brackets, or `a`."""
         self.bracketed = bracketed
         """Whether its object is a blank node of its own."""
-        self.part: Profile | None = None
-        """What it adds to a profile, once that is known."""
+        self.part: Profile | Ports | None = None
+        """What it adds to a profile, once that is known; most add ports alone."""
         self.keyed: Sequence[tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]] = ()
         """Its properties behind what properties are ordered by, once that is known."""
         self.slot: object = self
@@ -71,9 +71,12 @@ class Statement(ABC):
     def properties(self) -> tuple[tuple[IRI, Term], ...]:
         """The properties that it states."""
         simple = property_of(self.text)
-        return self.read().properties if simple is None else (simple,)
+        if simple is not None:
+            return (simple,)
+        part = self.read()
+        return () if isinstance(part, Ports) else part.properties
 
-    def read(self) -> Profile:
+    def read(self) -> Profile | Ports:
         """What it adds to a profile."""
         if self.part is None:
             port = port_of(self.predicate, self.text)
@@ -177,10 +180,10 @@ class StatementTable(dict[str, Statement]):
         elif predicate in _SILENT:
             statement.part = _NOTHING
         else:
-            statement.part, faulty = setting_of(predicate, statement.text), False
-            if statement.part is None:
-                statement.part, faulty = statement.carefully()
-            part = statement.part
+            part, faulty = setting_of(predicate, statement.text), False
+            if part is None:
+                part, faulty = statement.carefully()
+            statement.part = part
             names = [*map(_NAME, part.inputs), *map(_NAME, part.outputs), *map(_NAME, part.parameters)]
             if faulty or len(names) > 1:
                 self.suspects.add(statement)

@@ -22,6 +22,8 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import ClauseSolver
 from selfconf.search.reduction import Distinct, Fed, Option, ReducedProblem
 
+INPUTS_PER_STEP = 200
+"""How many inputs of recruits are looked at, to find a landmark, in about the time of a conflict of the solver."""
 EVERYONE_APART: Mapping[IRI, int] = MappingProxyType({})
 """No component that could be a player could be recruited."""
 
@@ -83,7 +85,7 @@ class FoundedSolver(ClauseSolver):
         kept = self._model
         while found := super().ask(assumed, budget, most):
             playing = [option for literal, option in self._players if self.holds(literal)]
-            if not self._add_landmarks() and not (self.irredundant and self._exclude_spare(playing)):
+            if not self._add_landmarks(budget) and not (self.irredundant and self._exclude_spare(playing)):
                 return True
             self._model = kept
             if budget.steps == 0:
@@ -108,7 +110,7 @@ class FoundedSolver(ClauseSolver):
             met.update(need for one in ready for need in self._option[one].kind.supports)
         return placed
 
-    def _add_landmarks(self) -> bool:
+    def _add_landmarks(self, budget: Budget) -> bool:
         """Add a landmark for each need of a player that the last model does not meet; return whether there is one."""
         reach = Reach(self._all, self._needing, len(self._players))
         for literal, _ in self._all:
@@ -117,6 +119,7 @@ class FoundedSolver(ClauseSolver):
         unmet = [(need, condition) for need, condition in self._asked() if need not in reach.met]
         for need, condition in dict(unmet).items():
             self.add([*condition, *reach.without(need)])
+        budget.spend(reach.looks // INPUTS_PER_STEP)
         return bool(unmet)
 
     def _asked(self) -> Iterator[tuple[int, tuple[int, ...]]]:
@@ -171,6 +174,8 @@ class Reach:
         self._needing = needing
         self._added: set[int] = set()
         self.met: set[int] = set()
+        self.looks = 0
+        """How many inputs of recruits were looked at."""
 
     def add(self, literal: int, unless: int = -1) -> bool:
         """Add an option, unless a need were met then; return whether it was added."""
@@ -189,6 +194,7 @@ class Reach:
                     fed.append(other)
                     if not self._lacking[other] and other in self._added:
                         waiting.append(other)
+        self.looks += len(fed)
         if unless not in self.met:
             return True
         self._added.remove(literal)
@@ -201,4 +207,6 @@ class Reach:
         """Return options, one of which has to be added for a need to be met: all others are not enough."""
         reach = copy(self)
         reach._lacking, reach._added, reach.met = dict(self._lacking), set(self._added), set(self.met)
-        return [literal for literal in self._supports if literal not in reach._added and not reach.add(literal, need)]
+        found = [literal for literal in self._supports if literal not in reach._added and not reach.add(literal, need)]
+        self.looks = reach.looks
+        return found

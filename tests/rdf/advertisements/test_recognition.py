@@ -19,7 +19,7 @@ HERTZ = f"<{SC.rate}> [ <{SC.value}> 2.5{NEXT}<{SC.unit}> <{UNIT.HZ}> ]"
 IN, OUT, PARAMETER = f"<{SC.hasInput}>", f"<{SC.hasOutput}>", f"<{SC.hasParameter}>"
 
 
-def port(link: str, *said: str) -> Profile | None:
+def port(link: str, *said: str) -> Profile | Ports | None:
     """What a statement with one port adds to a profile, if it is recognised."""
     text = f"{link} [ {NEXT.join(said)} ]"
     found = port_of(link, text)
@@ -32,18 +32,20 @@ def carefully(text: str) -> Profile:
 
 
 @pytest.mark.parametrize(
-    ("link", "said", "profile"),
+    ("link", "said", "part"),
     [
-        (IN, (NAME, SIGNAL), Profile(SUBJECT, ports=Ports(inputs=(Input("pose", (TYPE,)),)))),
-        (IN, (NAME, SIGNAL, f"<{SC.depth}> 3"), Profile(SUBJECT, ports=Ports(inputs=(Input("pose", (TYPE,), 3),)))),
-        (OUT, (SIGNAL, NAME), Profile(SUBJECT, ports=Ports(outputs=(Output("pose", (TYPE,)),)))),
-        (OUT, (NAME, SIGNAL, HERTZ), Profile(SUBJECT, ports=Ports(outputs=(Output("pose", (TYPE,), 2.5),)))),
+        (IN, (NAME, SIGNAL), Ports(inputs=(Input("pose", (TYPE,)),))),
+        (IN, (NAME, SIGNAL, f"<{SC.depth}> 3"), Ports(inputs=(Input("pose", (TYPE,), 3),))),
+        (OUT, (SIGNAL, NAME), Ports(outputs=(Output("pose", (TYPE,)),))),
+        (OUT, (NAME, SIGNAL, HERTZ), Ports(outputs=(Output("pose", (TYPE,), 2.5),))),
         (PARAMETER, (NAME, KIND), Profile(SUBJECT, parameters=(OperationalParameter("pose", TYPE),))),
     ],
 )
-def test_a_port_in_order_is_recognised(link: str, said: tuple[str, ...], profile: Profile) -> None:
-    assert port(link, *said) == profile
-    assert carefully(f"{link} [ {NEXT.join(said)} ]").ports == profile.ports
+def test_a_port_in_order_is_recognised(link: str, said: tuple[str, ...], part: Profile | Ports) -> None:
+    assert port(link, *said) == part
+    careful = carefully(f"{link} [ {NEXT.join(said)} ]")
+    parameters = part.parameters if isinstance(part, Profile) else ()
+    assert (Ports(part.inputs, part.outputs), parameters) == (careful.ports, careful.parameters)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,43 @@
+"""The garbage collector: at rest while much is read, and as it was afterwards."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+
+import pytest
+
+from selfconf.api.collector import collector_at_rest, collector_looking_at_new
+
+
+class Loop:
+    """An object that refers to itself, which the collector alone can end."""
+
+    def __init__(self) -> None:
+        self.itself = self
+
+
+def test_the_collector_rests_and_is_as_it_was_afterwards() -> None:
+    def fail() -> None:
+        with collector_at_rest():
+            assert not gc.isenabled()
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert gc.isenabled()
+
+
+@pytest.mark.skipif(gc.get_freeze_count() > 0, reason="the program that runs the tests has frozen what it has")
+def test_what_was_there_is_looked_at_once_all_is_over() -> None:
+    loop = Loop()
+    gone = weakref.ref(loop)
+    with collector_looking_at_new():
+        new = weakref.ref(Loop())
+        del loop
+        gc.collect()
+        assert new() is None
+        assert gone() is not None
+    gc.collect()
+    assert gone() is None
+    assert not gc.get_freeze_count()
