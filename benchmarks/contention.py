@@ -3,7 +3,7 @@
     python -m benchmarks.contention [--rounds 20] [--smoke]
 
 All processes are real: a site, and a process with four sensors and three drives, of which no two tasks can share one.
-Two to eight tasks that wait begin at the same moment, each with a session of its own; half of them name what they need
+Two to eight tasks that wait begin at the same moment, each in a process of its own; half of them name what they need
 in the opposite order, and reserving goes by the order of the IRIs. A round is over when no task has begun to run for
 `QUIET` seconds.
 
@@ -20,6 +20,7 @@ import itertools
 import os
 import queue
 import secrets
+import subprocess
 import sys
 import tempfile
 import threading
@@ -123,8 +124,8 @@ def act(folder: Path) -> None:
 
 
 @contextmanager
-def ecology() -> Iterator[str]:
-    """A site and the actors, as processes; the name of the ecology."""
+def ecology() -> Iterator[None]:
+    """A site and the actors, as processes, in an ecology that the environment names."""
     name = f"contention-{secrets.token_hex(3)}"
     with tempfile.TemporaryDirectory() as path, ExitStack() as stack:
         folder = Path(path) / "ads"
@@ -138,34 +139,69 @@ def ecology() -> Iterator[str]:
         stack.enter_context(program("selfconf", "site", str(folder), "--name", "one"))
         until(PATIENCE, lambda: bool(rendezvous.local_sites(name)))
         assert line(stack.enter_context(program("benchmarks.contention", "--act"))) == "ready"
-        yield name
+        yield
 
 
-def contend(name: str, numbers: Sequence[int]) -> Round:
-    """Let tasks begin at once, wait until they are settled, and take them down."""
-    heard: queue.SimpleQueue[tuple[str, float]] = queue.SimpleQueue()
-    gate = threading.Barrier(len(numbers) + 1)
-    ending = threading.Event()
-
-    def end(run: sc.Run) -> None:
-        ending.wait(PATIENCE)
-        run.stop()
-
-    def one(number: int) -> None:
+def take_part() -> None:
+    """Run a task for each number that is read from stdin, from `go` on until `stop`; print each act with its moment."""
+    name = os.environ[rendezvous.ECOLOGY_VARIABLE]
+    for said in sys.stdin:
+        number = int(said)
         with sc.join(name) as living, ExitStack() as stack:
             wanted = sc.template(task(number, needs(number)))
-            gate.wait(PATIENCE)
+            print("ready", flush=True)
+            sys.stdin.readline()
             run = stack.enter_context(living.run(wanted, wait=True, name=f"task{number}"))
-            threading.Thread(target=end, args=(run,), daemon=True).start()
+            threading.Thread(target=_stop_when_told, args=(run,), daemon=True).start()
             for event in run.events():
-                heard.put((event.act, time.monotonic()))
+                print(event.act, time.monotonic(), flush=True)
+        print("over", flush=True)
 
-    threads = [threading.Thread(target=one, args=(number,)) for number in numbers]
-    for thread in threads:
-        thread.start()
-    gate.wait(PATIENCE)
+
+def _stop_when_told(run: sc.Run) -> None:
+    sys.stdin.readline()
+    run.stop()
+
+
+class Runner:
+    """A process that runs tasks, one after another, and what it has told of the one that runs."""
+
+    def __init__(self, process: subprocess.Popen[str], heard: queue.SimpleQueue[tuple[str, float]]) -> None:
+        self._process, self._heard = process, heard
+        self._told = threading.Semaphore(0)
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        for said in self._process.stdout:
+            act, _, moment = said.strip().partition(" ")
+            if moment:
+                self._heard.put((act, float(moment)))
+            else:
+                self._told.release()
+
+    def tell(self, word: str) -> None:
+        """Tell the process what to do next."""
+        assert self._process.stdin is not None
+        print(word, file=self._process.stdin, flush=True)
+
+    def wait(self) -> None:
+        """Wait until it is ready, or until its task is over."""
+        if not self._told.acquire(timeout=PATIENCE):
+            raise SystemExit("the benchmark stalled")
+
+
+def contend(runners: Sequence[Runner], heard: queue.SimpleQueue[tuple[str, float]], numbers: Sequence[int]) -> Round:
+    """Let tasks begin at once, wait until they are settled, and take them down."""
+    taking_part = list(zip(runners, numbers, strict=False))
+    for runner, number in taking_part:
+        runner.tell(str(number))
+    for runner, _ in taking_part:
+        runner.wait()
     began = last = time.monotonic()
-    running = waiting = 0
+    for runner, _ in taking_part:
+        runner.tell("go")
+    running = 0
     while True:
         try:
             said, moment = heard.get(timeout=QUIET)
@@ -173,23 +209,29 @@ def contend(name: str, numbers: Sequence[int]) -> Round:
             break
         if said == "running":
             running, last = running + 1, moment
-        waiting += said == "waiting"
         if moment > last + QUIET and running:
             break
-    ending.set()
-    for thread in threads:
-        thread.join(PATIENCE)
+    for runner, _ in taking_part:
+        runner.tell("stop")
+    for runner, _ in taking_part:
+        runner.wait()
+    while not heard.empty():
+        heard.get()
     return Round(last - began, running, len(numbers) - running)
 
 
 def measure(sizes: Sequence[int], rounds: int) -> tuple[list[float], dict[int, list[Round]]]:
     """What a task takes alone, and the rounds of each number of tasks."""
-    with ecology() as name:
-        contend(name, [0])  # modules are loaded, and the site is known
-        alone = [contend(name, [number % 8]).settled for number in range(rounds)]
+    heard: queue.SimpleQueue[tuple[str, float]] = queue.SimpleQueue()
+    with ecology(), ExitStack() as stack:
+        every = [stack.enter_context(program("benchmarks.contention", "--take-part")) for _ in range(max(sizes))]
+        runners = [Runner(process, heard) for process in every]
+        for number, runner in enumerate(runners):
+            contend([runner], heard, [number])  # modules are loaded, and the site is known
+        alone = [contend(runners, heard, [number % 8]).settled for number in range(rounds)]
         shifts = itertools.count()
         found = {
-            size: [contend(name, [(next(shifts) + one) % 8 for one in range(size)]) for _ in range(rounds)]
+            size: [contend(runners, heard, [(next(shifts) + one) % 8 for one in range(size)]) for _ in range(rounds)]
             for size in sizes
         }
     return alone, found
@@ -221,7 +263,11 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=20)
     parser.add_argument("--smoke", action="store_true", help="two tasks once, to see that it works")
     parser.add_argument("--act", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--take-part", action="store_true", help=argparse.SUPPRESS)
     given = parser.parse_args()
+    if given.take_part:
+        take_part()
+        return
     if given.act:
         act(Path(os.environ[FOLDER_VARIABLE]))
         return

@@ -97,7 +97,7 @@ def actors(path: Path, *names: str) -> Iterator[subprocess.Popen[str]]:
 
 @contextmanager
 def ecology(folder: Path, crowd: Path | None) -> Iterator[str]:
-    """An ecology, by name: a site with the honest components, all but the first alive, and perhaps one with strangers."""
+    """An ecology, by name: a site with the honest ones, all but the first alive, and perhaps one with strangers."""
     name = f"strangers-{secrets.token_hex(3)}"
     os.environ[rendezvous.ECOLOGY_VARIABLE] = name
     with ExitStack() as stack:
