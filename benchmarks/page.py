@@ -7,7 +7,7 @@ A tracker raises FAIL in an ecology of real processes, again and again; the page
     diagram    from the call that makes it fail until the diagram shows the one that has taken over, in ms
     reason     ... until the time line says what was lost and why
     picture    from the address until the page shows a crowd of so many components
-    change     from the moment when the server hears that one of them is gone until the page shows it
+    change     from the end of one of these lives, or the beginning of one, until the page shows it
 
 It needs Chromium, as the tests of the page do.
 """
@@ -19,29 +19,23 @@ import re
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import closing, contextmanager
-from dataclasses import replace
+from contextlib import closing
 from pathlib import Path
-
-import uvicorn
 
 from benchmarks.machine import described, quantile, table
 from selfconf.errors import NetworkError
-from selfconf.serve.board import Board
-from selfconf.serve.change import EcologyChange
-from selfconf.serve.metrics import Metrics
-from selfconf.serve.server import bound
+from selfconf.model.term import IRI
 from tests.cli.processes import Home
-from tests.serve.asgi import served
 from tests.serve.chromium import CHROMIUM, Chromium
-from tests.serve.shown import advertised
 
 Times = dict[str, list[float]]
 """Seconds by what was measured."""
+CROWD = "@prefix sc: <https://w3id.org/selfconf#> . @prefix rob: <https://w3id.org/selfconf/robotics#> .\n"
+MEMBER = """<urn:crowd:sensor-{n}> a sc:Component, rob:PositionSensor ; rob:place <urn:crowd:room-{room}> ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType rob:PlanarPose2D ] ."""
 TRACKS, REPLACED = "person-tracker", "absolute-odometry"
 PLAYER = "[...document.querySelectorAll('.box .name')].some((name) => name.textContent === {!r})"
-REASON = f"document.querySelector('.events').textContent.includes('{TRACKS} is lost: it failed: told to')"
+REASON = f"document.querySelector('.events').textContent.includes('{TRACKS} failed: told to')"
 
 
 def failures(browser: Chromium, folder: Path, number: int) -> Times:
@@ -51,12 +45,11 @@ def failures(browser: Chromium, folder: Path, number: int) -> Times:
     with closing(home):
         home.site("peis-home", "ads")
         home.components("sonar", "encoder", "tracker", "odometry", "control", "drive")
-        address = re.search(r"http://\S+/", home.selfconf("serve", "--ecology", home.ecology, "--port", "0").line())
-        assert address is not None
+        address = _address(home)
         for _ in range(number):
             run = home.run()
             run.act("running")
-            page = browser.page(address[0])
+            page = browser.page(address)
             page.until(PLAYER.format(TRACKS))
             order = home.folder / "tracker.fail"
             order.touch()
@@ -72,46 +65,43 @@ def failures(browser: Chromium, folder: Path, number: int) -> Times:
     return found
 
 
-@contextmanager
-def _address(board: Board) -> Iterator[str]:
-    config = uvicorn.Config(served(board), log_level="warning", access_log=False, lifespan="off", ws="none")
-    server = uvicorn.Server(config)
-    with bound("127.0.0.1", 0) as place:
-        thread = threading.Thread(target=server.run, args=([place],))
-        thread.start()
-        try:
-            yield f"http://127.0.0.1:{place.getsockname()[1]}/"
-        finally:
-            board.stream.close()
-            server.should_exit = True
-            thread.join()
-
-
-def crowd(browser: Chromium, components: int, number: int) -> Times:
-    """The times until a crowd and its changes are shown."""
+def crowd(browser: Chromium, folder: Path, components: int, number: int) -> Times:
+    """The times until a crowd and its changes are shown; a site advertises it, and this process lives for all of it."""
     found: Times = {"picture": [], "change": []}
-    board, one = Board("crowd", Metrics()), advertised("tracker")
-    body = next(iter(one.components.values()))
-    assert body is not None
-    bodies = {
-        f"urn:c:{n}": {**body, "name": f"sensor-{n}", "places": [f"room-{n % 30}"], "site": f"host-{n % 10}"}
-        for n in range(components)
-    }
-    board.apply(replace(one, components=bodies, sites={f"host-{n}": {"missing": False} for n in range(10)}))
+    home = Home(folder)
+    (folder / "crowd.ttl").write_text(CROWD + "\n".join(MEMBER.format(n=n, room=n % 30) for n in range(components)))
     tally = "document.querySelector('#tally').textContent.startsWith('{} of {} ')"
-    with _address(board) as address:
-        for _ in range(number):
-            began = time.monotonic()
+    with closing(home):
+        home.site("crowd", "crowd.ttl")
+        address = _address(home)
+        with closing(home.node()) as bus:
+            keys = [home.keys.life(IRI(f"urn:crowd:sensor-{n}"), "life") for n in range(components)]
+            ends = [bus.announce(key) for key in keys]
             page = browser.page(address)
-            page.until(f"document.querySelector('.site') && {tally.format(components, components)}")
-            found["picture"].append(time.monotonic() - began)
-            for state, alive in (("absent", components - 1), ("alive", components)):
-                began = time.monotonic()
-                board.apply(EcologyChange(components={"urn:c:7": {**bodies["urn:c:7"], "state": state}}))
-                page.until(tally.format(alive, components))
-                found["change"].append(time.monotonic() - began)
+            page.until(tally.format(components, components))
             page.close()
+            for _ in range(number):
+                began = time.monotonic()
+                page = browser.page(address)
+                page.until(f"document.querySelector('.site') && {tally.format(components, components)}")
+                found["picture"].append(time.monotonic() - began)
+                began = time.monotonic()
+                ends[7]()
+                page.until(tally.format(components - 1, components))
+                found["change"].append(time.monotonic() - began)
+                began = time.monotonic()
+                ends[7] = bus.announce(keys[7])
+                page.until(tally.format(components, components))
+                found["change"].append(time.monotonic() - began)
+                page.close()
     return found
+
+
+def _address(home: Home) -> str:
+    """Where a server shows an ecology, once it does."""
+    address = re.search(r"http://\S+/", home.selfconf("serve", "--ecology", home.ecology, "--port", "0").line())
+    assert address is not None
+    return address[0]
 
 
 def report(times: Times) -> str:
@@ -134,7 +124,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder, closing(Chromium(Path(folder) / "browser")) as browser:
         (Path(folder) / "home").mkdir()
         times = failures(browser, Path(folder) / "home", given.failures)
-        times |= crowd(browser, given.components, given.failures)
+        (Path(folder) / "crowd").mkdir()
+        times |= crowd(browser, Path(folder) / "crowd", given.components, given.failures)
     print(f"{described('uvicorn')}, {given.components} components\n\n{report(times)}")
 
 

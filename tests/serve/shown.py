@@ -1,12 +1,22 @@
-"""The components of the lab as a server shows them."""
+"""The components of the lab as a server shows them, and a server that shows a board."""
 
 from __future__ import annotations
 
+import asyncio
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import uvicorn
+
 from selfconf.discovery import FoundAdvertisement
 from selfconf.rdf import advertisements, turtle
+from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.component_bodies import component_body
+from selfconf.serve.server import bound
 from tests.lab import ADVERTISEMENTS, PREFIXES
+from tests.serve.asgi import served
 
 
 def found(name: str) -> FoundAdvertisement:
@@ -25,3 +35,31 @@ def advertised(*names: str) -> EcologyChange:
         {"astrid": {"missing": False}},
         graphs={str(c): turtle.ntriples(one.advertisement.triples) for c, one in components.items()},
     )
+
+
+@contextmanager
+def serving(board: Board) -> Iterator[tuple[str, Callable[[EcologyChange], object]]]:
+    """Serve a board over HTTP on a thread: its address, and what changes the board, from any thread."""
+    config = uvicorn.Config(served(board), log_level="warning", access_log=False, lifespan="off", ws="none")
+    server, begun = uvicorn.Server(config), threading.Event()
+    loops: list[asyncio.AbstractEventLoop] = []
+
+    async def serve() -> None:
+        loops.append(asyncio.get_running_loop())
+        begun.set()
+        await server.serve(sockets=[place])
+
+    with bound("127.0.0.1", 0) as place:
+        thread = threading.Thread(target=lambda: asyncio.run(serve()))
+        thread.start()
+        begun.wait()
+        try:
+            # A board is changed on the thread that serves it, which would otherwise sleep on.
+            yield (
+                f"http://127.0.0.1:{place.getsockname()[1]}/",
+                lambda change: loops[0].call_soon_threadsafe(board.apply, change),
+            )
+        finally:
+            loops[0].call_soon_threadsafe(board.stream.close)
+            server.should_exit = True
+            thread.join()
