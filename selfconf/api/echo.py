@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
-from selfconf.bus.port import Bus, Sample
+from selfconf.bus.port import Bus, Sample, Undo
 from selfconf.errors import PeerError
 from selfconf.protocol.messages import Stamp
 from selfconf.protocol.stamps import StampReader
@@ -85,8 +85,13 @@ def heard_signal(
     return HeardSignal(stamp, rate, len(sample.payload), raw, value, passed_over)
 
 
-def echo(bus: Bus, key: str, complain: Callable[[str], None] = lambda _: None) -> Iterator[HeardSignal]:
-    """The signals of an output, by its key, from now on and without an end; `complain` hears of what is no signal."""
+def echo(
+    bus: Bus, follow: Callable[[Callable[[Sample], None]], Undo], complain: Callable[[str], None] = lambda _: None
+) -> Iterator[HeardSignal]:
+    """The signals of an output from now on, without an end; `complain` hears of what is no signal.
+
+    `follow` begins to hand the samples of the output to what it is given, on the thread of the bus.
+    """
     arrived: deque[tuple[float, Sample]] = deque(maxlen=SIGNALS_HELD)
     stamps, moments = StampReader(), deque[float]()
     taken = heard = 0
@@ -96,7 +101,7 @@ def echo(bus: Bus, key: str, complain: Callable[[str], None] = lambda _: None) -
         taken += 1
         arrived.append((bus.now(), sample))
 
-    undo = bus.subscribe(key, receive)
+    undo = follow(receive)
     try:
         while True:
             bus.run(lambda: bool(arrived))

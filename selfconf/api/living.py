@@ -18,6 +18,7 @@ from selfconf.api.detached import task_record
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
 from selfconf.api.membership import MEMBERS, beliefs, check_may_run, member
+from selfconf.api.output_sources import follow_output
 from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.site_logs import LogSource
 from selfconf.api.task import TaskSpecification
@@ -262,7 +263,7 @@ class LivingEcology(Ecology):
         state = self.state(profile.component)
         if state != "alive":
             complain(f"{profile.component.short} is {state}: it says nothing before a task has it started")
-        return echo(self._bus, self._view.keys.output(profile.component, output), complain)
+        return echo(self._bus, partial(follow_output, self._bus, self._view.keys, profile, output), complain)
 
     def restart(self, component: str) -> ComponentState:
         """Have its site end the process of a component, and start it again; returns how it is once it lives again.

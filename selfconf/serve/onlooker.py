@@ -2,7 +2,8 @@
 
 An output is *glanced* at: followed as an input does until a few signals have come, then let go for a while, the longer
 the more bytes they were. So a camera that nobody else looks at costs the network no more than a thermometer does, and
-the component is called by nobody. Its log is asked for at its site, piece by piece.
+the component is called by nobody, but a composite, which is asked what stands behind its outputs. The log is asked for
+at the site, piece by piece.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from selfconf.api.echo import heard_signal
+from selfconf.api.output_sources import follow_output
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.discovery import FoundAdvertisement
 from selfconf.errors import PeerError
@@ -65,8 +67,9 @@ class Onlooker:
     def __init__(self, bus: Bus, keys: Keys, found: FoundAdvertisement, tell: Callable[[str, Body], None]) -> None:
         """`tell` receives `signals`, which is the latest by output, and `log`, which is lines or why there are none."""
         self._bus, self._keys, self._tell, self._site = bus, keys, tell, found.site
-        self._component = found.advertisement.profile.component
-        self._outputs = [port.name for port in found.advertisement.profile.signal_outputs][:MOST_OUTPUTS]
+        self._profile = found.advertisement.profile
+        self._component = self._profile.component
+        self._outputs = [port.name for port in self._profile.signal_outputs][:MOST_OUTPUTS]
         self._glances = {output: _Glance() for output in self._outputs}
         self._fresh: dict[str, Body] = {}
         self._ended = self._telling = False
@@ -97,7 +100,8 @@ class Onlooker:
             return
         glance = self._glances[output]
         glance.moments, glance.size = [], 0
-        glance.undo = self._bus.subscribe(self._keys.output(self._component, output), partial(self._heard, output))
+        heard = partial(self._heard, output)
+        glance.undo = follow_output(self._bus, self._keys, self._profile, output, heard)
 
     def _heard(self, output: str, sample: Sample) -> None:
         glance = self._glances[output]

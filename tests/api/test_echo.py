@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 
@@ -27,7 +28,7 @@ class Stage:
         self.output: Publisher = self.network.node().publisher(KEY, Urgency.SIGNAL)
         self.stamps, self.numbers = StampWriter(CAMERA, "life"), itertools.count(1)
         self.said: list[str] = []
-        self.heard: Iterator[HeardSignal] = echo(self.reader, KEY, self.said.append)
+        self.heard: Iterator[HeardSignal] = echo(self.reader, partial(self.reader.subscribe, KEY), self.said.append)
 
     def put(self, payload: bytes, raw: bool = False, encoding: SignalEncoding | None = None) -> None:
         stamp = self.stamps.write(next(self.numbers), 5.0, raw, encoding or SignalEncoding())
