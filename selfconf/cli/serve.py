@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import re
 from pathlib import Path
 
 from selfconf.cli.options import add_ecology_arguments, joined, seconds_option
 from selfconf.errors import InstallationError
 
-EXAMPLE = """  selfconf serve --port 8000"""
+EXAMPLE = """  selfconf serve --port 8000
+  selfconf serve --allow-origin https://yasgui.example   # a page there may ask, too"""
 LOCAL, PORT, QUERY_SECONDS = "127.0.0.1", 8000, 30.0
+ORIGIN = re.compile(r"(https?)://(\[[0-9a-f:.]+\]|[a-z0-9](?:[a-z0-9.-]*[a-z0-9])?)(?::([0-9]{1,5}))?")
+"""An origin as browsers send it, in small letters; names beyond ASCII stand in it as punycode."""
+USUAL_PORTS = {"http": "80", "https": "443"}
+"""The ports that browsers leave out of an origin."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,6 +41,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="keep what is deployed in this folder, as PROV-O, so that SPARQL reaches back (default: nothing is kept)",
     )
+    parser.add_argument(
+        "--allow-origin",
+        dest="origins",
+        metavar="ORIGIN",
+        type=_origin,
+        action="append",
+        default=[],
+        help="let pages of this origin, such as https://yasgui.example, ask SPARQL and the directory from within a"
+        " browser; repeatable (default: no page but that of this server)",
+    )
     add_ecology_arguments(parser)
 
 
@@ -44,13 +60,13 @@ def run(given: argparse.Namespace) -> int:
     if missing:
         raise InstallationError(f"{' and '.join(missing)} is missing; install the extra `serve`")
     from selfconf import rendezvous
-    from selfconf.serve import serve_ecology
+    from selfconf.serve import ServerOptions, serve_ecology
 
     shown = rendezvous.credentials(given.keys, "read", "conf", "site")
     with joined(given) as ecology:
         name, endpoints = ecology.name, ecology.endpoints
-    place, seconds, folder = (given.host, given.port), given.answer_seconds, given.history
-    serve_ecology(name, endpoints, shown, *place, seconds, folder, lambda url: _tell(name, url))
+    options = ServerOptions(given.host, given.port, given.answer_seconds, given.history, given.origins)
+    serve_ecology(name, endpoints, shown, options, lambda url: _tell(name, url))
     return 0
 
 
@@ -62,3 +78,14 @@ def _port(text: str) -> int:
     if not text.isdecimal() or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"{text!r} is no port; it takes a number from 0 to 65535")
     return int(text)
+
+
+def _origin(text: str) -> str:
+    found = ORIGIN.fullmatch(text.lower())
+    if found is None:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no origin; it takes SCHEME://HOST or SCHEME://HOST:PORT without a path, such as"
+            " https://yasgui.example"
+        )
+    scheme, host, port = found.groups()
+    return f"{scheme}://{host}" if port in (None, USUAL_PORTS[scheme]) else f"{scheme}://{host}:{port}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import mimetypes
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from importlib.resources import files
 
 from starlette.applications import Starlette
@@ -20,6 +20,7 @@ from selfconf.serve.directory import Directory, event_stream
 from selfconf.serve.fits import Fits
 from selfconf.serve.metrics import PROMETHEUS, Metrics
 from selfconf.serve.onlookers import Onlookers
+from selfconf.serve.origins import Origins
 from selfconf.serve.problems import problem
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 
@@ -33,6 +34,7 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
 }
 """What a browser is told with every answer: load nothing from elsewhere, run nothing that is not a file of the page."""
 
@@ -45,10 +47,11 @@ def application(
     fits: Fits,
     linked: Callable[[], bool],
     hosts: Collection[str] = LOOPBACK,
+    origins: Collection[str] = (),
 ) -> ASGIApp:
     """The server as an ASGI application; `linked` tells whether the ecology can be heard.
 
-    `hosts` are the names under which it may be asked; empty for any.
+    `hosts` are the names under which it may be asked; empty for any. Pages of the `origins` may ask what is standard.
     """
     directory = Directory(board)
     page = {name: _file(name) for name in _names()}
@@ -94,32 +97,39 @@ def application(
         Route("/healthz", health),
     ]
     refusals = {HTTPException: _refused, ClientDisconnect: _nobody_left}
-    return Guard(Starlette(routes=routes, exception_handlers=refusals), hosts)
+    return Guard(Starlette(routes=routes, exception_handlers=refusals), hosts, Origins(origins))
 
 
 class Guard:
-    """Refuses requests for another host, and gives every answer the headers of the house."""
+    """Refuses requests for another host or of another origin, and gives every answer the headers of the house."""
 
-    def __init__(self, inner: ASGIApp, hosts: Collection[str]) -> None:
-        self._inner, self._hosts = inner, frozenset(hosts)
+    def __init__(self, inner: ASGIApp, hosts: Collection[str], origins: Origins) -> None:
+        self._inner, self._hosts, self._origins = inner, frozenset(hosts), origins
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """One request."""
+        if scope["type"] != "http":
+            return
+        asked = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
 
         async def sent(message: Message) -> None:
             if message["type"] == "http.response.start":
-                headers = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
+                said = HEADERS | self._origins.headers(asked)
+                headers = [(name.lower().encode(), value.encode("latin-1")) for name, value in said.items()]
                 message["headers"] = [*message.get("headers", ()), *headers]
             await send(message)
 
-        if scope["type"] != "http":
-            return
-        host = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), "")
+        await (self._answered_here(scope, asked) or self._inner)(scope, receive, sent)
+
+    def _answered_here(self, scope: Scope, asked: Mapping[str, str]) -> Response | None:
+        """The answer to a request that does not come any further."""
+        host = asked.get("host", "")
         if self._hosts and _without_port(host) not in self._hosts:
-            refused = problem(421, f"this server is not {host!r}; ask it under the address at which it listens")
-            await refused(scope, receive, sent)
-        else:
-            await self._inner(scope, receive, sent)
+            return problem(421, f"this server is not {host!r}; ask it under the address at which it listens")
+        if refused := self._origins.refusal(asked, scope["path"]):
+            return problem(403, refused)
+        allowed = self._origins.preflight(scope["method"], asked)
+        return None if allowed is None else Response(status_code=204, headers=allowed)
 
 
 def _without_port(host: str) -> str:

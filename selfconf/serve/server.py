@@ -6,8 +6,9 @@ import asyncio
 import os
 import signal
 import socket
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
@@ -37,30 +38,40 @@ LAST_ANSWERS = 2
 """Seconds that answers which are under way may take when the server is ended."""
 
 
+@dataclass(frozen=True)
+class ServerOptions:
+    """Where a server listens, and what it allows."""
+
+    host: str
+    port: int
+    seconds: float
+    """How long a query may take."""
+    folder: Path | None = None
+    """Where the history is kept, if it is."""
+    origins: Collection[str] = ()
+    """Whose pages may ask besides its own, as browsers write an origin."""
+
+
 def serve_ecology(
     ecology: str,
     endpoints: Sequence[str],
     credentials: Credentials | None,
-    host: str,
-    port: int,
-    seconds: float,
-    folder: Path | None,
+    options: ServerOptions,
     listening: Callable[[str], None],
 ) -> None:
     """Serve an ecology over HTTP until SIGINT or SIGTERM; `listening` receives the URL.
 
-    `credentials` are what it shows where there are keys, `seconds` is what a query may take, `folder` where the history
-    is kept, if it is. Raises NetworkError where the port is taken or the ecology cannot be reached, and AuthorError for
-    a folder that cannot be used.
+    `credentials` are what it shows where there are keys. Raises NetworkError where the port is taken or the ecology
+    cannot be reached, and AuthorError for a folder that cannot be used.
     """
-    with bound(host, port) as place:
-        record = Record(folder)
+    with bound(options.host, options.port) as place:
+        record = Record(options.folder)
         try:
             bus = member(ecology, endpoints, credentials)
             try:
                 reads = credentials is not None and credentials.name.startswith("read.")
                 believed = beliefs(credentials)
-                asyncio.run(_serve(bus, ecology, record, place, seconds, listening, believed, may_hear=not reads))
+                asyncio.run(_serve(bus, ecology, record, place, options, listening, believed, may_hear=not reads))
             finally:
                 bus.close()
         finally:
@@ -106,20 +117,19 @@ async def _serve(
     ecology: str,
     record: Record,
     place: socket.socket,
-    seconds: float,
+    options: ServerOptions,
     listening: Callable[[str], None],
     believed: Beliefs | None,
     may_hear: bool,
 ) -> None:
     loop, metrics = asyncio.get_running_loop(), Metrics()
     board = Board(ecology, metrics)
-    sparql = SparqlEndpoint(record.dataset, metrics, seconds)
+    sparql = SparqlEndpoint(record.dataset, metrics, options.seconds)
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
     onlookers = Onlookers(bus, board, may_hear)
-    app = application(
-        board, metrics, sparql, onlookers, Fits(bus, board), lambda: bool(bus.link), LOOPBACK if local else ()
-    )
+    fits, hosts = Fits(bus, board), LOOPBACK if local else ()
+    app = application(board, metrics, sparql, onlookers, fits, lambda: bool(bus.link), hosts, options.origins)
 
     def take(change: EcologyChange) -> None:
         record.note(change)

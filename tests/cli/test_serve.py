@@ -101,8 +101,9 @@ def component_rows(body: bytes) -> int:
 
 
 def test_another_sparql_server_asks_it_and_ctrl_c_ends_it_with_streams_open(ecology: Home) -> None:
-    server, browser = serve(ecology)
+    server, browser = serve(ecology, "--allow-origin", "HTTPS://yasgui.example:443")
     assert ecology.until(lambda: browser.get("/healthz")[0] == 200)
+    assert browser.get("/things", Origin="https://yasgui.example")[0] == 200
     here = f"SERVICE <http://127.0.0.1:{browser.port}/sparql> {{ ?c a <{SC.Component}> }}"
     assert len(list(cast(ox.QuerySolutions, ox.Store().query(f"SELECT ?c {{ {here} }}")))) == 7
     look = http.client.HTTPConnection("127.0.0.1", browser.port, timeout=30)
@@ -132,6 +133,11 @@ def test_a_port_that_is_taken_is_a_sentence(ecology: Home) -> None:
 
 def test_a_port_that_is_none_is_misuse(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "serve", "--port", "70000").is_one_sentence("no port")
+
+
+@pytest.mark.parametrize("origin", ["*", "null", "yasgui.example", "https://yasgui.example/", "https://a b", "ftp://a"])
+def test_an_origin_that_is_none_is_misuse(capsys: pytest.CaptureFixture[str], origin: str) -> None:
+    assert run(capsys, "serve", "--allow-origin", origin).is_one_sentence("is no origin; it takes SCHEME://HOST")
 
 
 def test_without_the_extra_it_says_what_to_install(

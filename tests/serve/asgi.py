@@ -44,12 +44,13 @@ def served(
     linked: bool = True,
     hosts: Collection[str] = LOOPBACK,
     bus: Bus | None = None,
+    origins: Collection[str] = (),
 ) -> ASGIApp:
     """The application over a board, a dataset, and a bus on which nobody else is, unless one is given."""
     metrics = Metrics()
     sparql = SparqlEndpoint(StandingDataset() if dataset is None else dataset, metrics, seconds)
     bus = bus or Network().node()
-    return application(board, metrics, sparql, Onlookers(bus, board), Fits(bus, board), lambda: linked, hosts)
+    return application(board, metrics, sparql, Onlookers(bus, board), Fits(bus, board), lambda: linked, hosts, origins)
 
 
 def ask(
