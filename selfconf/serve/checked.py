@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any
 
@@ -41,6 +42,11 @@ def checked_configuration(value: Any) -> Body | None:
             for one in _objects(value.get("roles"))
         ],
         "recruits": list(map(_text, _list(value.get("recruits")))),
+        "bindings": {
+            name: bound if isinstance(bound, str) else json.dumps(bound)
+            for name, bound in _object(value.get("bindings")).items()
+            if isinstance(bound, str | int | float)
+        },
         "connections": [
             {"from": _end(one.get("from"), "output"), "to": _end(one.get("to"), "input")}
             for one in _objects(value.get("connections"))
@@ -60,7 +66,7 @@ def checked_refusal(value: Any) -> Body | None:
 
 
 def _end(value: Any, port: str) -> Body:
-    given = value if isinstance(value, dict) else {}
+    given = _object(value)
     return {"component": _text(given.get("component")), port: _text(given.get(port))}
 
 
@@ -75,6 +81,10 @@ def finite_number(value: Any) -> float:
 
 def _list(value: Any) -> list[Any]:
     return value if isinstance(value, list) else []
+
+
+def _object(value: Any) -> Body:
+    return value if isinstance(value, dict) else {}
 
 
 def _objects(value: Any) -> list[Body]:

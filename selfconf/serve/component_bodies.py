@@ -37,6 +37,7 @@ def component_body(found: FoundAdvertisement, state: str) -> Body:
         "parameters": [{"name": one.name, "type": KNOWN_NAMES(one.type)} for one in profile.parameters],
         "preference": float(profile.preference),
         "shareable": profile.is_shareable,
+        "inside": short(profile.inside) if profile.inside else "",
     }
 
 

@@ -12,14 +12,13 @@ from selfconf.render.run_events import event_body
 from selfconf.serve.checked import checked_configuration, checked_event, checked_refusal
 from tests.lab import Lab
 
+MEMBERS = ["roles", "recruits", "bindings", "role", "components", "connections", "from", "to", "reasons", "message"]
 ANYTHING = st.recursive(
     st.none() | st.booleans() | st.floats() | st.text(max_size=5),
     lambda inner: (
         st.lists(inner, max_size=3)
         | st.dictionaries(
-            st.sampled_from(
-                ["roles", "recruits", "role", "components", "connections", "from", "to", "reasons", "message"]
-            ),
+            st.sampled_from(MEMBERS),
             inner,
             max_size=4,
         )
@@ -37,6 +36,7 @@ def test_whatever_is_told_has_the_form_that_the_page_expects(act: str, time: obj
     for role in (event.get("configuration") or {}).get("roles", ()):
         assert all(isinstance(one, str) for one in (role["role"], *role["components"]))
     assert all(isinstance(one, str) for one in (event.get("configuration") or {}).get("recruits", ()))
+    assert all(isinstance(one, str) for one in (event.get("configuration") or {}).get("bindings", {}).values())
     for reason in (event.get("refusal") or {}).get("reasons", ()):
         assert isinstance(reason["message"], str)
 
@@ -49,6 +49,7 @@ def test_what_a_configurator_tells_goes_on_as_it_is(tmp_path: Path) -> None:
     body = checked_configuration(running["configuration"])
     assert body is not None
     assert body["roles"] == running["configuration"]["roles"]
+    assert body["bindings"] == running["configuration"]["bindings"]
     assert body["connections"] == running["configuration"]["connections"]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import re
@@ -9,13 +10,13 @@ import signal
 import subprocess
 import sys
 import time
-import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.effort import at_night
+from tests.serve.chromium import CHROMIUM, Chromium, Page
 
 pytest.importorskip("pybullet", reason="the demo needs PyBullet")
 pytestmark = [pytest.mark.sim, pytest.mark.process]
@@ -48,6 +49,12 @@ class Demo:
         rest, _ = self.process.communicate(timeout=PATIENCE)
         self.said.append(rest)
         return self.process.returncode
+
+    def page(self) -> str:
+        """The address of its page, once that is there."""
+        address = re.search(r"http://127\.0\.0\.1:\d+/", self.until("page: serving the ecology"))
+        assert address is not None
+        return address[0]
 
     @property
     def ecology(self) -> str:
@@ -82,6 +89,40 @@ class Demo:
         while self.processes() and time.monotonic() < deadline:
             self.process.poll()
         return not self.processes()
+
+
+WITNESS = """(() => {{
+  const seen = window.seen = {{}};
+  const note = (what, there) => {{ if (there && !seen[what]) seen[what] = Date.now() / 1000; }};
+  const says = (css, ...texts) => texts.every((text) => document.querySelector(css).textContent.includes(text));
+  new MutationObserver(() => {{
+    const players = [...document.querySelectorAll('.box .face .name')].map((name) => name.textContent);
+    note('diagram', players.includes('{by}'));
+    note('time line', says('#events', '{replaced} failed:', '{by} takes over'));
+    note('reason', says('#below', '{replaced} failed:'));
+  }}).observe(document.body, {{ subtree: true, childList: true, characterData: true }});
+}})()"""
+"""Lets a page note when it first shows that one component was replaced by another, in seconds of the Unix epoch."""
+
+
+def assert_seen(page: Page, reason: str) -> None:
+    """Within a second of the loss the page has shown who took over, that and why; asked once all that is over."""
+    events = page.value("fetch('/state').then((answer) => answer.json())")["events"]
+    lost = next(event for event in events if event["act"] == "lost")
+    seen = page.until("Object.keys(window.seen).length === 3 && window.seen")
+    assert reason in lost["detail"]
+    assert {what: when - lost["time"] for what, when in seen.items() if when - lost["time"] > 1.0} == {}
+
+
+@pytest.fixture
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chromium | None]:
+    """A browser; None where there is none, or no server."""
+    if CHROMIUM is None or importlib.util.find_spec("uvicorn") is None:
+        yield None
+        return
+    browser = Chromium(tmp_path_factory.mktemp("browser"))
+    yield browser
+    browser.close()
 
 
 @pytest.fixture
@@ -154,10 +195,16 @@ def test_a_dismantling_configurator_arrives_too(tmp_path: Path, demo: list[Demo]
     ("keys", "protocol"),
     [pytest.param((), "tcp", marks=at_night, id="open"), pytest.param(("--keys",), "tls", id="keys")],
 )
-def test_a_speaker_that_fails_is_replaced(
-    keys: tuple[str, ...], protocol: str, tmp_path: Path, demo: list[Demo]
+def test_a_speaker_that_fails_is_replaced_and_a_browser_shows_it(
+    keys: tuple[str, ...], protocol: str, tmp_path: Path, demo: list[Demo], browser: Chromium | None
 ) -> None:
-    demo.append(Demo(tmp_path, "--scene", "radio", *keys))
+    demo.append(Demo(tmp_path, "--scene", "radio", *keys, *(() if browser is None else ("--serve",))))
+    if browser is not None:
+        page = browser.page(demo[0].page())
+        page.value(WITNESS.format(replaced="-speaker", by="shelf-speaker"))
+        demo[0].until("the page shows what has happened")
+        assert_seen(page, "somebody has pulled the plug")
+        demo[0].process.send_signal(signal.SIGINT)
     assert demo[0].end() == 0, demo[0].said
     words = "".join(demo[0].said)
     assert f"on {protocol}/127.0.0.1:" in words
@@ -182,16 +229,25 @@ def test_astrid_arrives_with_keys_too(tmp_path: Path, demo: list[Demo]) -> None:
 
 
 @at_night
-def test_the_drive_is_shown_in_a_browser_until_ctrl_c(tmp_path: Path, demo: list[Demo]) -> None:
-    pytest.importorskip("uvicorn", reason="the extra `serve` is not installed")
+def test_the_drive_is_shown_in_a_browser_until_ctrl_c(
+    tmp_path: Path, demo: list[Demo], browser: Chromium | None
+) -> None:
+    if browser is None:
+        pytest.skip("there is no Chromium, or the extra `serve` is not installed")
     demo.append(Demo(tmp_path, "--serve", "--pictures", "none"))
-    shown = demo[0]
-    address = re.search(r"http://127\.0\.0\.1:\d+/", shown.until("page: serving the ecology"))
-    assert address is not None
+    shown, address = demo[0], demo[0].page()
+    pages = [browser.page(address, *size) for size in ((1320, 780, False), (390, 844, True))]
+    for page in pages:
+        page.value(WITNESS.format(replaced="person-tracker", by="absolute-odometry"))
+    shown.until("         running")
+    for page in pages:
+        page.until("document.querySelectorAll('.box').length === 5")
     shown.until("the page shows what has happened")
-    with urllib.request.urlopen(f"{address[0]}state") as answer:
-        (task,) = json.loads(answer.read())["tasks"].values()
-    assert task["phase"] == "stopped"
+    for page in pages:
+        assert_seen(page, "Astrid has left the view")
+        (task,) = page.value("fetch('/state').then((answer) => answer.json())")["tasks"].values()
+        assert task["phase"] == "stopped"
+        assert page.trouble == []
     shown.process.send_signal(signal.SIGINT)
     assert shown.end() == 0
     assert shown.gone()

@@ -42,8 +42,9 @@ function render() {
   const then = model.statesThen();
   const states = new Map([...model.components].map(([iri, one]) => [iri, then.get(iri) ?? one.state]));
   const canvas = by("canvas");
-  if (task?.configuration) diagram.show(chosen, task, selected, states, canvas.clientWidth);
+  if (task?.configuration) diagram.show(chosen, task, selected, model.components, states, canvas.clientWidth);
   else diagram.clear();
+  by("legend").hidden = !task?.configuration;
   canvas.hidden = Boolean(task && !task.configuration && task.refusal);
   canvas.dataset.says = task?.configuration ? "" : task ? nothing(task) : "No task runs. What lives is listed beside.";
   const facts = JSON.stringify([chosen, task?.lost, task?.owed, task?.dropped, task?.refusal]);

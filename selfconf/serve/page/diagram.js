@@ -2,17 +2,25 @@
 
 import { s, say, short } from "/page/dom.js";
 import { layout } from "/page/layout.js";
-import { why } from "/page/model.js";
+import { did } from "/page/model.js";
 
-const WIDE = { width: 196, height: 66, name: 21, caption: 48 }, NARROW = { width: 150, height: 60, name: 17, caption: 27 };
+const WIDE = { width: 196, height: 66, name: 21, caption: 46 }, NARROW = { width: 150, height: 60, name: 17, caption: 27 };
 const PORT = 20;
 const MARGIN = 26;
 const cut = (text, most) => (text.length > most ? `${text.slice(0, most - 1)}…` : text);
 
 const because = (instead, task) => {
   const loss = task.lost[instead];
-  return loss ? `instead of ${short(instead)}: ${why(loss)}` : `instead of ${short(instead)}`;
+  return loss ? `instead of ${short(instead)}, which ${did(loss)}` : `instead of ${short(instead)}`;
 };
+
+/** A text as two lines of so many characters at most: broken before its reason, or between words. */
+function twoLines(text, most) {
+  if (text.length <= most) return [text, ""];
+  const reason = text.indexOf(": ") + 1;
+  const end = reason && reason <= most ? reason : text.lastIndexOf(" ", most);
+  return end > 0 ? [text.slice(0, end), cut(text.slice(end + 1), most)] : [cut(text, most), ""];
+}
 
 /** The boxes and lines of a configuration: a box for each part in it, which stays when its player changes. */
 function parts(configuration, box) {
@@ -66,7 +74,7 @@ export class Diagram {
   }
 
   /** Show a configuration; of another task than before at once, of the same task by a movement. */
-  show(id, task, selected, states, room) {
+  show(id, task, selected, components, states, room) {
     const down = room < 620;
     if (id !== this.#task || (down ? NARROW : WIDE) !== this.#box) this.clear();
     this.#box = down ? NARROW : WIDE;
@@ -82,11 +90,11 @@ export class Diagram {
     this.#svg.setAttribute("aria-label", `Configuration of ${task.name}: ${nodes.length} components`);
     const high = new Map(nodes.map((node) => [node.key, node.height]));
     const at = new Map([...placed.at].map(([key, { x, y }]) => [key, { x: x + margin, y: y + top, height: high.get(key) }]));
-    this.#boxesOf(nodes, at, task, selected, states);
+    this.#boxesOf(nodes, at, task, selected, components, states);
     this.#linesOf(edges, at, down);
   }
 
-  #boxesOf(nodes, at, task, selected, states) {
+  #boxesOf(nodes, at, task, selected, components, states) {
     const here = new Set(nodes.map((node) => node.key));
     for (const [key, known] of this.#known) {
       if (here.has(key)) continue;
@@ -111,10 +119,12 @@ export class Diagram {
       if (known.component !== node.component) this.#swap(known, node, task);
       known.component = node.component;
       const lost = task.lost[node.component], instead = task.configuration.replaced?.[node.component];
-      const note = lost ? why(lost) : instead ? because(instead, task) : "";
+      const note = lost ? did(lost) : instead ? because(instead, task) : "";
       const state = lost ? "lost" : states.get(node.component) ?? "";
       known.face.setAttribute("class", `face ${state}${selected === node.component ? " selected" : ""}${note && !lost ? " new" : ""}`);
-      say(known.caption, cut(note ?? "", this.#box.caption));
+      const told = this.#box === NARROW ? [cut(note, this.#box.caption), ""] : twoLines(note, this.#box.caption);
+      told.forEach((line, number) => say(known.lines[number], line));
+      known.group.classList.toggle("composite", Boolean(components.get(node.component)?.inside));
       say(known.role, cut(node.roles.map(short).join(", "), 28));
       say(known.title, [node.component, `plays ${node.roles.map(short).join(", ")}`, note,
         node.passed.length ? `passed over: ${node.passed.map(short).join(", ")}` : ""].filter(Boolean).join("\n"));
@@ -125,10 +135,12 @@ export class Diagram {
     const known = { component: node.component };
     known.role = s("text", { class: "role", x: 16, y: 24 });
     known.name = s("text", { class: "name", x: 16, y: 47, text: cut(short(node.component), this.#box.name) });
-    known.caption = s("text", { class: "caption", x: 2, y: this.#box.height + 16 });
+    known.lines = [s("tspan", { x: 2 }), s("tspan", { x: 2, dy: 14 })];
+    known.caption = s("text", { class: "caption", x: 2, y: this.#box.height + 16 }, ...known.lines);
     known.title = s("title", {});
     known.old = s("g", { class: "old" });
     known.face = s("g", { class: "face" }, s("rect", { width: this.#box.width, height: node.height, rx: 11 }),
+      s("path", { class: "within", d: `M8 ${node.height + 4}H${this.#box.width - 7}a11 11 0 0 0 11-11V9` }),
       known.inner = s("g", {}, s("circle", { class: "dot", cx: this.#box.width - 18, cy: 20, r: 4 }), known.role, known.name));
     const choose = () => this.#select(known.component);
     known.group = s("g", { class: "box", tabindex: 0, role: "button", onclick: choose,

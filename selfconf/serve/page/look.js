@@ -1,8 +1,26 @@
 // What the chosen component issues and prints, as it comes; the server hears of it only while this is looked at.
 
-import { clock, h, keyed, say } from "/page/dom.js";
+import { clock, h, keyed, plain, say, short } from "/page/dom.js";
 
 const MOST_LINES = 300;
+
+/** A value for the eye: numbers of four digits, names in place of IRIs; all of it is in the title. */
+function seen(value) {
+  if (typeof value === "number") {
+    return Number.isInteger(value) ? String(value) : Math.abs(value) < 1000 ? String(Number(value.toPrecision(4))) : value.toFixed(1);
+  }
+  if (Array.isArray(value)) return `[${value.map(seen).join(", ")}]`;
+  if (typeof value === "string") return /^(https?:|urn:)/.test(value) ? short(value) : value;
+  return JSON.stringify(value);
+}
+
+/** The fields of a signal, each with its name; of what is no JSON object its text. */
+function fields(text) {
+  let value = null;
+  try { value = JSON.parse(text); } catch { /* it was shortened, or is described */ }
+  if (value === null || typeof value !== "object" || Array.isArray(value)) return [h("span", { text })];
+  return Object.entries(value).map(([name, one]) => h("span", {}, h("i", { text: name }), ` ${seen(one)}`));
+}
 
 export class Look {
   #stream = null; #iri = ""; #signals = new Map(); #lines = []; #trouble = ""; #number = 0;
@@ -57,7 +75,11 @@ export class Look {
         const stale = passed > Math.max(3, 3 / (signal?.rate || 1));
         item.classList.toggle("stale", !signal || stale);
         say(rate, !signal ? "nothing yet" : stale ? `${passed} s ago` : signal.rate ? `${signal.rate.toFixed(1)}/s` : "");
-        say(text, signal?.trouble ?? signal?.text ?? "");
+        const says = signal?.trouble ?? signal?.text ?? "";
+        if (text.title !== plain(says)) {
+          text.title = plain(says);
+          text.replaceChildren(...(signal?.trouble ? [says] : says ? fields(says) : []));
+        }
         text.classList.toggle("bad", Boolean(signal?.trouble));
       });
   }

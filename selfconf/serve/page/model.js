@@ -42,10 +42,13 @@ export class Model {
     return this.at === null ? this.events : this.events.slice(0, this.at);
   }
 
-  /** The tasks as they are, or were: running ones first, then by priority. */
+  /** The tasks as they are, or were: running ones first, then by priority; those inside of composites after their own. */
   tasksSeen() {
-    const found = this.at === null ? new Map(this.tasks) : this.#tasksThen();
-    return [...found].sort(([, a], [, b]) => a.over - b.over || b.priority - a.priority || a.beginning - b.beginning);
+    const found = [...(this.at === null ? this.tasks : this.#tasksThen())];
+    found.sort(([, a], [, b]) => a.over - b.over || b.priority - a.priority || a.beginning - b.beginning);
+    const holders = new Map(found.map(([id, task]) => [id, holderOf(task, found)]));
+    const after = (id) => found.filter(([one]) => holders.get(one) === id).flatMap((one) => [one, ...after(one[0])]);
+    return after("");
   }
 
   #tasksThen() {
@@ -104,6 +107,12 @@ export class Model {
   }
 }
 
+/** The task that holds the composite of which another one is the inside; empty for what stands by itself. */
+function holderOf(inside, tasks) {
+  const found = inside.inside_of && tasks.find(([, task]) => task !== inside && task.components.includes(inside.inside_of));
+  return found ? found[0] : "";
+}
+
 /** What has changed from one configuration to the next: which component took over which role from which other. */
 export function replacements(before, after) {
   const found = [];
@@ -117,16 +126,17 @@ export function replacements(before, after) {
   return found;
 }
 
-const WHY = { fail: "it failed", crash: "it crashed", silence: "it fell silent", refused: "it refused", hung: "it hangs",
-  malformed: "what it sent was malformed", yield: "another task has it", "let go": "it let go" };
+const DID = { fail: "failed", crash: "crashed", silence: "fell silent", refused: "refused", hung: "hangs",
+  malformed: "sent malformed signals", yield: "went to another task", "let go": "let go of the task" };
 
-export const why = (loss) => [WHY[loss.cause] ?? loss.cause, loss.detail].filter(Boolean).join(": ");
+/** What a component that is lost did, as the end of a sentence that begins with its name. */
+export const did = (loss) => [DID[loss.cause] ?? `was lost (${loss.cause})`, loss.detail].filter(Boolean).join(": ");
 
 /** An event in a sentence, its kind for the eye, and whether it is worth a line. */
 export function worded(event, before) {
   const component = short(event.component);
   switch (event.act) {
-    case "lost": return { kind: "bad", text: `${component} is lost: ${why(event)}` };
+    case "lost": return { kind: "bad", text: `${component} ${did(event)}` };
     case "running": {
       const changes = replacements(before, event.configuration);
       const text = changes.map((one) => `${short(one.component)} takes over ${short(one.role)} from ${short(one.instead)}`);

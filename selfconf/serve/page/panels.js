@@ -1,7 +1,7 @@
 // What stands around the diagram: tasks, components by site and place, one component in detail, a refusal.
 
 import { ago, by, h, keyed, plain, say, short } from "/page/dom.js";
-import { why } from "/page/model.js";
+import { did } from "/page/model.js";
 import { coloured } from "/page/turtle.js";
 
 const CALM = { running: "good", waiting: "warn", refused: "bad", gone: "bad", stopped: "plain", detached: "plain", kept: "warn" };
@@ -20,22 +20,27 @@ export function showTasks(tasks, chosen, choose) {
       const button = item.firstElementChild, [state, name, facts] = button.children;
       button.setAttribute("aria-current", String(id === chosen));
       button.classList.toggle("over", task.over);
+      button.classList.toggle("within", Boolean(task.inside_of));
       state.className = `state ${CALM[task.phase] ?? "busy"}`;
       say(name, task.name);
-      say(facts, `${task.phase}${task.priority ? ` · priority ${task.priority}` : ""}${task.detached ? " · in the sites" : ""}`);
+      say(facts, `${task.inside_of ? `inside of ${short(task.inside_of)} · ` : ""}${task.phase}${task.priority ? ` · priority ${task.priority}` : ""}${task.detached ? " · in the sites" : ""}`);
     });
 }
 
 export function taskHead(task, live) {
   if (!task) return [];
-  const facts = [`${task.phase}${live && task.since && !task.over ? ` for ${ago(task.since)}` : ""}`,
-    task.priority ? `priority ${task.priority}` : "", task.configuration ? `${task.configuration.roles.length} roles` : "",
-    task.template ? short(task.template) : "", task.configurator ? `configurator ${task.configurator}` : "",
-    task.host ? `on ${task.host}` : ""];
+  const facts = [task.template && short(task.template) !== task.name ? short(task.template) : "", task.priority ? `priority ${task.priority}` : ""];
+  const bound = Object.entries(task.configuration?.bindings ?? {});
+  const phase = `${task.phase}${live && task.since && !task.over ? ` for ${ago(task.since)}` : ""}`;
+  const by = [task.configurator && `configurator ${task.configurator}`, task.host && `on ${task.host}`].filter(Boolean).join(" ");
   return [h("h2", { class: "title", text: task.name }),
-    h("p", { class: "facts" }, h("span", { class: `chip ${CALM[task.phase] ?? "busy"}`, text: facts[0] }),
-      ...facts.slice(1).filter((fact) => fact && fact !== task.name).map((fact) => h("span", { text: fact })))];
+    h("p", { class: "facts", title: by }, h("span", { class: `chip ${CALM[task.phase] ?? "busy"}`, text: phase }),
+      ...bound.map(([name, value]) => h("span", {}, `${name} `, h("b", { text: worth(value), title: String(value) }))),
+      ...facts.filter(Boolean).map((fact) => h("span", { text: fact })))];
 }
+
+/** What a parameter is bound to: of an IRI its last part. */
+const worth = (value) => (/^(https?:|urn:)/.test(value) ? short(value) : String(value));
 
 /** Why something is lost, and why there is no configuration. */
 export function below(task, select) {
@@ -45,7 +50,7 @@ export function below(task, select) {
   if (lost.length) {
     found.push(h("section", { class: "card bad" }, h("h3", { text: lost.length === 1 ? "Lost" : `${lost.length} components lost` }),
       h("ul", {}, ...lost.slice(0, 12).map(([component, loss]) =>
-        h("li", {}, link(component, select), h("span", { class: "soft", text: ` ${why(loss)}` }))))));
+        h("li", {}, link(component, select), h("span", { class: "soft", text: ` ${did(loss)}` }))))));
   }
   if (task.owed?.length) {
     found.push(h("section", { class: "card bad" }, h("h3", { text: "Out of control" }),
@@ -166,16 +171,20 @@ export function showDetail(model, iri, select, chooseTask, look, fits) {
     return;
   }
   const { held, lost } = model.claims(), holders = held.get(iri) ?? [], loss = lost.get(iri);
+  const within = one?.inside ? model.tasksSeen().filter(([, task]) => task.inside_of === iri && !task.over) : [];
   const state = loss ? "lost" : model.statesThen().get(iri) ?? one?.state ?? "not advertised";
-  const says = JSON.stringify([iri, one, state, loss, holders.map((task) => task.id), live]);
+  const says = JSON.stringify([iri, one, state, loss, holders.map((task) => task.id), within.map(([id]) => id), live]);
   if (says === detailSays && asked === iri) return;
   detailSays = says;
   const dt = (name, ...values) => (values.flat().filter(Boolean).length ? [h("dt", { text: name }), h("dd", {}, ...values.flat())] : []);
   const ports = (list) => list.map((port) => h("div", {}, h("b", { text: port.name }), h("span", { class: "soft", text: ` ${[port.signals.join(", "), port.unit, port.rate && `${port.rate} Hz`, port.optional && "optional"].filter(Boolean).join(" · ")}` })));
   const calls = (list) => list.map((each) => h("div", {}, h("b", { text: `${each.name}()` }), h("span", { class: "soft", text: ` ${[each.request, each.response && `→ ${each.response}`, each.optional && "optional"].filter(Boolean).join(" · ")}` })));
   const facts = one ? [
-    ...dt("state", h("span", { class: "with-state" }, h("span", { class: `state ${state.replaceAll(" ", "-")}` }), loss ? `lost: ${why(loss)}` : state)),
+    ...dt("state", h("span", { class: "with-state" }, h("span", { class: `state ${state.replaceAll(" ", "-")}` }), loss ? `lost: it ${did(loss)}` : state)),
     ...dt("held by", holders.map((task) => h("button", { type: "button", class: "link", text: task.name, onclick: () => chooseTask(task.id) }))),
+    ...dt("inside", !one.inside ? "" : within.length
+      ? within.map(([id, task]) => h("button", { type: "button", class: "link", text: task.name, onclick: () => chooseTask(id) }))
+      : `${one.inside}, which does not run now`),
     ...dt("site", `${one.site}`), ...dt("place", one.places.join(", ")),
     ...dt("inputs", ports(one.inputs)), ...dt("outputs", ports(one.outputs)),
     ...dt("operations", calls(one.operations)), ...dt("needs", calls(one.needed_operations)),
