@@ -5,6 +5,7 @@ The graphs are remembered here, so that the process is started again should it e
 
 from __future__ import annotations
 
+import contextlib
 import json
 import socket
 import subprocess
@@ -46,6 +47,11 @@ class StandingDataset:
         self._lock = threading.Lock()
         self._control: socket.socket | None = None
         self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start the process already now, so that the first question need not wait for it."""
+        with self._lock, contextlib.suppress(OSError):  # the first question tries again, and says why
+            self._start()
 
     def replace(self, graph: str, triples: bytes) -> None:
         """Let a graph hold these N-Triples and nothing else; without any it is gone. Later questions see that."""

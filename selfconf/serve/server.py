@@ -83,6 +83,7 @@ class Record:
 
     def __init__(self, folder: Path | None) -> None:
         self.dataset = StandingDataset()
+        self.dataset.start()
         self.hands = ThreadPoolExecutor(1, "changes")
         """Where changes are noted: it takes time that neither the bus nor the server has."""
         self._history = None if folder is None else History(folder)

@@ -24,8 +24,12 @@ ENDLESS = "SELECT (COUNT(*) AS ?n) WHERE { " + " ".join(f"?a{n} ?b{n} ?c{n} ." f
 def standing() -> Iterator[StandingDataset]:
     found = StandingDataset()
     found.replace("urn:first", FIRST)
+    found.start()
+    process = found._process
+    assert process is not None
     found.replace("urn:second", SECOND)
-    assert rows(found, "SELECT * { ?s ?p ?o }") == 3  # its process is started by the first question
+    assert rows(found, "SELECT * { ?s ?p ?o }") == 3
+    assert found._process is process  # it was there for the first question
     yield found
     found.close()
 

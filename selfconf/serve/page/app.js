@@ -26,6 +26,8 @@ function draw() {
 function select(iri) {
   selected = selected === iri ? "" : iri;
   draw();
+  // On a narrow screen it is shown above the list in which it was chosen.
+  if (selected) requestAnimationFrame(() => by("detail").scrollIntoView({ block: "nearest" }));
 }
 
 function choose(id) {
@@ -42,11 +44,15 @@ function render() {
   const then = model.statesThen();
   const states = new Map([...model.components].map(([iri, one]) => [iri, then.get(iri) ?? one.state]));
   const canvas = by("canvas");
-  if (task?.configuration) diagram.show(chosen, task, selected, model.components, states, canvas.clientWidth);
+  const last = task?.over && !task.refusal ? model.ranLast(chosen) : null;
+  const configuration = task?.configuration ?? last;
+  if (configuration) diagram.show(chosen, { ...task, configuration }, selected, model.components, states, canvas.clientWidth);
   else diagram.clear();
-  by("legend").hidden = !task?.configuration;
+  canvas.classList.toggle("last", Boolean(last));
+  by("legend").hidden = !configuration;
+  say(by("legend"), last ? `The task is over: ${task.phase}. This ran last; the line below leads back to what ran before.` : LEGEND);
   canvas.hidden = Boolean(task && !task.configuration && task.refusal);
-  canvas.dataset.says = task?.configuration ? "" : task ? nothing(task) : "No task runs. What lives is listed beside.";
+  canvas.dataset.says = configuration ? "" : task ? nothing(task) : "No task runs. What lives is listed beside.";
   const facts = JSON.stringify([chosen, task?.lost, task?.owed, task?.dropped, task?.refusal]);
   if (facts !== belowSays) {
     belowSays = facts;
@@ -61,7 +67,8 @@ function render() {
   document.title = `${model.ecology || "ecology"} · selfconf`;
 }
 
-const nothing = (task) => (task.over ? `This task is over: ${task.phase}. Choose a moment below to see what ran.` : task.refusal ? "" : `No configuration yet: ${task.phase}.`);
+const nothing = (task) => (task.over ? `This task is over: ${task.phase}.` : task.refusal ? "" : `No configuration yet: ${task.phase}.`);
+const LEGEND = "Each box is a role and, in bold, the component that plays it. Arrows are signals, named after the inputs that they feed.";
 
 // Hearing of changes.
 

@@ -4,7 +4,8 @@ import { s, say, short } from "/page/dom.js";
 import { layout } from "/page/layout.js";
 import { did } from "/page/model.js";
 
-const WIDE = { width: 196, height: 66, name: 21, caption: 46 }, NARROW = { width: 150, height: 60, name: 17, caption: 27 };
+const WIDE = { width: 196, height: 66, name: 21, caption: 46, edge: 16 };
+const NARROW = { width: 150, height: 60, name: 20, caption: 26, edge: 12 };
 const PORT = 20;
 const MARGIN = 26;
 const cut = (text, most) => (text.length > most ? `${text.slice(0, most - 1)}…` : text);
@@ -82,7 +83,7 @@ export class Diagram {
     this.#svg.classList.remove("empty");
     const { nodes, edges } = parts(task.configuration, this.#box);
     const placed = layout(nodes, edges, { width: this.#box.width, down });
-    const margin = down ? 6 : MARGIN, top = down ? 20 : MARGIN;
+    const margin = down ? 6 : MARGIN, top = down ? 32 : MARGIN;
     this.#svg.classList.toggle("narrow", down);
     const [width, height] = [placed.width + 2 * margin, placed.height + top + margin + 14];
     this.#svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -104,26 +105,26 @@ export class Diagram {
       this.#known.delete(key);
     }
     for (const node of nodes) {
+      const { x, y, height } = at.get(node.key), place = `translate(${x}px, ${y}px)`;
       let known = this.#known.get(node.key);
       if (!known) {
-        known = this.#made(node);
+        known = this.#made(node, place);
         this.#known.set(node.key, known);
-        this.#boxes.append(known.group);
       }
-      const { x, y, height } = at.get(node.key), middle = (height - this.#box.height) / 2;
+      const middle = (height - this.#box.height) / 2;
       known.face.firstElementChild.setAttribute("height", height);
       known.inner.setAttribute("transform", `translate(0 ${middle})`);
-      known.caption.setAttribute("y", this.#box === NARROW ? -6 : height + 16);
       known.height = height;
-      known.group.style.transform = `translate(${x}px, ${y}px)`;
+      known.group.style.transform = place;
       if (known.component !== node.component) this.#swap(known, node, task);
       known.component = node.component;
       const lost = task.lost[node.component], instead = task.configuration.replaced?.[node.component];
       const note = lost ? did(lost) : instead ? because(instead, task) : "";
       const state = lost ? "lost" : states.get(node.component) ?? "";
       known.face.setAttribute("class", `face ${state}${selected === node.component ? " selected" : ""}${note && !lost ? " new" : ""}`);
-      const told = this.#box === NARROW ? [cut(note, this.#box.caption), ""] : twoLines(note, this.#box.caption);
+      const told = twoLines(note, this.#box.caption), above = told[1] ? -19 : -6;
       told.forEach((line, number) => say(known.lines[number], line));
+      known.caption.setAttribute("y", this.#box === NARROW ? above : height + 16);
       known.group.classList.toggle("composite", Boolean(components.get(node.component)?.inside));
       say(known.role, cut(node.roles.map(short).join(", "), 28));
       say(known.title, [node.component, `plays ${node.roles.map(short).join(", ")}`, note,
@@ -131,10 +132,10 @@ export class Diagram {
     }
   }
 
-  #made(node) {
+  #made(node, place) {
     const known = { component: node.component };
-    known.role = s("text", { class: "role", x: 16, y: 24 });
-    known.name = s("text", { class: "name", x: 16, y: 47, text: cut(short(node.component), this.#box.name) });
+    known.role = s("text", { class: "role", x: this.#box.edge, y: 24 });
+    known.name = s("text", { class: "name", x: this.#box.edge, y: 47 });
     known.lines = [s("tspan", { x: 2 }), s("tspan", { x: 2, dy: 14 })];
     known.caption = s("text", { class: "caption", x: 2, y: this.#box.height + 16 }, ...known.lines);
     known.title = s("title", {});
@@ -146,17 +147,31 @@ export class Diagram {
     known.group = s("g", { class: "box", tabindex: 0, role: "button", onclick: choose,
       onkeydown: (event) => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); choose(); } } },
       known.title, known.face, known.old, known.caption);
+    known.group.style.transform = place;  // before it is seen, or it would move there from the corner
+    this.#boxes.append(known.group);  // a text has no length before it is part of the page
+    this.#nameOf(known, node.component);
     return known;
+  }
+
+  /** Write the name of a component into its box, closer where it would not fit. */
+  #nameOf(known, component) {
+    say(known.name, cut(short(component), this.#box.name));
+    known.name.removeAttribute("textLength");
+    const room = this.#box.width - 2 * this.#box.edge;
+    if (known.name.getComputedTextLength() > room) {
+      known.name.setAttribute("lengthAdjust", "spacingAndGlyphs");
+      known.name.setAttribute("textLength", room);
+    }
   }
 
   /** One component takes over from another: the old name leaves, struck through, and the new one comes in. */
   #swap(known, node, task) {
     const loss = task.lost[known.component];
     const leaving = s("g", { class: `leaving${loss ? " failed" : ""}` }, s("rect", { width: this.#box.width, height: known.height, rx: 11 }),
-      s("text", { class: "name", x: 16, y: 47 + (known.height - this.#box.height) / 2, text: cut(short(known.component), this.#box.name) }));
+      s("text", { class: "name", x: this.#box.edge, y: 47 + (known.height - this.#box.height) / 2, text: cut(short(known.component), this.#box.name) }));
     known.old.replaceChildren(leaving);
     leaving.addEventListener("animationend", () => leaving.remove());
-    say(known.name, cut(short(node.component), this.#box.name));
+    this.#nameOf(known, node.component);
     known.name.classList.remove("arriving");
     known.group.getBoundingClientRect();  // so that the movement begins anew
     known.name.classList.add("arriving");

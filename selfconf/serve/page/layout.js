@@ -46,7 +46,7 @@ export function layout(nodes, edges, { width, down }) {
   let rows = [];
   for (const node of nodes) (rows[layer.get(node.key)] ??= []).push(node.key);
   rows = ordered(rows, edges);
-  const gap = down ? { along: 74, across: 16 } : { along: 124, across: 44 };
+  const gap = down ? { along: 74, across: 16 } : { along: 104, across: 44 };
   const across = (key) => (down ? width : high.get(key));
   const along = (row) => (down ? Math.max(...row.map((key) => high.get(key))) : width);
   const breadth = (row) => row.reduce((sum, key) => sum + across(key), 0) + (row.length - 1) * gap.across;

@@ -80,6 +80,11 @@ export class Model {
     return found;
   }
 
+  /** The configuration that a task had last; null if it never had one. */
+  ranLast(id) {
+    return this.#tasksThen().get(id)?.before ?? null;
+  }
+
   /** The state of each component whose state was another then. */
   statesThen() {
     const then = new Map();
@@ -132,6 +137,13 @@ const DID = { fail: "failed", crash: "crashed", silence: "fell silent", refused:
 /** What a component that is lost did, as the end of a sentence that begins with its name. */
 export const did = (loss) => [DID[loss.cause] ?? `was lost (${loss.cause})`, loss.detail].filter(Boolean).join(": ");
 
+/** Who plays in a configuration, in a few words. */
+function players(configuration) {
+  const names = (configuration?.roles ?? []).flatMap((one) => one.components).map(short);
+  const more = names.length > 6 ? ` and ${names.length - 5} more` : "";
+  return names.length ? `: ${names.slice(0, more ? 5 : 6).join(", ")}${more}` : "";
+}
+
 /** An event in a sentence, its kind for the eye, and whether it is worth a line. */
 export function worded(event, before) {
   const component = short(event.component);
@@ -140,7 +152,7 @@ export function worded(event, before) {
     case "running": {
       const changes = replacements(before, event.configuration);
       const text = changes.map((one) => `${short(one.component)} takes over ${short(one.role)} from ${short(one.instead)}`);
-      return { kind: "good", text: text.length ? text.join("; ") : "the configuration runs" };
+      return { kind: "good", text: text.length ? text.join("; ") : `the configuration runs${players(event.configuration)}` };
     }
     case "waiting": return { kind: "warn", text: "there is no configuration; the task waits" };
     case "refused": return { kind: "bad", text: "there is no configuration; the task has ended" };

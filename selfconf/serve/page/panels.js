@@ -86,7 +86,8 @@ const link = (component, select) =>
 
 // Components by site and place.
 
-const MANY = 40;
+const MANY = 40, ALL = 200;
+const byName = new Intl.Collator("en", { numeric: true });
 const opened = new Map();
 
 export function showComponents(model, selected, select, filter) {
@@ -94,7 +95,7 @@ export function showComponents(model, selected, select, filter) {
   const words = filter.toLowerCase().split(/\s+/).filter(Boolean);
   const groups = new Map([...model.sites.keys()].sort().map((site) => [site, new Map()]));
   let count = 0;
-  for (const [iri, one] of [...model.components].sort(([, a], [, b]) => a.name.localeCompare(b.name))) {
+  for (const [iri, one] of [...model.components].sort(([, a], [, b]) => byName.compare(a.name, b.name))) {
     const text = `${one.name} ${one.label} ${one.types.join(" ")} ${one.places.join(" ")} ${one.site}`.toLowerCase();
     if (!words.every((word) => text.includes(word))) continue;
     count += 1;
@@ -112,7 +113,8 @@ export function showComponents(model, selected, select, filter) {
           (inner, [place, members]) => {
             headed(inner, place || "no place", members, "");
             inner.classList.toggle("alone", places.size === 1 && !place);
-            unfold(inner, `place ${site} ${place}`, words.length > 0 || members.length <= MANY || members.some((m) => m.iri === selected), () =>
+            const few = members.length <= MANY && (count <= ALL || members.some((one) => held.has(one.iri)));
+            unfold(inner, `place ${site} ${place}`, few || words.length > 0 || members.some((one) => one.iri === selected), () =>
               keyed(inner.lastElementChild, members, (one) => one.iri, (one) => row(one, select),
                 (button, one) => fill(button, one, selected, held, lost, then)));
           }));
@@ -156,7 +158,15 @@ function fill(button, one, selected, held, lost, then) {
   state.setAttribute("aria-label", now);
 }
 
-// One component.
+// One component, and what the page shows where none is chosen.
+
+const STATES = [["alive", "alive: its program runs"], ["dormant", "dormant: its site starts it when a task needs it"],
+  ["absent", "absent: nobody runs it"], ["lost", "lost: it failed while a task held it"]];
+
+const guide = () => [h("h2", { text: "How to read this" }),
+  h("p", { class: "hint", text: "Components say what they are; a task says which roles it needs. The middle shows who plays which role now, and the line below what has happened: drag its handle to look back." }),
+  h("ul", { class: "guide" }, ...STATES.map(([state, text]) => h("li", {}, h("span", { class: `state ${state}` }), text))),
+  h("p", { class: "hint", text: "Choose a component, in the list or in the diagram, to see what it says of itself, its last signals and its log." })];
 
 let asked = "", detailSays = "";
 
@@ -167,7 +177,7 @@ export function showDetail(model, iri, select, chooseTask, look, fits) {
   fits.show(one && live ? iri : "", one, model.tasksSeen());
   if (!iri) {
     asked = detailSays = "";
-    place.replaceChildren(h("p", { class: "hint", text: "Choose a component, in the list or in the diagram, to see what it says of itself." }));
+    place.replaceChildren(...guide());
     return;
   }
   const { held, lost } = model.claims(), holders = held.get(iri) ?? [], loss = lost.get(iri);
