@@ -31,7 +31,7 @@ test: $(VENV)/with-dev
 test-keys: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
 	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) -m process --junitxml $(VENV)/tests.xml \
-		tests/access tests/cli tests/api || SELFCONF_TEST_KEYS=1 $(BIN)/python -m tests.alone $(VENV)/tests.xml
+		tests/access tests/cli tests/api tests/serve/test_page.py || SELFCONF_TEST_KEYS=1 $(BIN)/python -m tests.alone $(VENV)/tests.xml
 
 # The inner loop: without tests that start processes or are slow, and a tenth of the examples of each property.
 quick: $(VENV)/with-dev

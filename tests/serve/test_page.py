@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.access import Principal, PrincipalKind
 from selfconf.serve.board import Board
 from selfconf.serve.change import Body, EcologyChange
 from selfconf.serve.metrics import Metrics
@@ -56,8 +57,12 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
 
 @pytest.fixture(scope="module")
 def url(home: Home) -> str:
-    """Where a server shows that ecology."""
-    said = home.selfconf("serve", "--ecology", home.ecology, "--port", "0").line()
+    """Where a server shows that ecology; with keys, such as may hear signals."""
+    keys: tuple[str, ...] = ()
+    if home.authority is not None:
+        home.authority.issue(Principal(PrincipalKind.CONFIGURATOR, "page"), home.folder / "page-keys")
+        keys = "--keys", str(home.folder / "page-keys")
+    said = home.selfconf("serve", "--ecology", home.ecology, "--port", "0", *keys).line()
     found = re.search(r"http://\S+/", said)
     assert found is not None, said
     return found[0]
