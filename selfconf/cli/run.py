@@ -149,6 +149,11 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
                 _check_name(given)
             yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
             return
+        if given.ecology is None and (others := sorted({site.ecology for site in rendezvous.local_sites()})):
+            complain(
+                f"this run begins an ecology of its own, and {others[0]} runs here already; to run there,"
+                f" give --ecology {others[0]} in place of --ads"
+            )
         site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect, given.keys))
         described = partial(_described, given.ads or ())
         running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)

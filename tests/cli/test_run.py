@@ -213,10 +213,13 @@ def test_a_refusal_points_to_the_advertisements_that_were_given_and_says_what_wo
     place = f"[ads/control.ttl:{PREFIXES.count(chr(10)) + 1}]"
     assert f"but it is no NavigationControl (did you mean NavigationContro?)  {place}" in spoken.complaints
     assert "what would mend it" in spoken.complaints
+    assert "an ecology of its own" not in spoken.complaints
+    home.site("peis-home", "ads/tracker.ttl")
     written = home.selfconf(*arguments, "--format", "json")
     (reason,) = written.act("refused")["refusal"]["reasons"]
     assert reason["place"].startswith("navigate.ttl:")
     assert written.ended() == 1
+    assert f"an ecology of its own, and {home.ecology} runs here already" in written.complaints
 
 
 def test_a_shape_that_cannot_be_judged_is_one_sentence_and_exit_code_2(inhabited: Home, tmp_path: Path) -> None:
