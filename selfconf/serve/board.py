@@ -65,6 +65,14 @@ class Board:
             whole = {} if found is None else thing_description(found.advertisement.profile, self.keys)
             self.stream.put(kind, {**whole, "id": str(component)})
 
+    def knows(self, task: str) -> bool:
+        """Whether there is a task of this identity, or was one lately."""
+        return task in self._tasks
+
+    def lost(self, task: str) -> frozenset[IRI]:
+        """The components that a task has lost and that have not come back."""
+        return frozenset(map(IRI, self._tasks.get(task, {}).get("lost", ())))
+
     def state(self) -> Body:
         """Everything, with the identifier of the last event that it holds."""
         return {

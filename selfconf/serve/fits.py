@@ -7,28 +7,25 @@ kept: it holds as long as the task and the advertisement do.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
-import sys
 from collections import OrderedDict
 from typing import Any
 
 from starlette.requests import Request
 from starlette.responses import Response
 
-from selfconf.bus.port import Bus, Replies
-from selfconf.errors import PeerError
+from selfconf.bus.port import Bus
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.serve.apart import judged_apart
 from selfconf.serve.board import Board
 from selfconf.serve.problems import problem
+from selfconf.serve.running_tasks import running_tasks
 
-TASKS_PATIENCE = 2.0
-"""Seconds that the configurators may take to say which tasks they run."""
 JUDGING = 15.0
 """Seconds that one task may take to be judged."""
 MOST_JUDGED = 20
@@ -51,34 +48,11 @@ class Fits:
         if found is None:
             return problem(404, "no component of this IRI is advertised; /fit?component=IRI takes one of /things")
         tasks = {}
-        for record in (await self._records())[:MOST_JUDGED]:
+        for record in (await running_tasks(self._bus, self._board.keys))[:MOST_JUDGED]:
             verdict = await self._verdict(record, found.advertisement)
             body = {"roles": verdict} if isinstance(verdict, list) else verdict
             tasks[record.task] = {"name": task_name(record.task), **body}
         return Response(json.dumps({"tasks": tasks}, ensure_ascii=False), media_type="application/json")
-
-    async def _records(self) -> list[TaskRecord]:
-        """The tasks that run, as their configurators tell them, in their order."""
-        loop = asyncio.get_running_loop()
-        told: asyncio.Future[Replies] = loop.create_future()
-
-        def take(replies: Replies) -> None:
-            if not told.done():
-                told.set_result(replies)
-
-        def done(replies: Replies) -> None:
-            with contextlib.suppress(RuntimeError):  # the loop has ended: so has the server
-                loop.call_soon_threadsafe(take, replies)
-
-        key = self._board.keys.configurator_call("*", "task")
-        self._bus.wake_up(lambda: self._bus.ask(key, b"", TASKS_PATIENCE, done))
-        found: dict[str, TaskRecord] = {}
-        with contextlib.suppress(asyncio.TimeoutError):
-            for sample in (await asyncio.wait_for(told, 2 * TASKS_PATIENCE)).samples:
-                with contextlib.suppress(PeerError):
-                    record = decode(sample.payload, TaskRecord)
-                    found[record.task] = record
-        return sorted(found.values(), key=lambda record: (-record.priority, record.beginning))
 
     async def _verdict(self, record: TaskRecord, advertisement: Advertisement) -> Any:
         """A list of roles, or an object that says why there is none."""
@@ -94,22 +68,10 @@ class Fits:
 
 
 async def _judged(record: bytes, advertisement: bytes) -> Any:
-    text = json.dumps({"record": record.decode(), "advertisement": advertisement.decode()}).encode()
-    process = await asyncio.create_subprocess_exec(
-        *(sys.executable, "-m", "selfconf.api.role_fits"),
-        stdin=asyncio.subprocess.PIPE,
-        stdout=asyncio.subprocess.PIPE,
-        stderr=asyncio.subprocess.DEVNULL,
-        start_new_session=True,  # Ctrl-C is for the program that serves, which ends this one
-    )
+    question = {"record": record.decode(), "advertisement": advertisement.decode()}
     try:
-        told, _ = await asyncio.wait_for(process.communicate(text), JUDGING)
-        return json.loads(told)
+        return await judged_apart("selfconf.api.role_fits", question, JUDGING)
     except asyncio.TimeoutError:
         return {"detail": f"what its roles ask for was not judged in {JUDGING:g} s"}
     except ValueError:
         return {"detail": "what its roles ask for cannot be judged"}
-    finally:
-        if process.returncode is None:
-            process.kill()
-            await process.wait()

@@ -26,6 +26,7 @@ from selfconf.serve.change import EcologyChange
 from selfconf.serve.connections import BoundedConnection
 from selfconf.serve.fits import Fits
 from selfconf.serve.history import History
+from selfconf.serve.mends import Mends
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
@@ -129,8 +130,8 @@ async def _serve(
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
     onlookers = Onlookers(bus, board, may_hear)
-    fits, hosts = Fits(bus, board), LOOPBACK if local else ()
-    app = application(board, metrics, sparql, onlookers, fits, lambda: bool(bus.link), hosts, options.origins)
+    fits, mends, hosts = Fits(bus, board), Mends(bus, board), LOOPBACK if local else ()
+    app = application(board, metrics, sparql, onlookers, fits, mends, lambda: bool(bus.link), hosts, options.origins)
 
     def take(change: EcologyChange) -> None:
         record.note(change)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Collection
-from typing import Any, NamedTuple
+from collections.abc import Collection, Coroutine
+from typing import Any, NamedTuple, TypeVar
 from urllib.parse import unquote
 
 from starlette.types import ASGIApp, Message
@@ -16,9 +16,13 @@ from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.fits import Fits
+from selfconf.serve.mends import Mends
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
+from tests.lab import Lab
+
+Result = TypeVar("Result")
 
 
 class Answer(NamedTuple):
@@ -50,7 +54,17 @@ def served(
     metrics = Metrics()
     sparql = SparqlEndpoint(StandingDataset() if dataset is None else dataset, metrics, seconds)
     bus = bus or Network().node()
-    return application(board, metrics, sparql, Onlookers(bus, board), Fits(bus, board), lambda: linked, hosts, origins)
+    return application(
+        board,
+        metrics,
+        sparql,
+        Onlookers(bus, board),
+        Fits(bus, board),
+        Mends(bus, board),
+        lambda: linked,
+        hosts,
+        origins,
+    )
 
 
 def ask(
@@ -58,6 +72,19 @@ def ask(
 ) -> Answer:
     """The answer to one request; an underscore in the name of a header is a hyphen."""
     return asyncio.run(asked(app, path, method, body, host, **headers))
+
+
+def meanwhile(lab: Lab, work: Coroutine[Any, Any, Result]) -> Result:
+    """The result of some work of a server, while a simulated ecology goes on."""
+
+    async def play() -> Result:
+        doing = asyncio.create_task(work)
+        while not doing.done():
+            lab.let_pass(0.05)
+            await asyncio.wait([doing], timeout=0.01)
+        return doing.result()
+
+    return asyncio.run(play())
 
 
 async def asked(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -16,26 +15,16 @@ from selfconf.configurator.state import Policy
 from selfconf.serve import fits
 from selfconf.serve.board import Board
 from tests.lab import NAVIGATE, Lab, iri
-from tests.serve.asgi import asked, served
+from tests.serve.asgi import asked, meanwhile, served
 
 pytestmark = pytest.mark.process
 
 
 def answers(lab: Lab, board: Board, *names: str) -> list[Any]:
     """What is said of some components, one after the other, while the ecology goes on."""
-
-    async def play() -> list[Any]:
-        app = served(board, bus=lab.network.node())
-        found = []
-        for name in names:
-            answer = asyncio.create_task(asked(app, f"/fit?component={quote(iri(name), safe='')}"))
-            while not answer.done():
-                lab.let_pass(0.05)
-                await asyncio.wait([answer], timeout=0.01)
-            found.append(answer.result().json["tasks"])
-        return found
-
-    return asyncio.run(play())
+    app = served(board, bus=lab.network.node())
+    paths = [f"/fit?component={quote(iri(name), safe='')}" for name in names]
+    return [meanwhile(lab, asked(app, path)).json["tasks"] for path in paths]
 
 
 @pytest.fixture

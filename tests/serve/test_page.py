@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
@@ -144,6 +145,17 @@ def test_a_failure_is_seen_as_it_happens_and_can_be_looked_back_at(home: Home, p
     page.until(f"{POSITION}.querySelector('.face .name').textContent === 'person-tracker'")
     page.click("Back to now")
     page.until(f"{POSITION}.querySelector('.face .name').textContent === 'absolute-odometry'")
+
+
+def test_what_would_mend_a_task_that_waits_is_found_while_its_refusal_is_looked_at(home: Home, page: Page) -> None:
+    run = home.run("--name", "second", "--wait")
+    run.act("waiting")
+    page.until("[...document.querySelectorAll('.task')].some((one) => one.textContent.includes('second'))")
+    page.value("[...document.querySelectorAll('.task')].find((one) => one.textContent.includes('second')).click()")
+    page.says("#below", "Not to be had")
+    page.says(".refusal", "no component is eligible for the role")
+    page.says(".refusal", "add one more component for the role")
+    assert run.end(signal.SIGINT) == 0
 
 
 def test_what_a_stranger_wrote_stays_text(page: Page) -> None:

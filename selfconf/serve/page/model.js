@@ -108,6 +108,7 @@ export class Model {
       for (const component of task.components) held.set(component, [...(held.get(component) ?? []), { id, ...task }]);
       for (const [component, why] of Object.entries(task.lost)) lost.set(component, why);
     }
+    for (const component of held.keys()) lost.delete(component);  // whoever has it now can use it
     return { held, lost };
   }
 }
@@ -148,7 +149,7 @@ function players(configuration) {
 export function worded(event, before) {
   const component = short(event.component);
   switch (event.act) {
-    case "lost": return { kind: "bad", text: `${component} ${did(event)}` };
+    case "lost": return { kind: event.cause === "refused" || event.cause === "yield" ? "warn" : "bad", text: `${component} ${did(event)}` };
     case "running": {
       const changes = replacements(before, event.configuration);
       const text = changes.map((one) => `${short(one.component)} takes over ${short(one.role)} from ${short(one.instead)}`);

@@ -43,12 +43,13 @@ export function taskHead(task, live) {
 const worth = (value) => (/^(https?:|urn:)/.test(value) ? short(value) : String(value));
 
 /** Why something is lost, and why there is no configuration. */
-export function below(task, select) {
+export function below(task, why, select) {
   if (!task) return [];
   const found = [];
   const lost = Object.entries(task.lost);
   if (lost.length) {
-    found.push(h("section", { class: "card bad" }, h("h3", { text: lost.length === 1 ? "Lost" : `${lost.length} components lost` }),
+    const away = lost.every(([, loss]) => loss.cause === "refused" || loss.cause === "yield");
+    found.push(h("section", { class: `card ${away ? "warn" : "bad"}` }, h("h3", { text: away ? "Not to be had" : lost.length === 1 ? "Lost" : `${lost.length} components lost` }),
       h("ul", {}, ...lost.slice(0, 12).map(([component, loss]) =>
         h("li", {}, link(component, select), h("span", { class: "soft", text: ` ${did(loss)}` }))))));
   }
@@ -61,7 +62,7 @@ export function below(task, select) {
     found.push(h("section", { class: "card warn" }, h("h3", { text: "Too slow" }),
       h("ul", {}, ...slow.map(([one, count]) => h("li", {}, link(one, select), ` has passed over ${count} signals`)))));
   }
-  if (task.refusal) found.push(refusal(task.refusal, select));
+  if (why) found.push(refusal(why, select));
   return found;
 }
 
@@ -78,6 +79,7 @@ function refusal(body, select) {
   if (body.repairs?.length) {
     parts.push(h("h4", { text: "What would change that" }), h("ul", {}, ...body.repairs.map((one) => h("li", { text: one.message }))));
   }
+  if (body.pending || body.detail) parts.push(h("p", { class: "soft", text: body.detail ?? "Looking for what would change that …" }));
   return h("section", { class: "card warn refusal" }, ...parts);
 }
 

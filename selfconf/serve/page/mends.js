@@ -1,0 +1,33 @@
+// What would mend a task that waits, as the server finds out while its refusal is looked at.
+
+export class Mends {
+  #asked = "";
+  #told = null;
+  /** Called when the server has said it. */
+  changed = null;
+
+  /** The refusal of a task with all that is known of it; asks the server once for each refusal. */
+  refusal(id, task, live) {
+    const body = task?.refusal;
+    if (!body || task.over || !live) return body;
+    const about = JSON.stringify([id, body, Object.keys(task.lost)]);
+    if (about !== this.#asked) {
+      this.#asked = about;
+      this.#told = { pending: true };
+      this.#ask(id, about);
+    }
+    return { ...body, ...this.#told };
+  }
+
+  async #ask(id, about) {
+    let told = {};
+    try {
+      const answer = await fetch(`/mend?task=${encodeURIComponent(id)}`);
+      if (answer.ok) told = await answer.json();
+    } catch { /* the server has ended; the page tries to reach it by itself */ }
+    if (about === this.#asked) {
+      this.#told = told.reasons ? told : { detail: told.detail };
+      this.changed?.();
+    }
+  }
+}
