@@ -16,9 +16,9 @@ from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer
 
-ASKED_AGAIN = 1.0
+OUTPUTS_ASKED_AGAIN = 1.0
 """Seconds between two questions to a composite which outputs stand behind its own."""
-PATIENCE = 2.0
+COMPOSITE_PATIENCE = 2.0
 """Seconds that a composite may take to answer."""
 
 
@@ -47,7 +47,7 @@ class _IssuedInside:
 
     def _ask(self) -> None:
         if not self._ended:
-            self._bus.ask(self._keys.call(self._composite, "state"), b"", PATIENCE, self._told)
+            self._bus.ask(self._keys.call(self._composite, "state"), b"", COMPOSITE_PATIENCE, self._told)
 
     def _told(self, replies: Replies) -> None:
         if self._ended:
@@ -56,7 +56,7 @@ class _IssuedInside:
             with contextlib.suppress(PeerError):
                 wires = decode(sample.payload, CallAnswer).outputs.get(self._output, ())
                 self._follow({self._keys.output(wire.component, wire.output) for wire in wires})
-        self._bus.later(ASKED_AGAIN, self._ask)
+        self._bus.later(OUTPUTS_ASKED_AGAIN, self._ask)
 
     def _follow(self, wanted: Collection[str]) -> None:
         for key in [key for key in self._followed if key not in wanted]:

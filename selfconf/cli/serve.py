@@ -15,7 +15,7 @@ EXAMPLE = """  selfconf serve --port 8000
 LOCAL, PORT, QUERY_SECONDS = "127.0.0.1", 8000, 30.0
 ORIGIN = re.compile(r"(https?)://(\[[0-9a-f:.]+\]|[a-z0-9](?:[a-z0-9.-]*[a-z0-9])?)(?::([0-9]{1,5}))?")
 """An origin as browsers send it, in small letters; names beyond ASCII stand in it as punycode."""
-USUAL_PORTS = {"http": "80", "https": "443"}
+PORTS_LEFT_OUT = {"http": "80", "https": "443"}
 """The ports that browsers leave out of an origin."""
 
 
@@ -88,4 +88,4 @@ def _origin(text: str) -> str:
             " https://yasgui.example"
         )
     scheme, host, port = found.groups()
-    return f"{scheme}://{host}" if port in (None, USUAL_PORTS[scheme]) else f"{scheme}://{host}:{port}"
+    return f"{scheme}://{host}" if port in (None, PORTS_LEFT_OUT[scheme]) else f"{scheme}://{host}:{port}"

@@ -13,9 +13,9 @@ from urllib.parse import urlsplit
 
 SHARED = ("/sparql", "/search/sparql", "/things", "/events", "/.well-known/wot")
 """What a page of an origin that is named may ask for, and what lies below."""
-REMEMBERED = "600"
+PERMISSION_LASTS = "600"
 """Seconds for which a browser may remember what it may do."""
-METHODS = "GET, HEAD, POST"
+SHARED_METHODS = "GET, HEAD, POST"
 REQUEST_HEADERS = "Accept, Content-Type, Last-Event-ID"
 """The headers that a request may have besides those that need no permission."""
 RESPONSE_HEADERS = "Link, Retry-After"
@@ -60,9 +60,9 @@ class Origins:
             return None
         local = "access-control-request-private-network" in headers  # of a page from outside for a server in here
         return {
-            "Access-Control-Allow-Methods": METHODS,
+            "Access-Control-Allow-Methods": SHARED_METHODS,
             "Access-Control-Allow-Headers": REQUEST_HEADERS,
-            "Access-Control-Max-Age": REMEMBERED,
+            "Access-Control-Max-Age": PERMISSION_LASTS,
             **({"Access-Control-Allow-Private-Network": "true"} if local else {}),
         }
 
