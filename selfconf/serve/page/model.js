@@ -157,7 +157,7 @@ export function worded(event, before) {
     }
     case "waiting": return { kind: "warn", text: "there is no configuration; the task waits" };
     case "refused": return { kind: "bad", text: "there is no configuration; the task has ended" };
-    case "stopped": return { kind: "plain", text: "taken down" };
+    case "stopped": return { kind: "plain", text: "the task was taken down" };
     case "detached": return { kind: "plain", text: "handed to the sites" };
     case "waking": return { kind: "plain", text: `${component} is started by its site` };
     case "awaiting": return { kind: "warn", text: `${component} is held by another task; waiting for it` };

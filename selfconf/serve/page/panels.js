@@ -111,7 +111,7 @@ export function showComponents(model, selected, select, filter) {
       const all = [...places.values()].flat();
       headed(element, site, all, model.sites.get(site)?.missing ? "does not answer" : "");
       unfold(element, `site ${site}`, words.length > 0 || shown.length < 9, () =>
-        keyed(element.lastElementChild, [...places].sort(), ([place]) => place, ([place]) => group("place", place),
+        keyed(element.lastElementChild, [...places].sort(([a], [b]) => byName.compare(a, b)), ([place]) => place, ([place]) => group("place", place),
           (inner, [place, members]) => {
             headed(inner, place || "no place", members, "");
             inner.classList.toggle("alone", places.size === 1 && !place);

@@ -5,13 +5,23 @@ import { worded } from "/page/model.js";
 
 const SENTENCES = 60, TICKS = 300;
 
-/** The events that are worth a line, each with its number and its sentence. */
+/** The events that are worth a line, each with its number and its sentence; of what a task that waits finds again and
+again, the first. */
 export function sentences(events) {
-  const before = new Map(), found = [];
+  const before = new Map(), told = new Map(), found = [];
   events.forEach((event, number) => {
     const said = worded(event, before.get(event.task));
-    if (event.act === "running") before.set(event.task, event.configuration);
-    if (said) found.push({ number: number + 1, event, ...said });
+    if (event.act === "running") {
+      before.set(event.task, event.configuration);
+      told.delete(event.task);
+    }
+    if (!said) return;
+    if (event.act === "waiting" || event.cause === "refused") {
+      const known = told.get(event.task) ?? told.set(event.task, new Set()).get(event.task);
+      if (known.has(said.text)) return;
+      known.add(said.text);
+    }
+    found.push({ number: number + 1, event, ...said });
   });
   return found;
 }
