@@ -262,7 +262,12 @@ def refused_task() -> Body:
 
 def test_a_refusal_is_one_screen_with_what_would_mend_it(board: Board, shown: Callable[[Board], Shown]) -> None:
     board.apply(EcologyChange(tasks={"navigate~1": refused_task()}))
-    page, _ = shown(board)
+    page, change = shown(board)
+    held = {"act": "lost", "cause": "refused", "component": iri("drive"), "detail": "another task holds it"}
+    again = [{**one, "task": "navigate~1", "time": 1.0} for one in (held, {"act": "waiting"})]
+    change(EcologyChange(events=(*again, *again)))
+    page.says(".events", "the task waits")
+    assert page.value("document.querySelectorAll('.event').length") == 2
     for text in ("nobody is eligible for drive", "support is Pippi, not Astrid", "let drive have another support"):
         page.says(".refusal", text)
     bottom, seen = page.value("[document.querySelector('.refusal').getBoundingClientRect().bottom, innerHeight]")
