@@ -23,6 +23,8 @@ DEPLOYED = "urn:selfconf:selfconf/"
 """What the names of the graphs begin with in which configurators tell what they have deployed."""
 MOST_KEPT = 5000
 """How many configurations are kept; then the oldest one goes."""
+KEPT_FOR = 366 * 86_400.0
+"""Seconds for which a configuration is kept that was generated then, and is not deployed any more."""
 _GENERATED, _ENDED = ox.NamedNode(PROV.generatedAtTime), ox.NamedNode(PROV.invalidatedAtTime)
 
 
@@ -70,21 +72,27 @@ class History:
         kind, wanted = ox.NamedNode(TYPE), ox.NamedNode(SC.Configuration)
         name = next((q.subject.value for q in quads if (q.predicate, q.object) == (kind, wanted)), None)
         before = self._current.pop(graph, None)
+        over: dict[str, bytes] = {}
+        if before is not None and before != name:
+            node = ox.NamedNode(before)
+            self._store.add(ox.Quad(node, _ENDED, ox_term(moment(self._clock())), node))
+            over[before] = self._triples(before)
         if name is not None:
             self._current[graph] = name
-        if name is not None and not any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))):
-            self._store.extend(ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads)
-            self._forget_oldest()
-        if before is None or before == name:
-            return {}
-        node = ox.NamedNode(before)
-        self._store.add(ox.Quad(node, _ENDED, ox_term(moment(self._clock())), node))
-        return {before: self._triples(before)}
+            if not any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))):
+                self._store.extend(ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads)
+                over |= self._forget_oldest()
+        return over
 
-    def _forget_oldest(self) -> None:
-        names = self._names()
-        for name in sorted(names, key=self._generated)[: max(0, len(names) - MOST_KEPT)]:
+    def _forget_oldest(self) -> dict[str, bytes]:
+        """Forget what is too old or one too many, and return it as graphs that are empty now."""
+        names = sorted(self._names(), key=self._generated)
+        limit = str(ox_term(moment(self._clock() - KEPT_FOR)))
+        old = sum(self._generated(name) < limit for name in names)
+        over = [name for name in names[: max(old, len(names) - MOST_KEPT)] if name not in self._current.values()]
+        for name in over:
             self._store.remove_graph(ox.NamedNode(name))
+        return dict.fromkeys(over, b"")
 
     def _names(self) -> list[str]:
         return [graph.value for graph in self._store.named_graphs() if isinstance(graph, ox.NamedNode)]

@@ -56,6 +56,16 @@ def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, monkeypatch: pyte
     assert set(kept.past()) == {"urn:c:3", "urn:c:4", "urn:c:5"}
 
 
+def test_what_is_older_than_a_year_goes_unless_it_runs_still(tmp_path: Path) -> None:
+    now = [1.77e9]  # in February 2026
+    kept = History(tmp_path, lambda: now[0])
+    for number, graph in ((1, GRAPH), (2, GRAPH), (3, GRAPH + "2")):
+        kept.note({graph: told(number)})
+    now[0] += history.KEPT_FOR
+    assert kept.note({GRAPH: told(4)}) == {"urn:c:1": b"", "urn:c:2": b""}
+    assert set(kept.past()) == {"urn:c:3", "urn:c:4"}
+
+
 def test_a_folder_that_another_server_uses_is_a_sentence(tmp_path: Path) -> None:
     kept = History(tmp_path)
     with pytest.raises(AuthorError, match="does another server use it"):
