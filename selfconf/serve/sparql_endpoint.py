@@ -23,6 +23,8 @@ LARGEST_ANSWER = 64 << 20
 """An answer of more bytes than this is refused."""
 AT_ONCE = 24
 """How many queries are answered at once; others wait."""
+JSON, RESULTS_JSON = "application/json", "application/sparql-results+json"
+"""Clients that know JSON alone, as those of Things do, ask for the former and read the latter."""
 _STATUS: dict[type[Exception], int] = {
     QueryTimeoutError: 503,
     NotAcceptableError: 406,
@@ -65,9 +67,10 @@ class SparqlEndpoint:
         )
 
     async def _answer(self, query: QueryRequest, accept: str, request: Request) -> Response:
-        media = acceptable(accept, [*RESULT_TYPES, *TRIPLE_TYPES])
+        media = acceptable(accept, [*RESULT_TYPES, *TRIPLE_TYPES, JSON])
+        known = list(dict.fromkeys(RESULTS_JSON if one == JSON else one for one in media))
         question = StandingQuestion(
-            query.text, media, query.default_graphs, query.named_graphs, self._seconds, base=_endpoint(request)
+            query.text, known, query.default_graphs, query.named_graphs, self._seconds, base=_endpoint(request)
         )
         began = time.monotonic()
         try:
@@ -79,7 +82,8 @@ class SparqlEndpoint:
             self._metrics.queried(str(status), time.monotonic() - began)
             return problem(status, str(error))
         self._metrics.queried("200", time.monotonic() - began)
-        return Response(answer, media_type=kind, headers={"Vary": "Accept"})
+        told = JSON if kind == RESULTS_JSON and RESULTS_JSON not in media else kind
+        return Response(answer, media_type=told, headers={"Vary": "Accept"})
 
     async def _received(self, question: StandingQuestion) -> bytes:
         """All that comes on the socket of a question; a client that hangs up ends the query."""

@@ -108,7 +108,15 @@ def directory_description(base: str) -> dict[str, Any]:
                     "limit": {"type": "number"},
                     "format": {"type": "string", "enum": ["array", "collection"], "default": "array"},
                 },
-                "forms": [{"href": "/things{?offset,limit,format}", "htv:methodName": "GET"}],
+                "type": "array",  # as it is asked for without `format`: a client reads nothing of no type
+                "items": {"type": "object"},
+                "forms": [
+                    {
+                        "href": "/things{?offset,limit,format}",
+                        "htv:methodName": "GET",
+                        "contentType": "application/ld+json",
+                    }
+                ],
             }
         },
         "actions": {
