@@ -196,7 +196,7 @@ export function showDetail(model, iri, select, chooseTask, look, fits) {
     ...dt("held by", holders.map((task) => h("button", { type: "button", class: "link", text: task.name, onclick: () => chooseTask(task.id) }))),
     ...dt("inside", !one.inside ? "" : within.length
       ? within.map(([id, task]) => h("button", { type: "button", class: "link", text: task.name, onclick: () => chooseTask(id) }))
-      : `${one.inside}, which does not run now`),
+      : one.inside),
     ...dt("site", `${one.site}`), ...dt("place", one.places.join(", ")),
     ...dt("inputs", ports(one.inputs)), ...dt("outputs", ports(one.outputs)),
     ...dt("operations", calls(one.operations)), ...dt("needs", calls(one.needed_operations)),
