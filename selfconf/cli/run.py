@@ -99,6 +99,7 @@ def run(given: argparse.Namespace) -> int:
     task = task_of(given)
     if given.detach:
         return _detach(given, task)
+    _tell_of_others(given)
     with _begun(given, task) as (running, site):
         running.stop_on_signals()
         lines = TextLines(task)
@@ -127,6 +128,18 @@ def _lives(given: argparse.Namespace) -> bool:
     return bool(given.detach or endpoints or (ecology is not None and rendezvous.local_sites(ecology)))
 
 
+def _tell_of_others(given: argparse.Namespace) -> None:
+    """Tell who gives advertisements, and so begins an ecology, of one that runs on this machine already."""
+    from selfconf import rendezvous
+
+    others = sorted({site.ecology for site in rendezvous.local_sites()})
+    if given.ads is not None and given.ecology is None and others:
+        complain(
+            f"this run begins an ecology of its own, and {others[0]} runs here already; to run there,"
+            f" give --ecology {others[0]} in place of --ads"
+        )
+
+
 @contextmanager
 def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple[Run, SiteProcess | None]]:
     """The run in the ecology that there is, or in one with a site of its own for the advertisements given."""
@@ -149,11 +162,6 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
                 _check_name(given)
             yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
             return
-        if given.ecology is None and (others := sorted({site.ecology for site in rendezvous.local_sites()})):
-            complain(
-                f"this run begins an ecology of its own, and {others[0]} runs here already; to run there,"
-                f" give --ecology {others[0]} in place of --ads"
-            )
         site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect, given.keys))
         described = partial(_described, given.ads or ())
         running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)
