@@ -141,7 +141,7 @@ export class Diagram {
     known.title = s("title", {});
     known.old = s("g", { class: "old" });
     known.face = s("g", { class: "face" }, s("rect", { width: this.#box.width, height: node.height, rx: 11 }),
-      s("path", { class: "within", d: `M8 ${node.height + 4}H${this.#box.width - 7}a11 11 0 0 0 11-11V9` }),
+      s("path", { class: "behind", d: `M8 ${node.height + 4}H${this.#box.width - 7}a11 11 0 0 0 11-11V9` }),
       known.inner = s("g", {}, s("circle", { class: "dot", cx: this.#box.width - 18, cy: 20, r: 4 }), known.role, known.name));
     const choose = () => this.#select(known.component);
     known.group = s("g", { class: "box", tabindex: 0, role: "button", onclick: choose,
