@@ -277,6 +277,42 @@ def test_a_refusal_is_one_screen_with_what_would_mend_it(board: Board, shown: Ca
     page.says(".detail .title", "pippi-drive")
 
 
+def test_what_is_inside_of_a_composite_is_a_task_below_the_one_that_holds_it(
+    board: Board, shown: Callable[[Board], Shown]
+) -> None:
+    (body,) = advertised("tracker").components.values()
+    assert body is not None
+    whole, part = iri("person-tracker"), iri("absolute-odometry")
+
+    def plays(component: str) -> Body:
+        role = {"role": iri("position"), "components": [component]}
+        running = {"roles": [role], "connections": [], "recruits": [], "bindings": {}}
+        return {
+            **refused_task(),
+            "phase": "running",
+            "refusal": None,
+            "configuration": running,
+            "components": [component],
+        }
+
+    tasks = {
+        "eyes~1": {**plays(part), "name": "eyes", "beginning": 0.0, "inside_of": whole},
+        "outer~1": {**plays(whole), "name": "outer", "inside_of": None},
+    }
+    board.apply(EcologyChange(components={whole: {**body, "inside": "look"}}, tasks=tasks))
+    page, _ = shown(board)
+    page.until("document.querySelectorAll('.task .name').length === 2")
+    assert page.value("[...document.querySelectorAll('.task .name')].map((one) => one.textContent)") == [
+        "outer",
+        "eyes",
+    ]
+    page.until("document.querySelector('.box.composite .name').textContent === 'person-tracker'")
+    page.click("inside of person-tracker · running", ".task")
+    page.until("document.querySelector('.box .name').textContent === 'absolute-odometry'")
+    page.click("person-tracker", "#components button")
+    page.click("eyes", ".detail button")
+
+
 def test_a_thousand_components_are_grouped_and_found(
     shown: Callable[[Board], Shown],
 ) -> None:
