@@ -11,6 +11,8 @@ from selfconf.search.recruit_choice import RecruitChoice
 
 MOST_RECRUITS_LOOKED_AT = 250_000
 """How many recruits are looked at, at most, to exchange one after the other: a part of a second."""
+LONG_CHAIN = 4_000
+"""From how many recruits on a look takes longer: a chain has a bit for each."""
 WithoutSpare = Callable[[Sequence[int]], list[int]]
 """Recruits that are enough, by number, without those that can be spared."""
 
@@ -32,7 +34,8 @@ def _improved(choice: RecruitChoice, met: list[int], budget: Budget) -> list[int
     Local search, which finds in a moment what the solver would take long for where most recruits can be fed. Which are
     found does not matter where their number is proved to be the least: then the first of all such are taken.
     """
-    looks = budget.part(MOST_RECRUITS_LOOKED_AT // max(1, len(choice.needs)))
+    number = max(1, len(choice.needs))
+    looks = budget.part(MOST_RECRUITS_LOOKED_AT // (number * (1 + number // LONG_CHAIN)))
     tried: set[int] = set()
     while looks.steps and (left := [number for number in reversed(met) if number not in tried]):
         looks.spend(1)

@@ -165,7 +165,9 @@ class RecruitChoice:
         return [number for number in sorted(self.needs) if whole >> number & 1]
 
     def _least_chains(self, free: int = 0, without: int | None = None) -> dict[int, int]:
-        """For each choice of suppliers, by identity, a short chain that ends in one of them; bit k is recruit k.
+        """For choices of suppliers, by identity, a short chain that ends in one of them; bit k is recruit k.
+
+        For each choice of a player, and for each that is settled before them.
 
         Its length, without those that are free, is the cost of a need; that of a recruit is the number of all in the
         chains of its needs, each counted once (the set-additive heuristic of Keyder and Geffner, ECAI 2008), by the
@@ -178,12 +180,14 @@ class RecruitChoice:
         settled = [(0, place[number], number) for number, count in lacking.items() if not count and number != without]
         heapify(settled)
         least: dict[int, int] = {}
-        while settled:
+        unmet = {id(need.suppliers) for need in self.wanted}
+        while settled and unmet:
             number = heappop(settled)[2]
             for suppliers in self._feeds.get(number, ()):
                 if id(suppliers) in least:
                     continue
                 least[id(suppliers)] = chain[number]
+                unmet.discard(id(suppliers))
                 for fed in self._consumers.get(id(suppliers), ()):
                     chain[fed] |= chain[number]
                     lacking[fed] -= 1
