@@ -54,6 +54,8 @@ class FoundAdvertisement:
     startable: bool
     site_life: str = ""
     """Which life of the site has answered."""
+    unable: str = ""
+    """Why the component, a composite, cannot act now, as its site says."""
 
 
 @dataclass(slots=True)
@@ -362,7 +364,8 @@ class _Inquiry:
         for _, (page, sample) in sorted(answer.pages.items()):
             advertisement = self._advertisement(site[0], page, sample.payload)
             if advertisement is not None:
-                found.append(FoundAdvertisement(advertisement, site[0], page.source, page.startable, site[1]))
+                one = FoundAdvertisement(advertisement, site[0], page.source, page.startable, site[1], page.unable)
+                found.append(one)
         said, self._complaints = self._complaints, complaints
         few = _few(said, f"of site {site[0]}")
         if answer.excess:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from selfconf.api.composites import Composites
+from selfconf.api.reading import described_in
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
 from selfconf.composition.composer import Composer
@@ -93,6 +95,8 @@ class Recorder(Component):
 
     def __init__(self) -> None:
         self.said: list[tuple[Any, ...]] = []
+        self.served: Callable[[str, IRI], None] = lambda operation, caller: None
+        """Hears which operation is called, and by which component."""
         self.refusal: Exception | None = None
         self.slow = 0.0
         """How many seconds `started` takes."""
@@ -115,6 +119,18 @@ class Recorder(Component):
     def parameter_set(self, name: str, value: Any) -> None:
         self.said.append((name, value))
 
+    def called(self, operation: str, request: Signal) -> Any:
+        self.served(operation, request.source)
+        return "done"
+
+    def ask(self, operation: str, seconds: float = 2.0) -> None:
+        """Call an operation, and write down what comes of it, and of whom."""
+        self.call(
+            operation,
+            answered=lambda answer: self.said.append((operation, answer.status.value, answer.source)),
+            seconds=seconds,
+        )
+
 
 class Lab:
     """Two hosts and a configurator in simulated time; every component is a node of its own."""
@@ -133,14 +149,21 @@ class Lab:
         self.components: dict[str, Recorder] = {}
         self.runtimes: dict[str, ComponentRuntime] = {}
         self.complaints: list[str] = []
+        self.composites: dict[str, Composites] = {}
+        """Those of each site, as far as any of them live."""
         self.events: list[RunEvent] = []
         self.ended: list[Refusal | Undecided | None] = []
 
     def site(self, name: str, *names: str) -> Site:
         """A site with those advertisements, and with whatever else lies in its folder already."""
         files = write_advertisements(self.folder / name, *names, advertisements=self.advertised)
-        shelf = Shelf([files], self.complaints.append)
-        return Site(self.network.node(), "lab", name, shelf)
+        shelf, node = Shelf([files], self.complaints.append), self.network.node()
+        composites = Composites(
+            node, "lab", described_in, self.complaints.append, unable=lambda why: site.tell_unable(why)
+        )
+        site = Site(node, "lab", name, shelf, changed=composites.refresh)
+        self.composites[name] = composites
+        return site
 
     def profile(self, name: str) -> Profile:
         """The profile in one of the advertisements."""

@@ -55,6 +55,7 @@ EXAMPLES: dict[str, tuple[tuple[str, ...], ...]] = {
         (*CLOCK, "--bind", "room=:cellar"),
         (*WATCH, "--steps", "1"),
         (*WATCH, "--strategy", "best"),
+        ("examples/lookout/approach.ttl", "--ads", "examples/lookout"),
     ),
     "partition": ((*CLOCK, "--bind", "room=:kitchen"), (*WATCH, "--why")),
     "query": (
@@ -388,6 +389,7 @@ OPTIONAL = frozenset(
         "additions",
         "cost",
         "what_if",
+        "insides",
         "place",
         "role",
         "datatype",

@@ -14,8 +14,9 @@ from selfconf.api.collector import collector_at_rest, collector_looking_at_new
 from selfconf.api.ecology import Ecology
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.places import Places
+from selfconf.api.reading import described_in
 from selfconf.api.task import TaskSpecification
-from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained
+from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained, insides
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
@@ -224,6 +225,15 @@ class Inquiry:
         """The name of what a component is described in."""
         place = self.ecology[component].place
         return place.source if place else "the ecology"
+
+    def insides(self, answer: Answer) -> list[tuple[IRI, Configuration | str]]:
+        """What the composites of an answer would be inside, if their sites had this ecology, or why that is nothing.
+
+        Composites inside of these follow each after the one that holds it.
+        """
+        if not any(self.ecology[component].profile.inside for component in answer.components):
+            return []
+        return list(insides(self.ecology, described_in, answer.plain, self.composer.hierarchy))
 
     def answer(self, what_if: bool = False) -> Answer | Refusal | Undecided:
         """The configuration, or why there is none, within the time of the method."""

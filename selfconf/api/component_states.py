@@ -38,6 +38,8 @@ class ComponentState(NamedTuple):
     issued: Mapping[str, int] = {}
     """How many signals each output has issued since it lives."""
     life: str = ""
+    reason: str = ""
+    """Why it cannot act now, where its site says so: of a composite whose inside cannot be configured."""
 
     def body(self) -> dict[str, object]:
         """The state as JSON."""
@@ -52,6 +54,7 @@ class ComponentState(NamedTuple):
             "age": round(self.age, 3),
             "memory": self.memory,
             "issued": dict(self.issued),
+            "reason": self.reason,
         }
 
 
@@ -72,7 +75,7 @@ def component_states(discovery: Discovery, keys: Keys, replies: Replies) -> Iter
     for component, found in sorted(discovery.found.items()):
         types = tuple(sorted(found.advertisement.profile.types - {SC.Component}))
         state = "dormant" if found.startable else "absent"
-        one = ComponentState(component, types, found.site, state)
+        one = ComponentState(component, types, found.site, state, reason=found.unable)
         heard = answers.get(component)
         if heard is not None:
             task = task_name(heard.task)

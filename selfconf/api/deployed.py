@@ -27,6 +27,7 @@ def deployed_body(document: Document) -> dict[str, Any] | None:
             replaced[component] = str(before)
     return {
         "template": str(document.value(name, SC.template)),
+        "inside_of": _text(document, name, SC.insideOf) or None,
         "roles": [
             {"role": role, "components": components, "passed_over": passed_over[role]}
             for role, components in roles.items()

@@ -36,8 +36,13 @@ class SiteProcess:
         ecology: str | None = None,
         connect: Sequence[str] = (),
         keys: Path | None = None,
+        reasoning: str = "",
+        ontologies: Sequence[Path] = (),
     ) -> None:
-        """Raises AuthorError for paths that cannot be watched. `keys` is the folder of keys of an authority."""
+        """Raises AuthorError for paths that cannot be watched. `keys` is the folder of keys of an authority.
+
+        `reasoning` is the mode in which it configures the insides of its composites, with some `ontologies`.
+        """
         self.paths = [Path(path) for path in paths]
         if STDIN in self.paths:
             raise AuthorError("a site watches the files of its advertisements, so give files to --ads, not -")
@@ -46,6 +51,8 @@ class SiteProcess:
         ecology, self._connect = rendezvous.asked_for(ecology, connect)
         self.ecology = f"run-{secrets.token_hex(3)}" if ecology is None else ecology
         self.name = f"s{secrets.token_hex(3)}"
+        self._insides = ["--reasoning", reasoning] if reasoning else []
+        self._insides += [part for path in ontologies for part in ("--ontology", str(path))]
         self._keys = _of_authority(rendezvous.keys_folder(keys))
         self._process: subprocess.Popen[bytes] | None = None
         self.endpoint = ""
@@ -56,7 +63,7 @@ class SiteProcess:
     def __enter__(self) -> SiteProcess:
         """Raises NetworkError if it does not listen in time, SiteMisusedError if it has said why it cannot."""
         where = [part for endpoint in self._connect for part in ("--connect", endpoint)]
-        names = ["--ecology", self.ecology, "--name", self.name]
+        names = ["--ecology", self.ecology, "--name", self.name, *self._insides]
         if self._keys is not None:
             names += ["--keys", str(self._keys)]
         self._process = subprocess.Popen(

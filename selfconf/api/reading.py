@@ -15,8 +15,10 @@ from selfconf.api.ecology import Ecology, EndpointEcology, LoadedEcology
 from selfconf.errors import AuthorError
 from selfconf.model.left_out import LeftOut
 from selfconf.model.term import IRI
+from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement, SegmentCache, read_advertisements
 from selfconf.rdf.eligibility import AdvertisementIndex
+from selfconf.rdf.turtle import Document
 
 if TYPE_CHECKING:
     import rdflib
@@ -168,3 +170,8 @@ def existing(path: Path) -> Path:
     if not path.exists():
         raise AuthorError(f"there is no file or folder {path}")
     return path
+
+
+def described_in(advertisement: Advertisement) -> Document:
+    """The document in which a component is advertised. Raises AuthorError."""
+    return turtle.parse(*text_of(Path(advertisement.profile.place.source if advertisement.profile.place else "")))

@@ -15,9 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import files, rendezvous
-from selfconf.api.composites import Composites, described_in
+from selfconf.api.arguments import option
+from selfconf.api.composites import Composites
 from selfconf.api.joining import Joining
-from selfconf.api.reading import existing
+from selfconf.api.ontologies import hierarchy_of
+from selfconf.api.reading import described_in, existing
 from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.port import Bus
@@ -25,6 +27,7 @@ from selfconf.bus.zenoh_bus import client
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
+from selfconf.model.hierarchy import Reasoning
 from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
 from selfconf.render import count
@@ -53,6 +56,7 @@ def serve(
     insecure: bool = False,
     beside: Beside = lambda ecology, session: nullcontext(),
     ontologies: Sequence[Path] = (),
+    reasoning: str = Reasoning.SYNTACTIC.value,
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
 
@@ -61,10 +65,11 @@ def serve(
     folder `log` what the components print that it starts; by default both are folders of the runtime folder. With the
     folder `keys` only those are let in whom its authority vouches for; without it the site listens beyond loopback
     only if it may be `insecure`. `beside` is what lives with the site, from when it listens to when it ends. By
-    `ontologies`, files and folders of Turtle, the components that it starts check what they emit. Raises AuthorError
-    and NetworkError.
+    `ontologies`, files and folders of Turtle, the components that it starts check what they emit, and in
+    the mode `reasoning` the insides of its composites see them. Raises AuthorError and NetworkError.
     """
     _check_readable(paths, ontologies)
+    hierarchy = hierarchy_of(option(Reasoning, "reasoning", reasoning), ontologies)
     ecology, connect = rendezvous.asked_for(ecology, connect)
     if ecology is None:
         raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
@@ -94,7 +99,16 @@ def serve(
         log_path = _log_path(log, ecology, name).absolute()
         joining.log = str(log_path)
         keys_of, believed = (None, None) if secured is None else (secured.keys_of, secured.believed)
-        composites = Composites(bus, ecology, described_in, complain, work.work, believed)
+        composites = Composites(
+            bus,
+            ecology,
+            described_in,
+            complain,
+            work.work,
+            believed,
+            hierarchy,
+            lambda why: site.tell_unable(why),  # it is made below, and refreshes the composites
+        )
         site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond, changed=composites.refresh)
         if secured is not None:
             secured.keep_door(site, joining, complain)

@@ -22,6 +22,7 @@ from selfconf.cli.terminal import complain, display
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer, Inquiry
+    from selfconf.model.configuration import Configuration
     from selfconf.model.refusal import Refusal, Undecided
 
 EXAMPLE = """  selfconf configure examples/navigate.ttl --ads examples/peis-home \\
@@ -73,17 +74,23 @@ def run(given: argparse.Namespace) -> int:
 
 def _tell_insides(inquiry: Inquiry, answer: Answer) -> None:
     """Tell what composites of a configuration would be inside, if their sites had these advertisements."""
-    if not any(inquiry.ecology[component].profile.inside for component in answer.components):
-        return
-    from selfconf.api.composites import insides  # only now: it brings all that a site needs
     from selfconf.render import configuration_text
 
-    for component, inside in insides(inquiry.ecology, answer.components):
+    for component, inside in inquiry.insides(answer):
         if isinstance(inside, str):
             display(f"{answer.names(component)}: {inside}")
             continue
         told = ("  " + line for line in configuration_text(inside, answer.names).splitlines())
         display("\n".join([f"inside of {answer.names(component)}, from these advertisements", *told]))
+
+
+def _inside_body(inside: Configuration | str) -> dict[str, Any]:
+    """What a composite is inside, or why that is nothing, as JSON."""
+    from selfconf.render import configuration_body
+
+    if isinstance(inside, str):
+        return {"status": "refused", "reason": inside}
+    return {"status": "configured", "template": inside.template, **configuration_body(inside)}
 
 
 def _body(inquiry: Inquiry, answer: Answer | Refusal | Undecided) -> dict[str, Any]:
@@ -112,6 +119,8 @@ def _body(inquiry: Inquiry, answer: Answer | Refusal | Undecided) -> dict[str, A
             body["cost"] = cost_body(answer.optimum, answer.unknown)
         if answer.what_if is not None:
             body["what_if"] = consequences_body(answer.what_if)
+        inside = {component: _inside_body(one) for component, one in inquiry.insides(answer)}
+        body |= {"insides": inside} if inside else {}
     timed = {part: round(value, 6) for part, value in inquiry.seconds.items()}
     return body | {"eligible": dict(inquiry.eligible), "seconds": timed}
 

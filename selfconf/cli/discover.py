@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
@@ -34,8 +35,19 @@ def run(given: argparse.Namespace) -> int:
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
     print(_table(states))
+    for line in _reasons(states):
+        print(line)
     print(f"{count(len(states), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
     return 0
+
+
+def _reasons(states: tuple[ComponentState, ...]) -> Iterator[str]:
+    """Why components cannot act now, as far as their sites say so."""
+    from selfconf.rdf.sparql import QUERY_PREFIXES
+    from selfconf.render import ecology_names
+
+    names, _ = ecology_names(QUERY_PREFIXES, [one.component for one in states])
+    return (f"{names(one.component)} cannot act now: {one.reason}" for one in states if one.reason)
 
 
 def _table(states: tuple[ComponentState, ...]) -> str:

@@ -46,12 +46,7 @@ def add_task_arguments(parser: argparse.ArgumentParser) -> None:
         help="a value for a parameter: a CURIE, an <IRI>, a Turtle literal; plain words are a string; repeatable",
     )
     add_ads_argument(parser)
-    parser.add_argument(
-        "--reasoning",
-        choices=REASONING,
-        default=REASONING[0],
-        help="which triples the shape of a role sees (default: %(default)s)",
-    )
+    add_reasoning_argument(parser, "which triples the shape of a role sees")
     add_ontology_argument(parser)
     parser.add_argument(
         "--strategy", choices=STRATEGIES, default=STRATEGIES[0], help="how to search (default: %(default)s)"
@@ -66,6 +61,13 @@ def add_ads_argument(parser: argparse.ArgumentParser) -> None:
         type=Path,
         action="append",
         help="advertisements: a file, a folder with all *.ttl below it, or - for stdin; repeatable",
+    )
+
+
+def add_reasoning_argument(parser: argparse.ArgumentParser, meaning: str) -> None:
+    """The option for the mode of reasoning, which decides what `meaning` says."""
+    parser.add_argument(
+        "--reasoning", choices=REASONING, default=REASONING[0], help=f"{meaning} (default: %(default)s)"
     )
 
 

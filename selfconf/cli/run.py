@@ -162,7 +162,9 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
                 _check_name(given)
             yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
             return
-        site = stack.enter_context(SiteProcess(paths, given.ecology, given.connect, given.keys))
+        site = stack.enter_context(
+            SiteProcess(paths, given.ecology, given.connect, given.keys, method.reasoning.value, method.ontologies)
+        )
         described = partial(_described, given.ads or ())
         running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)
         yield stack.enter_context(running), site

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from selfconf.cli.options import add_keys_argument, add_ontology_argument
+from selfconf.cli.options import add_keys_argument, add_ontology_argument, add_reasoning_argument
 from selfconf.cli.terminal import complain
 
 EXAMPLE = """  selfconf site examples/peis-home --ecology home
@@ -53,6 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where the tasks that live in the ecology are kept (default: in the runtime folder of this machine)",
     )
     add_ontology_argument(parser)
+    add_reasoning_argument(parser, "which triples the shapes of roles inside of composites see")
     parser.add_argument(
         "--log",
         metavar="DIR",
@@ -83,6 +84,7 @@ def run(given: argparse.Namespace) -> int:
         given.keys,
         given.insecure,
         ontologies=given.ontology,
+        reasoning=given.reasoning,
     )
     return 0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -42,11 +42,28 @@ def run(given: argparse.Namespace) -> int:
     if not found and not ecology.silent:
         print(f"nothing is deployed in ecology {ecology.name}")
     names, note = ecology_names(QUERY_PREFIXES, [iri for one in found for iri in (one.template, *one.components)])
-    for status in found:
-        print("\n".join(_lines(status, deployed.get(status.configurator), names)))
+    for depth, status in _nested(found):
+        lines = _lines(status, deployed.get(status.configurator), names)
+        print("\n".join("    " * depth + line for line in lines))
     if note:
         print(note)
     return 2 if ecology.silent else 0
+
+
+def _nested(found: Sequence[Status]) -> Iterator[tuple[int, Status]]:
+    """The tasks in order, each followed by those that its composites are inside, with how deep each of them lies."""
+    waiting = [(0, one) for one in found if not _holders(one, found)]
+    while waiting:
+        depth, status = waiting.pop(0)
+        yield depth, status
+        waiting = [*((depth + 1, one) for one in found if status in _holders(one, found)), *waiting]
+
+
+def _holders(inside: Status, found: Sequence[Status]) -> list[Status]:
+    """The first task that holds the composite of which one is the inside, if it is one and that is known."""
+    if inside.outside is None:
+        return []
+    return [one for one in found if inside.outside in one.components and one is not inside][:1]
 
 
 def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> Iterator[str]:
@@ -56,7 +73,8 @@ def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> 
 
     phase = paint(status.phase, STATE_COLOURS.get(status.phase, ""))
     lasts = duration(time.time() - status.since)
-    yield f"{names(status.template)}: {phase} for {lasts}, epoch {status.epoch}"
+    of = "" if status.outside is None else f"inside of {names(status.outside)}: "
+    yield f"{of}{names(status.template)}: {phase} for {lasts}, epoch {status.epoch}"
     yield f"  task {task_name(status.task)}, priority {status.priority}"
     yield f"  configurator {status.configurator}, process {status.process} on {status.host}"
     for line in _held(status, names) if deployed is None else _configuration(deployed, status, names):
@@ -105,6 +123,7 @@ def _body(status: Status, deployed: Mapping[str, Any] = MappingProxyType({})) ->
         "configurator": status.configurator,
         "phase": status.phase,
         "template": status.template,
+        "inside_of": status.outside,
         "epoch": status.epoch,
         "since": status.since,
         "host": status.host,

@@ -2,13 +2,27 @@
 
 A `Composer` composes one task again and again, by a `Strategy`; `composed` is its best answer within a `TimeLimit`, and
 `explained` a refusal with everything that can be found out about it. `exclusions_nearest_first` tells of a role what
-keeps each other component out.
+keeps each other component out. `configurable` tells which composites can be configured (`Inside`), and of the others
+why not, `insides` what those of a configuration are inside; `why_none` says why there is no configuration.
 """
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
+from selfconf.composition.inside import DocumentOf, Inside, configurable, why_none, insides
 from selfconf.composition.nearest import exclusions_nearest_first
 from selfconf.composition.searches import Strategy
 from selfconf.composition.time_limit import TimeLimit, composed
 
-__all__ = ["Composer", "Strategy", "TimeLimit", "composed", "exclusions_nearest_first", "explained"]
+__all__ = [
+    "Composer",
+    "DocumentOf",
+    "Inside",
+    "Strategy",
+    "TimeLimit",
+    "composed",
+    "configurable",
+    "exclusions_nearest_first",
+    "explained",
+    "why_none",
+    "insides",
+]

@@ -94,7 +94,7 @@ class Composer:
             self._given = ecology if self._ecology is ecology else dict(ecology)
             self._partition = self.partitioner.partition(self._ecology)
             if self.outside is not None:
-                self._partition = with_outside_candidate(self._partition, self._task, self.outside)
+                self._partition = with_outside_candidate(self._partition, self._task, self.outside, self.hierarchy)
         return self._ecology
 
     def compose(

@@ -157,8 +157,10 @@ def confirmed(state: State, answer: Answered) -> Reaction:
 
 
 def end_deployment(state: State) -> Reaction:
-    """Everything acts: release what is not needed any more."""
+    """Everything acts: release what is not needed any more, once all know what stands behind composites."""
     assert state.target is not None
+    if state.rewired:
+        return rewire(replace(state, rewired=frozenset()), state.rewired)
     wanted = set(state.target.components)
     wires = {component: held.inputs for component, held in state.held.items()}
     surplus = resting_order(wires, [component for component in state.held if component not in wanted])
@@ -174,22 +176,23 @@ def end_deployment(state: State) -> Reaction:
         held={component: held for component, held in state.held.items() if component in wanted},
         owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},
         watched=state.watched & wanted,
-        rewired=frozenset(),
     )
-    return then(effects, rewire(running, state.rewired)) if state.rewired else (running, tuple(effects))
+    return running, tuple(effects)
 
 
 def rewire(state: State, components: frozenset[IRI]) -> Reaction:
-    """Apply once more to those that follow some components, behind whose outputs others stand now."""
+    """Apply once more to those that follow some components, or are called by them, behind which others stand now."""
     held = {
-        one: replace(held, confirmed=held.confirmed and not _follows(held.inputs, components))
+        one: replace(held, confirmed=held.confirmed and not _connected(held, components))
         for one, held in state.held.items()
     }
     return deploy(replace(state, held=held))
 
 
-def _follows(inputs: InputWires, components: frozenset[IRI]) -> bool:
-    return any(wire.component in components for wires in inputs.values() for wire in wires)
+def _connected(held: Held, components: frozenset[IRI]) -> bool:
+    """Whether a component follows some others, or may be called by them."""
+    sources = (wire.component for wires in held.inputs.values() for wire in wires)
+    return not components.isdisjoint((*sources, *(one.component for some in held.callers.values() for one in some)))
 
 
 def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from selfconf.configurator.order import Callers
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
@@ -81,8 +82,8 @@ class ApplyTo:
     epoch: int
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
-    callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
-    """The components that may call its operations, by the names of these."""
+    callers: Callers = field(default_factory=dict)
+    """Who may call its operations."""
     gently: bool = False
     """Whether what an input followed before is let go of only when the new output delivers."""
 

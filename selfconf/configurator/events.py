@@ -109,7 +109,7 @@ class Appeared:
 
 @dataclass(frozen=True, slots=True)
 class Rewired:
-    """Other outputs than before stand behind those of a component: who follows them has to be told."""
+    """Other components than before issue the outputs of a component, or call by it: who is connected has to be told."""
 
     component: IRI
 

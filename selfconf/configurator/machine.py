@@ -418,7 +418,7 @@ def _improved(state: State, event: Composed) -> Reaction:
 
 
 def _rewired(state: State, component: IRI) -> Reaction:
-    """Tell those that follow a component what stands behind its outputs now, once they are told what to follow."""
+    """Tell those that are connected to a component what stands behind it now, once all are told whom they are for."""
     if state.phase is Phase.RUNNING:
         return deploying.rewire(state, frozenset((component,)))
     return (replace(state, rewired=state.rewired | {component}), ()) if state.phase in DEPLOYING else (state, ())

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.profile import CALL_MARK
@@ -16,6 +17,17 @@ from selfconf.protocol.messages import Wire
 
 InputWires = Mapping[str, tuple[Wire, ...]]
 """Which outputs each input of a component follows."""
+
+
+class Caller(NamedTuple):
+    """A component, and the operation that it needs, by which it calls one of another component."""
+
+    component: IRI
+    operation: str
+
+
+Callers = Mapping[str, tuple[Caller, ...]]
+"""Who may call each operation of a component, by the name of its output."""
 
 
 def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
@@ -31,12 +43,12 @@ def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]
     return {component: {port: tuple(w) for port, w in inputs.items()} for component, inputs in wires.items()}
 
 
-def callers(configuration: Configuration) -> dict[IRI, dict[str, tuple[IRI, ...]]]:
-    """For each component of a configuration, which components may call each of its operations."""
-    found: dict[IRI, dict[str, list[IRI]]] = {component: {} for component in configuration.components}
+def callers(configuration: Configuration) -> dict[IRI, Callers]:
+    """For each component of a configuration, who may call each of its operations."""
+    found: dict[IRI, dict[str, list[Caller]]] = {component: {} for component in configuration.components}
     for connection in configuration.connections:
         if connection.output.endswith(CALL_MARK) and connection.source in found:
-            found[connection.source].setdefault(connection.output, []).append(connection.sink)
+            found[connection.source].setdefault(connection.output, []).append(Caller(connection.sink, connection.input))
     return {component: {name: tuple(some) for name, some in calls.items()} for component, calls in found.items()}
 
 

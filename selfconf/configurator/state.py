@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from selfconf.configurator.events import Call
-from selfconf.configurator.order import InputWires, StartingOrder
+from selfconf.configurator.order import Callers, InputWires, StartingOrder
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
@@ -42,7 +42,7 @@ class Held:
 
     inputs: InputWires
     values: Mapping[str, Term] = field(default_factory=dict)
-    callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
+    callers: Callers = field(default_factory=dict)
     life: str = ""
     reserved: bool = False
     """Whether it has said that it is held for this task."""

@@ -14,15 +14,16 @@ from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
 from selfconf.configurator.effects import ApplyTo, AwaitRelease, Decline, QueueFor, ReleaseFrom, ReserveOf, WakeUp
-from selfconf.configurator.events import Answered, Appeared, Call, Event, WaitedLong
-from selfconf.configurator.order import callers, parameter_values, wiring
+from selfconf.configurator.events import Answered, Appeared, Call, Event, Rewired, WaitedLong
+from selfconf.configurator.order import Caller, Callers, callers, parameter_values, wiring
 from selfconf.configurator.state import State
 from selfconf.deployment.identity import TaskIdentity
-from selfconf.deployment.run_request import EventListener, Standby
+from selfconf.deployment.run_request import EventListener, Outside, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.holder import Holder
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.run_event import (
     ActivationSent,
     CallDeclined,
@@ -93,13 +94,14 @@ class Calls:
         state: Callable[[], State],
         step: Callable[[Event], None],
         report: EventListener,
-        outside: IRI | None = None,
-        received: Callable[[], Mapping[str, tuple[Wire, ...]]] = dict,
+        outside: Outside | None = None,
     ) -> None:
-        """`outside` is the composite of which the task is the inside, `received` what feeds its inputs now."""
-        self._outside, self._received = outside, received
-        self.issuing: dict[IRI, Mapping[str, tuple[Wire, ...]]] = {}
+        """`outside` is what is outside of the task, if it is the inside of a composite."""
+        self._outside = outside
+        self._issuing: dict[IRI, Mapping[str, tuple[Wire, ...]]] = {}
         """For each composite that acts for the task, what stands behind its outputs."""
+        self._calling: dict[IRI, Mapping[str, tuple[IRI, ...]]] = {}
+        """For each composite that acts for the task, which components inside of it call what it needs."""
         self.bus, self.ecology, self.keys, self.identity = ecology.bus, ecology, ecology.keys, identity
         self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
         self._waking: dict[IRI, tuple[WakeUp, Undo]] = {}
@@ -130,7 +132,8 @@ class Calls:
         elif found is not None and found.startable:
             self._start_by_site(effect, found)
         else:
-            self._unreachable(effect.component, Call.WAKE, effect.epoch, "it is advertised, but it does not run")
+            detail = "it is advertised, but it does not run" if found is None or not found.unable else found.unable
+            self._unreachable(effect.component, Call.WAKE, effect.epoch, detail)
 
     def woken(self, component: IRI) -> None:
         """A component lives; perhaps it was started for this task."""
@@ -220,9 +223,8 @@ class Calls:
             return
         inputs = self._with_promises(effect.inputs)
         claim = self._claim(effect.component, effect.epoch)
-        message = Apply(
-            **claim, inputs=inputs, values=dict(effect.values), callers=dict(effect.callers), gently=effect.gently
-        )
+        calling = self._who_call(effect.callers)
+        message = Apply(**claim, inputs=inputs, values=dict(effect.values), callers=calling, gently=effect.gently)
         self._call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         known, before = self._connections.get(effect.component, (life, frozenset()))
@@ -241,7 +243,8 @@ class Calls:
         for component, outputs in standby.items():
             claim = self._claim(component, self._state().epoch)
             inputs, spare = self._with_promises(wires[component]), self._with_promises(outputs)
-            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component], callers=calling[component])
+            who = self._who_call(calling[component])
+            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component], callers=who)
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
 
     # Turning off.
@@ -378,8 +381,9 @@ class Calls:
             self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
             self._lives[component] = answer.life
-        if answer.verdict is Verdict.DONE and call is Call.APPLY:
-            self.issuing[component] = answer.outputs
+        applied = answer.verdict is Verdict.DONE and call is Call.APPLY
+        if applied and self.moved(component, answer.outputs, answer.callers):
+            self._step(Rewired(component))  # before the answer: those that it calls are told, then all is complete
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
@@ -428,22 +432,50 @@ class Calls:
         return {port: some for port, some in found.items() if some}
 
     def _behind(self, wire: Wire) -> tuple[Wire, ...]:
-        if wire.component == self._outside:
-            return self._received().get(wire.output, ())
-        inside = self.issuing.get(wire.component, {}).get(wire.output)
+        if self._outside is not None and wire.component == self._outside.composite:
+            return self._outside.received().get(wire.output, ())
+        inside = self._issuing.get(wire.component, {}).get(wire.output)
         return (self._promised(wire),) if inside is None else inside
+
+    def _who_call(self, some: Callers) -> dict[str, tuple[IRI, ...]]:
+        """The components that may call each operation: those behind composites, and behind what is outside of this."""
+        return {
+            name: tuple(dict.fromkeys(c for one in found for c in self._behind_caller(one)))
+            for name, found in some.items()
+        }
+
+    def _behind_caller(self, caller: Caller) -> tuple[IRI, ...]:
+        if self._outside is not None and caller.component == self._outside.composite:
+            return self._outside.calling(caller.operation)
+        return self._calling.get(caller.component, {}).get(caller.operation, (caller.component,))
+
+    def moved(
+        self, component: IRI, outputs: Mapping[str, tuple[Wire, ...]], calling: Mapping[str, tuple[IRI, ...]]
+    ) -> bool:
+        """Note what stands behind a component now; returns whether others call what it needs than before."""
+        before = self._calling.get(component, {})
+        self._issuing[component], self._calling[component] = outputs, calling
+        return before != calling
 
     def issued_outside(self, configuration: Configuration) -> dict[str, tuple[Wire, ...]]:
         """Which outputs stand behind those of the composite of which a configuration is the inside."""
         ends: dict[str, tuple[Wire, ...]] = {}
         for one in configuration.connections:
-            if one.sink == self._outside:
+            if self._outside is not None and one.sink == self._outside.composite:
                 ends[one.input] = (*ends.get(one.input, ()), Wire(one.source, one.output))
         return self._with_promises(ends)
 
+    def calling_outside(self, configuration: Configuration) -> dict[str, tuple[IRI, ...]]:
+        """Which components call what the composite needs of which a configuration is the inside."""
+        ends: dict[str, tuple[Caller, ...]] = {}
+        for one in configuration.connections:
+            if self._outside is not None and one.source == self._outside.composite and one.output.endswith(CALL_MARK):
+                ends[one.output] = (*ends.get(one.output, ()), Caller(one.sink, one.input))
+        return self._who_call(ends)
+
     def composite_around(self, component: IRI) -> IRI | None:
         """The composite behind whose outputs a component stands, if it does."""
-        for composite, outputs in self.issuing.items():
+        for composite, outputs in self._issuing.items():
             if any(wire.component == component for wires in outputs.values() for wire in wires):
                 return composite
         return None

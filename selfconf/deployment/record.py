@@ -77,6 +77,7 @@ class DeploymentRecord:
             configurator=self._name,
             failures=self._failures.values(),
             passed_over=self._request.passed_over(configuration),
+            outside=None if self._request.outside is None else self._request.outside.composite,
         )
         return to_turtle(triples)
 

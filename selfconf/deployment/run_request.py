@@ -26,6 +26,17 @@ Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
 """For each component and input, the outputs that might be connected to it next."""
 
 
+@dataclass(frozen=True, slots=True)
+class Outside:
+    """What is outside of a task that is the inside of a composite."""
+
+    composite: IRI
+    received: Callable[[], Mapping[str, tuple[Wire, ...]]] = dict
+    """By which outputs outside each input of the composite is fed now, and each operation that it needs answered."""
+    calling: Callable[[str], tuple[IRI, ...]] = lambda operation: ()
+    """Which components outside may call an operation of the composite now, by the name of its output."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRequest:
     """A task to run: how to compose, what to do after a loss, and where to report."""
@@ -41,10 +52,8 @@ class RunRequest:
     """Of several tasks that want one component, the one of the highest priority has it."""
     believed: Beliefs | None = None
     """With keys: whose a component is that several sites advertise, as far as somebody has said so."""
-    outside: IRI | None = None
-    """The composite of which the task is the inside, if it is one."""
-    received: Callable[[], Mapping[str, tuple[Wire, ...]]] = dict
-    """By which outputs outside each input of that composite is fed now."""
+    outside: Outside | None = None
+    """What is outside of the task, if it is the inside of a composite."""
     upgrade: float | None = None
     """After how many seconds a component that the strategy would rather have is changed to; None: never."""
     patient: bool = False

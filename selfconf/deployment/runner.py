@@ -133,7 +133,6 @@ class TaskRunner:
             self._step,
             self._report,
             request.outside,
-            request.received,
         )
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
         self._record = DeploymentRecord(bus, self.keys, self.name, request, self.status, self.stop)
@@ -183,13 +182,17 @@ class TaskRunner:
         return self.state.target
 
     def rewire(self) -> None:
-        """Tell those inside that follow what is outside that it has changed."""
+        """Tell those inside that are connected to what is outside that it has changed."""
         if self.request.outside is not None:
-            self._step(Rewired(self.request.outside))
+            self._step(Rewired(self.request.outside.composite))
 
     def issued_outside(self) -> dict[str, tuple[Wire, ...]]:
         """Which outputs stand behind those of the composite of which the task is the inside."""
         return {} if self.state.target is None else self._calls.issued_outside(self.state.target)
+
+    def calling_outside(self) -> dict[str, tuple[IRI, ...]]:
+        """Which components call what the composite needs of which the task is the inside."""
+        return {} if self.state.target is None else self._calls.calling_outside(self.state.target)
 
     def _step(self, event: Event) -> None:
         """Feed the machine; an event that an effect brings about comes after the other effects."""
@@ -472,7 +475,7 @@ class TaskRunner:
             return
         mine = sample.key == self.keys.moved(moved.component) and moved.component in self.state.held
         if mine and self.state.held[moved.component].life in ("", moved.life):
-            self._calls.issuing[moved.component] = moved.outputs
+            self._calls.moved(moved.component, moved.outputs, moved.callers)
             self._step(Rewired(moved.component))
 
     def _received_free(self, sample: Sample) -> None:
@@ -505,4 +508,5 @@ class TaskRunner:
             beginning=self.identity.beginning,
             owed=self._out_of_control,
             dropped={one: count for one, count in self._liveness.dropped.items() if count and one in self.state.held},
+            outside=None if self.request.outside is None else self.request.outside.composite,
         )

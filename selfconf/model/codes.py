@@ -307,9 +307,10 @@ CODES: tuple[Code, ...] = (
         ("InteractionListed",),
     ),
     Code(
-        "SC-T18", "A port of a template is that of one of its roles, with a name of its own and a signal type.",
-        "A composite whose inside is a task of the template has these ports; a port is joined to those of the players "
-        "of its role by type.",
+        "SC-T18", "A port or operation of a template is that of one of its roles, with a name of its own; a port has a "
+        "signal type.",
+        "A composite whose inside is a task of the template has these ports and operations; each is joined to those of "
+        "the players of its role by type.",
         f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :source ] .',
         (

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from selfconf.model.cost import CostLevel
-from selfconf.model.profile import Place
+from selfconf.model.profile import Input, Output, Place
 from selfconf.model.term import IRI, Term
 
 
@@ -51,11 +51,19 @@ class Interaction:
 class TemplatePort:
     """A port that a template has itself: one that the players of a role have, for those outside of the template."""
 
-    name: str
-    signals: tuple[IRI, ...]
-    """The signal types, sorted."""
     role: IRI
-    is_input: bool
+    port: Input | Output
+    """The port as a component has it that is a task of the template."""
+
+    @property
+    def name(self) -> str:
+        """The name of the port."""
+        return self.port.name
+
+    @property
+    def is_input(self) -> bool:
+        """Whether it is an input, or an operation that is needed."""
+        return isinstance(self.port, Input)
 
 
 @dataclass(frozen=True, slots=True)

@@ -146,17 +146,20 @@ class CallAnswer:
     """How many signals each output has issued since the component lives."""
     outputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     """Of a composite that acts: by which outputs inside of it each of its own is issued."""
+    callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
+    """Of a composite that acts: which components inside of it call by each operation that it needs."""
     patience: float = 0.0
     """Of a composite whose inside is being started: for how many seconds the caller may wait for it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """The outputs of a composite are issued by others inside of it than before."""
+    """The outputs of a composite are issued by others inside of it than before, or others call what it needs."""
 
     component: IRI
     life: str
     outputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,6 +240,8 @@ class Page:
     """Which life of the site replies: another one may have its name."""
     insecure: bool = False
     """Whether the site listens beyond its host without keys."""
+    unable: str = ""
+    """Why the component, a composite, cannot act now, in a sentence; empty if it can, or if that is not known yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -342,6 +347,8 @@ class Status:
     """The components that were turned off and have not obeyed yet."""
     dropped: Mapping[str, Any] = field(default_factory=dict)
     """How many signals those components have passed over that are too slow."""
+    outside: IRI | None = None
+    """The composite of which the task is the inside, if it is one."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,15 +39,18 @@ def configuration_triples(
     configurator: str | None = None,
     failures: Iterable[tuple[IRI, str, str, float]] = (),
     passed_over: Mapping[IRI, Iterable[IRI]] = MappingProxyType({}),
+    outside: IRI | None = None,
 ) -> Iterator[Triple]:
     """A configuration as the ontology describes it: what it is, which task it answers, and how it came about.
 
     `revises` is the one before it with its name, `failures` are (component, cause, detail, seconds), `passed_over` are
-    by role the candidates that came before the chosen ones.
+    by role the candidates that came before the chosen ones. `outside` is the composite that it is the inside of.
     """
     yield name, TYPE, SC.Configuration
     yield name, TYPE, PROV.Entity
     yield name, SC.template, configuration.template
+    if outside is not None:
+        yield name, SC.insideOf, outside
     counter = 0
 
     def blank() -> BlankNode:

@@ -26,6 +26,7 @@ from selfconf import ros_messages
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError
 from selfconf.model.profile import CALL_MARK, Profile
+from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Apply, Cause, Fail, Wire
@@ -91,6 +92,11 @@ class InputFollower(Protocol):
     @property
     def issued(self) -> Mapping[str, tuple[Wire, ...]]:
         """Which outputs stand behind those of the component, if they are others."""
+        ...
+
+    @property
+    def callers(self) -> Mapping[str, tuple[IRI, ...]]:
+        """Which components call the operations that the component needs, if they are others."""
         ...
 
     @property
@@ -209,6 +215,11 @@ class Inputs:
     @property
     def issued(self) -> Mapping[str, tuple[Wire, ...]]:
         """Nothing: the component issues its own outputs."""
+        return {}
+
+    @property
+    def callers(self) -> Mapping[str, tuple[IRI, ...]]:
+        """Nothing: the component itself calls the operations that it needs."""
         return {}
 
     @property

@@ -123,7 +123,7 @@ class ComponentRuntime:
             self.life,
             self.code,
             fields or {},
-            self._callers,
+            self.callers,
             partial(self.fail, cause=Cause.MALFORMED),
             component.signal_value,
         )
@@ -301,7 +301,8 @@ class ComponentRuntime:
 
         def answer(trouble: str | None) -> None:
             def settled() -> None:
-                self.bus.later(SIGNALS_FIRST, partial(started, trouble))
+                # Once more: what the call has said may have had the inside of a composite begin anew.
+                self.bus.later(SIGNALS_FIRST, lambda: self.inputs.when_settled(partial(started, trouble)))
 
             self.inputs.when_settled(settled)
 
@@ -349,6 +350,7 @@ class ComponentRuntime:
             f"process {os.getpid()} on {socket.gethostname()}",
             self.inputs.dropped,
             outputs=self.inputs.issued,
+            callers=self.inputs.callers,
             patience=self.inputs.patience,
         )
 
@@ -461,7 +463,7 @@ class ComponentRuntime:
 
     # What is noticed of the inputs, and asked for the operations.
 
-    def _callers(self, operation: str) -> frozenset[IRI]:
+    def callers(self, operation: str) -> frozenset[IRI]:
         """The components that may call an operation, for the tasks that this one acts for."""
         claims = [hold.claim for hold in self.activation.holds if hold.active]
         return frozenset(

@@ -32,6 +32,9 @@ FILE_CHECK = 1.0
 FILE_CHECK_SHARE = 0.02
 """Which part of the time may be spent on that: where there are very many files, they are looked at less often."""
 
+MOST_REASON = 1000
+"""How many characters are told of why a component cannot act."""
+
 
 class _ServedAdvertisement(NamedTuple):
     """An advertisement as it is replied: on which key, in N-Triples, and what its page says of it."""
@@ -73,6 +76,7 @@ class Site:
         """Which life of the site this is: another site may have its name."""
         self.programs: dict[IRI, IRI] = {}
         """The components of this site, each with the one that stands for its process, which has the certificate."""
+        self._unable: dict[IRI, str] = {}
         self._revision = 1
         self._changed = changed
         shelf.refresh()
@@ -100,6 +104,16 @@ class Site:
         started = started_once(advertisement.profile)
         sharing = () if started is None else self._sharing[started]
         self.processes.start(advertisement.profile, [self.shelf.advertisements[one].profile for one in sharing])
+
+    def tell_unable(self, why: Mapping[IRI, str]) -> None:
+        """Say from now on with each advertisement why its component cannot act now, if that is so."""
+        self._unable = {component: reason[:MOST_REASON] for component, reason in why.items()}
+        self._tell_changed()
+
+    def _tell_changed(self) -> None:
+        """Tell the ecology that something else is advertised than before."""
+        self._revision += 1
+        self._notify.put(encode(Page(0, len(self._served), self._revision)))
 
     def _read_shelf(self) -> list[_ServedAdvertisement]:
         """What is replied, made once for all questions and, where an advertisement has stayed, not even again."""
@@ -131,9 +145,8 @@ class Site:
         changed = self.shelf.refresh()
         self.bus.later(max(FILE_CHECK, (self.bus.now() - began) / FILE_CHECK_SHARE), self._look)
         if changed:
-            self._revision += 1
             self._served = self._read_shelf()
-            self._notify.put(encode(Page(0, len(self._served), self._revision)))
+            self._tell_changed()
             self._changed(self.shelf.advertisements)
             log.info("%d advertisements", len(self._served))
 
@@ -155,6 +168,7 @@ class Site:
                     one.startable,
                     self.life,
                     self._insecure,
+                    self._unable.get(one.component, ""),
                 )
                 request.reply(one.key, one.payload, encode(page))
         finally:

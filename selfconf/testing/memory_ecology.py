@@ -10,6 +10,7 @@ from selfconf import files, library
 from selfconf.api.answer import Method
 from selfconf.api.arguments import Paths, listed_paths
 from selfconf.api.composites import Composites
+from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.memory import Faults, MemoryBus, Network
@@ -114,10 +115,13 @@ class MemoryRun:
 class MemoryEcology:
     """An ecology in memory: everything happens in the thread that lets time pass."""
 
-    def __init__(self, seed: int = 0, faults: Faults | None = None, ontologies: Paths = ()) -> None:
+    def __init__(
+        self, seed: int = 0, faults: Faults | None = None, ontologies: Paths = (), reasoning: str = "syntactic"
+    ) -> None:
         """`seed` decides the delays and losses of the network; without `faults` nothing is lost.
 
-        By `ontologies`, files and folders of Turtle, it is checked what components emit, as by those of selfconf.
+        By `ontologies`, files and folders of Turtle, it is checked what components emit, as by those of selfconf; the
+        insides of composites see them in the mode `reasoning`.
         """
         self._ontologies = [file for path in listed_paths(ontologies) for file in files.within(Path(path))]
         self.network = Network(seed, faults)
@@ -127,7 +131,12 @@ class MemoryEcology:
         self.complaints: list[str] = []
         """Why composites do not live."""
         self._composites = Composites(
-            node, ECOLOGY_NAME, lambda one: self._documents[one.component], self.complaints.append
+            node,
+            ECOLOGY_NAME,
+            lambda one: self._documents[one.component],
+            self.complaints.append,
+            hierarchy=hierarchy_of(Method.of(reasoning=reasoning).reasoning, self._ontologies),
+            unable=lambda why: self._site.tell_unable(why),
         )
         self._site = Site(node, ECOLOGY_NAME, "site", self._shelf, changed=self._composites.refresh)
         self._runtimes: dict[IRI, tuple[ComponentRuntime, MemoryBus]] = {}

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from selfconf.api.task import template
+from selfconf.discovery import EcologyView
 from selfconf.model.run_event import ComponentLost, InputConnected
 from selfconf.model.term import IRI
 from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
-from selfconf.testing.memory_ecology import REPORT_LAG, MemoryRun
+from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG, MemoryRun
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix sh: <http://www.w3.org/ns/shacl#> .
@@ -233,7 +235,7 @@ def test_composites_nest_and_what_moves_inside_the_inner_one_is_told_outside_the
         ([SERVICE.replace('"hint" ; sc:signalType :Hint ]', '"help" ; sc:signalType :Hint ]')], "differ: help, hint"),
         (
             [SERVICE.replace("sc:grounding", 'sc:hasParameter [ sc:name "a" ; sc:parameterType :A ] ; sc:grounding')],
-            "a composite has no operational parameters",
+            "its parameter 'a' is none of the template localise",
         ),
         (
             [SERVICE.replace("sc:grounding", 'sc:hasOperation [ sc:name "a" ] ; sc:grounding', 1)],
@@ -265,3 +267,246 @@ def test_a_composite_lives_as_soon_as_its_inside_can_be_configured() -> None:
     assert house.ecology.until(lambda: run.running)
     house.ecology.advance(1.0)
     assert house.navigator.pose == ["t1", "late", "h1"]
+
+
+TUNED = f"""{PREFIXES}
+:service a sc:Component, :Positions ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ;
+    sc:hasParameter [ sc:name "speed" ; sc:parameterType :Speed ] , [ sc:name "robot" ; sc:parameterType :Robot ] ;
+    sc:grounding [ sc:template :localise ] .
+:localise a sc:Template ; sc:parameter :robot , :speed ; sc:roles ( :eye :tracker ) ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker ] .
+:robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .
+:speed a sc:Parameter ; sc:name "speed" ; sh:nodeKind sh:Literal .
+:eye a sc:Role ; sh:class :Camera ; sc:feeds :tracker ; sh:property [ sh:path :sees ; sh:in ( :robot ) ] .
+:tracker a sc:Role ; sh:class :Tracker ; sc:sets [ sc:parameterType :Speed ; sc:value :speed ] .
+"""
+TUNED_TRACKER = f"""{PREFIXES}
+:t1 a sc:Component, :Tracker ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ;
+    sc:hasInput [ sc:name "image" ; sc:signalType :Image ] ;
+    sc:hasParameter [ sc:name "rate" ; sc:parameterType :Speed ] ."""
+TUNING_TASK = f"""{PREFIXES}
+:task a sc:Template ; sc:parameter :who , :fast ; sc:roles ( :positions :navigator ) .
+:who a sc:Parameter ; sc:name "who" . :fast a sc:Parameter ; sc:name "fast" .
+:positions a sc:Role ; sh:class :Positions ; sc:feeds :navigator ;
+    sc:sets [ sc:parameterType :Robot ; sc:value :who ] , [ sc:parameterType :Speed ; sc:value :fast ] .
+:navigator a sc:Role ; sh:class :Nav ."""
+
+
+class TunedTracker(Tracker):
+    """Issues as well what its parameter is."""
+
+    rate: Any = None
+
+    def parameter_set(self, name: str, value: Any) -> None:
+        self.rate = value
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.emit("pose", [signal.value, self.rate])
+
+
+def tuned_house() -> House:
+    """A house where each camera sees another robot, with a composite that is told which one to follow."""
+    house = House(cameras="", trackers="", hinters="")
+    for name, robot in (("c1", "Astrid"), ("c2", "Pippi")):
+        text = CAMERA.replace("NAME", name).replace("Astrid", robot)
+        house.by_name[name] = house.ecology.add(Source(name, "image"), text)
+    house.by_name["t1"] = house.ecology.add(TunedTracker("t1"), TUNED_TRACKER)
+    house.ecology.advertise(TUNED)
+    house.ecology.advance(2.0)
+    return house
+
+
+def test_the_parameters_of_a_composite_are_those_of_its_template() -> None:
+    house = tuned_house()
+    for robot, camera, speed in (("Pippi", "c2", 3), ("Astrid", "c1", 5)):
+        run = house.ecology.run(template(TUNING_TASK).bind(who=f":{robot}", fast=speed)).started()
+        house.ecology.advance(1.0)
+        assert house.navigator.pose == [camera, speed]
+        run.stop()
+        assert house.acting() == set()
+
+
+def test_a_composite_whose_parameter_has_another_value_begins_anew_inside() -> None:
+    house = tuned_house()
+    free = TUNING_TASK.replace('sc:name "who" .', 'sc:name "who" ; sh:in ( :Pippi :Astrid ) .').replace(
+        ":navigator a sc:Role", ":guide a sc:Role ; sh:class :Guide ; sh:property [ sh:path :of ; sh:in ( :who ) ] .\n"
+        ":navigator a sc:Role").replace("( :positions", "( :guide :positions")  # fmt: skip
+    guides = {}
+    for robot in ("Pippi", "Astrid"):
+        text = f"{PREFIXES}:guide-{robot} a sc:Component, :Guide ; :of :{robot} ; sc:preference {len(robot)} ."
+        guides[robot] = house.ecology.add(Component(), text)
+    run = house.ecology.run(template(free).bind(fast=1)).started()
+    house.ecology.advance(1.0)
+    assert house.navigator.pose == ["c1", 1]
+    house.ecology.crash(guides["Astrid"])
+    house.ecology.advance(5.0)
+    assert run.running
+    assert house.navigator.pose == ["c2", 1]
+    assert house.acting() == {"c2", "t1"}
+    assert lost(run) == [IRI("urn:c:guide-Astrid")]
+
+
+def test_a_composite_that_is_set_to_what_its_inside_cannot_be_fails_with_the_reason() -> None:
+    house = tuned_house()
+    for robot, why in (
+        ('"a robot"', "cannot stand for the parameter 'robot': "),
+        (":Nobody", "its inside is refused: no component is eligible for the role eye"),
+    ):
+        run = house.ecology.run(template(TUNING_TASK).bind(who=robot, fast=1))
+        assert house.ecology.until(lambda run=run: run.ended)
+        house.ecology.advance(REPORT_LAG)
+        details = [event.detail for event in run.events if isinstance(event, ComponentLost)]
+        assert any(why in detail for detail in details)
+    unset = TUNING_TASK.replace(" , [ sc:parameterType :Speed ; sc:value :fast ]", "").replace(", :fast", "")
+    run = house.ecology.run(template(unset).bind(who=":Astrid"))
+    assert house.ecology.until(lambda: run.ended)
+    house.ecology.advance(REPORT_LAG)
+    details = [event.detail for event in run.events if isinstance(event, ComponentLost)]
+    assert any("the parameter 'speed' of its template localise needs a value" in one for one in details)
+
+
+OFFERING = f"""{PREFIXES}
+:service a sc:Component, :Help ; sc:hasOperation [ sc:name "help" ; sc:request :Q ; sc:response :A ] ;
+    sc:needsOperation [ sc:name "light" ; sc:response :L ] ;
+    sc:grounding [ sc:template :helping ] .
+:helping a sc:Template ; sc:roles ( :helper ) ;
+    sc:hasOperation [ sc:name "help" ; sc:request :Q ; sc:response :A ; sc:of :helper ] ;
+    sc:needsOperation [ sc:name "light" ; sc:response :L ; sc:of :helper ] .
+:helper a sc:Role ; sh:class :Helper ."""
+HELPER = f"""{PREFIXES}
+:NAME a sc:Component, :Helper ; sc:hasOperation [ sc:name "answer" ; sc:request :Q ; sc:response :A ] ;
+    sc:needsOperation [ sc:name "lamp" ; sc:response :L ] ."""
+LAMP = f'{PREFIXES}:NAME a sc:Component, :Lamp ; sc:hasOperation [ sc:name "shine" ; sc:response :L ] .'
+ASKER = f"""{PREFIXES}
+:NAME a sc:Component, :Asker ; sc:needsOperation [ sc:name "ask" ; sc:request :Q ; sc:response :A ] ."""
+HELP_TASK = f"""{PREFIXES}
+:task a sc:Template ; sc:roles ( :lamp :helping-hand :asker ) .
+:lamp a sc:Role ; sh:class :Lamp ; sc:feeds :helping-hand .
+:helping-hand a sc:Role ; sh:class :Help ; sc:feeds :asker .
+:asker a sc:Role ; sh:class :Asker ."""
+
+
+class Lamp(Component):
+    """Answers with its name."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.callers: list[str] = []
+
+    def called(self, operation: str, request: Signal) -> Any:
+        self.callers.append(request.source.short)
+        return self.name
+
+
+class Helper(Component):
+    """Answers with its name, once it has asked for light."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.light: list[Any] = []
+
+    def called(self, operation: str, request: Signal) -> Any:
+        self.call("lamp", None, answered=lambda answer: self.light.append(answer.value or answer.detail))
+        return [self.name, request.source.short]
+
+
+class Asker(Component):
+    """Keeps what it was answered."""
+
+    answers: list[Any]
+
+    def ask(self) -> None:
+        self.answers = []
+        self.call("ask", "what", answered=lambda answer: self.answers.append(answer.value or answer.detail))
+
+
+class Helpdesk:
+    """A composite that offers an operation and needs one, between a component that asks and lamps."""
+
+    def __init__(self, *texts: str, task: str = HELP_TASK) -> None:
+        self.ecology = MemoryEcology()
+        self.lamps = {name: self.ecology.add(Lamp(name), LAMP.replace("NAME", name)) for name in ("l1", "l2")}
+        self.helpers = {name: self.ecology.add(Helper(name), HELPER.replace("NAME", name)) for name in ("h1", "h2")}
+        self.asker = self.ecology.add(Asker(), ASKER.replace("NAME", "asker"))
+        for text in texts or (OFFERING,):
+            self.ecology.advertise(text)
+        self.ecology.advance(2.0)
+        assert self.ecology.complaints == []
+        self.run = self.ecology.run(template(task)).started()
+
+    def asked(self) -> Any:
+        """What the component that asks is answered."""
+        self.asker.ask()
+        self.ecology.advance(1.0)
+        (answer,) = self.asker.answers
+        return answer
+
+
+def test_an_operation_of_a_composite_is_answered_by_what_is_inside_and_by_another_after_a_repair() -> None:
+    desk = Helpdesk()
+    assert desk.asked() == ["h1", "asker"]
+    desk.ecology.crash(desk.helpers["h1"])
+    desk.ecology.advance(3.0)
+    assert desk.asked() == ["h2", "asker"]
+    assert lost(desk.run) == []
+
+
+def test_an_operation_that_a_composite_needs_is_called_from_inside() -> None:
+    desk = Helpdesk()
+    desk.asked()
+    assert desk.helpers["h1"].light == ["l1"]
+    assert desk.lamps["l1"].callers == ["h1"]
+    desk.ecology.crash(desk.lamps["l1"])
+    desk.ecology.advance(3.0)
+    desk.ecology.crash(desk.helpers["h1"])
+    desk.ecology.advance(3.0)
+    desk.asked()
+    assert desk.helpers["h2"].light == ["l2"]
+    assert lost(desk.run) == [IRI("urn:c:l1")]
+
+
+def test_operations_reach_through_composites_that_nest() -> None:
+    outer = OFFERING.replace(":service", ":outer").replace(":Help ;", ":Outer ;").replace(":helping", ":wrapping")
+    outer = outer.replace(":Helper .", ":Help .").replace(":helper", ":wrapped")
+    desk = Helpdesk(OFFERING, outer, task=HELP_TASK.replace("sh:class :Help ;", "sh:class :Outer ;"))
+    assert desk.asked() == ["h1", "asker"]
+    assert desk.helpers["h1"].light == ["l1"]
+    desk.ecology.crash(desk.helpers["h1"])
+    desk.ecology.advance(3.0)
+    assert desk.asked() == ["h2", "asker"]
+    assert desk.helpers["h2"].light == ["l1"]
+
+
+def test_the_inside_of_a_composite_sees_the_hierarchy_of_its_site(tmp_path: Path) -> None:
+    ontology = tmp_path / "eyes.ttl"
+    ontology.write_text(
+        f"{PREFIXES}@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> . :Camera rdfs:subClassOf :Eye ."
+    )
+    wanted = SERVICE.replace("sh:class :Camera", "sh:class :Eye")
+    for reasoning, complaints in (("syntactic", 1), ("subclass", 0)):
+        house = House()
+        house.ecology = MemoryEcology(ontologies=[ontology], reasoning=reasoning)
+        house.ecology.add(Source("c1", "image"), CAMERA.replace("NAME", "c1"))
+        house.ecology.add(Tracker("t1"), TRACKER.replace("NAME", "t1"))
+        house.ecology.advertise(wanted)
+        house.ecology.advance(2.0)
+        assert len(house.ecology.complaints) == complaints
+
+
+def test_an_ecology_is_told_why_a_composite_cannot_act_now() -> None:
+    house = House(cameras="")
+    house.ecology.advertise(SERVICE)
+    house.ecology.advance(2.0)
+    view = EcologyView(house.ecology.network.node(), ECOLOGY_NAME)
+    told: list[str] = []
+
+    def look() -> None:
+        view.discover(lambda found: told.append(found.found[SERVED].unable))
+        house.ecology.advance(1.0)
+
+    look()
+    assert told == ["its inside cannot be configured now: no component is eligible for the role eye"]
+    house.by_name["late"] = house.ecology.add(Source("late", "image"), CAMERA.replace("NAME", "late"))
+    house.ecology.advance(2.0)
+    look()
+    assert told[1:] == [""]

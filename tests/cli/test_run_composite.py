@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 from pathlib import Path
 
 import pytest
 
 from selfconf.model.term import IRI
+from tests.cli.command import run as run_command
 from tests.cli.processes import Home
 
 pytestmark = pytest.mark.process
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "lookout"
 HARBOUR = "https://example.org/harbour#"
+
+
+INSIDE_OF = "SELECT ?composite { GRAPH ?g { ?configuration sc:insideOf ?composite } }"
 
 
 def kill(home: Home, name: str) -> None:
@@ -29,8 +34,11 @@ def heard(home: Home) -> str:
     return "".join(path.read_text() for path in (home.runtime / "log").glob("*ferry*"))
 
 
-def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_be(home: Home) -> None:
-    home.site("harbour", str(EXAMPLE / "harbour"))
+def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_be(
+    home: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(EXAMPLE / "harbour", home.folder / "harbour")
+    home.site("harbour", str(home.folder / "harbour"))
     connect = (home.endpoint("harbour"),)
     home.site("ferry", str(EXAMPLE / "ferry"), connect=connect, options=("--listen", home.anywhere))
     where = ("--ecology", home.ecology, "--connect", home.endpoint("ferry"), "--format", "json")
@@ -38,8 +46,12 @@ def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_b
     roles = run.act("running")["configuration"]["roles"]
     assert [role["components"] for role in roles] == [[HARBOUR + "lookout"], [HARBOUR + "pilot"]]
     assert home.until(lambda: "seen by pier-camera" in heard(home))
-    status = home.selfconf("status", *home.arguments(), "--format", "json")
-    assert status.ended() == 0
+    status = run_command(capsys, "status", "--format", "json", *where[:4]).body
+    assert {one["task"]: one["inside_of"] for one in status} == {"approach": None, "lookout": HARBOUR + "lookout"}
+    shown = run_command(capsys, "status", *where[:4]).out.splitlines()
+    assert [line for line in shown if line.startswith("    inside of :lookout: :look-out: running")]
+    within = run_command(capsys, "query", INSIDE_OF, "--format", "json", *where[:4]).body
+    assert [one["composite"]["value"] for one in within["results"]["bindings"]] == [HARBOUR + "lookout"]
     kill(home, "pier-camera")
     assert home.until(lambda: "seen by crane-camera" in heard(home))
     kill(home, "boat-tracker")
@@ -47,3 +59,12 @@ def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_b
     assert (lost["component"], lost["cause"]) == (HARBOUR + "lookout", "fail")
     assert "its inside is refused: no component is eligible for the role tracker" in lost["detail"]
     assert run.ended() == 1
+
+    def reason() -> str:
+        body = run_command(capsys, "discover", "--format", "json", *where[:4]).body
+        (lookout,) = [one for one in body["components"] if one["component"] == HARBOUR + "lookout"]
+        return str(lookout["reason"])
+
+    (home.folder / "harbour" / "parts.ttl").unlink()
+    assert home.until(lambda: "no component is eligible for the role eye" in reason())
+    assert "cannot act now: its inside cannot be configured now" in run_command(capsys, "discover", *where[:4]).out

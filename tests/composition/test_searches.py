@@ -20,6 +20,7 @@ from selfconf.composition.outside import with_outside, with_outside_candidate
 from selfconf.composition.searches import Searches, Strategy
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
+from selfconf.model.profile import Input, Output, needed_operation, offered_operation
 from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.template import TemplatePort
 from selfconf.search.additions import MOST_ADDITIONS, asking_for
@@ -27,7 +28,7 @@ from selfconf.search.problem import Problem
 from tests.effort import NIGHTLY
 from tests.search.strategies.test_best_recruited import PricedWorld, priced_recruiting
 from tests.search.test_recruiting import Players, Recruit
-from tests.search.worlds import SIGNALS, agreement, iri
+from tests.search.worlds import CLASSES, SIGNALS, agreement, iri
 
 Solution = tuple[Players, tuple[Recruit, ...]]
 
@@ -45,13 +46,21 @@ def ecologies(draw: st.DrawFn) -> Problem:
     if draw(st.integers(0, 2)) == 0:
         names = st.sampled_from([role.iri for role in roles])
         ports = tuple(
-            TemplatePort(name, (draw(st.sampled_from(SIGNALS)),), draw(names), draw(st.booleans()))
-            for name in draw(st.sampled_from([(), ("p",), ("p", "q")]))
+            TemplatePort(draw(names), draw(_ports(name))) for name in draw(st.sampled_from([(), ("p",), ("p", "q")]))
         )
         ported = replace(task, template=replace(task.template, ports=ports))
         task = with_outside(ported, iri("composite"))
-        partition = with_outside_candidate(partition, ported, iri("composite"))
+        partition = with_outside_candidate(partition, ported, iri("composite"), given_.hierarchy)
     return Problem(task, partition, given_.hierarchy)
+
+
+@st.composite
+def _ports(draw: st.DrawFn, name: str) -> Input | Output:
+    """Ports that a template has itself, operations among them."""
+    signal, is_input = draw(st.sampled_from(SIGNALS)), draw(st.booleans())
+    if draw(st.integers(0, 2)):
+        return Input(name, (signal,)) if is_input else Output(name, (signal,))
+    return (needed_operation if is_input else offered_operation)(name, draw(st.sampled_from([None, *CLASSES])), signal)
 
 
 def raised(problem: Problem) -> Iterator[Problem]:

@@ -243,7 +243,8 @@ def test_what_moves_while_a_configuration_is_deployed_is_told_at_its_end() -> No
     assert applied(history.answer(TRACKER, Call.WAKE)) == [TRACKER]
     assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
     assert applied(history.answer(CONTROL, Call.APPLY)) == [CONTROL]  # once more, with what stands behind now
-    assert history.answer(CONTROL, Call.APPLY) == [Running(navigation())]
+    effects = history.answer(CONTROL, Call.APPLY)
+    assert effects == [Running(navigation()), ReleaseFrom(ODOMETRY, history.state.epoch), Unwatch(ODOMETRY)]
 
 
 def test_what_gets_another_input_waits_for_its_source() -> None:

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.configurator.order import (
+    Caller,
     callers,
     parameter_values,
     resting_next,
@@ -66,7 +67,8 @@ def test_who_may_call_an_operation_is_whom_it_is_connected_to() -> None:
     calls = [Connection(name("a"), "look()", name(one), "see()") for one in "bc"]
     plain = configuration("abc", "ab")
     whole = replace(plain, connections=(*plain.connections, *calls))
-    assert callers(whole) == {name("a"): {"look()": (name("b"), name("c"))}, name("b"): {}, name("c"): {}}
+    both = Caller(name("b"), "see()"), Caller(name("c"), "see()")
+    assert callers(whole) == {name("a"): {"look()": both}, name("b"): {}, name("c"): {}}
     assert wiring(whole)[name("c")] == {"see()": (Wire(name("a"), "look()"),)}
 
 

@@ -1,6 +1,7 @@
 """Histories in which everything goes wrong, each decided by its script, which is made from a seed.
 
-A history plays the actions of a script on the paper's ecology, on a network that loses, delays and doubles messages:
+A history plays the actions of a script in an ecology, the paper's or one with operations and a composite, on a network
+that loses, delays and doubles messages:
 components fail, crash, come back, are started twice, are slow; nodes are paused, cut off, or cut off from one other;
 sites and configurators die and come back; several tasks compete. At every step of the network the invariants of
 `tests/faults/invariants.py` are looked at. Then the faults cease, every node reaches every other, and after a while the
@@ -15,29 +16,34 @@ to have every action dropped that is not needed:
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
+from selfconf.model.profile import CALL_MARK
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Wire
 from selfconf.sdk.component import Refused
+from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Site
-from tests.faults.script import COMPONENTS, SITES, Action, Script
+from tests.faults.script import Action, Script
 from tests.faults.simulated_code import ReportsLate, SimulatedCodeThread
 from tests.faults.simulated_processes import SimulatedProcesses
-from tests.lab import ADVERTISEMENTS, NAVIGATE, Lab, Recorder
+from tests.lab import Lab, Recorder
 
-DRIVELESS = NAVIGATE.replace(" :drive )", " )").replace("sc:feeds :drive ;", "").partition(":drive a sc:Role")[0]
-"""The paper's task without the drive."""
 SETTLED = 75.0
 """Seconds after the last fault in which the ecology must come into order."""
 SPOKEN = 1.0
 """Seconds in which everybody must have heard what was said last."""
+ASKED = "asked"
+"""What a component writes down when it calls an operation at the end of a history."""
 LOOKED_AGAIN = 1.0
 """Seconds that a task which waits may take to look again, as it does from time to time: it is undecided meanwhile."""
 
@@ -62,6 +68,17 @@ class Life:
         """Whether it lives, and does something with what arrives."""
         return self.node.open and not self.node.paused
 
+    @property
+    def component(self) -> IRI:
+        """Which component it is a life of."""
+        return self.runtime.profile.component
+
+    @property
+    def followed(self) -> set[tuple[str, Wire]]:
+        """Which output each input follows; none of a composite, of which others do."""
+        inputs = self.runtime.inputs
+        return inputs.followed if isinstance(inputs, Inputs) else set()
+
 
 class History:
     """A script that is played; `broken` says what was not as it must be, and when."""
@@ -70,13 +87,15 @@ class History:
         from tests.faults.invariants import Watch
 
         self.script = script
+        ecology = script.ecology
         advertised = {
-            name: startable(text) if name in script.startable else text for name, text in ADVERTISEMENTS.items()
+            name: startable(text) if name in script.startable else text for name, text in ecology.advertisements.items()
         }
         self.lab = Lab(folder, script.seed, script.faults, advertised)
         self.network = self.lab.network
         self.told: list[str] = []
-        self.lives: list[Life] = []
+        self.processes: list[Life] = []
+        """The lives of components that are processes, those that are over too."""
         self.sites: dict[str, Site] = {}
         self.tasks: dict[str, TaskRunner] = {}
         self.agents: list[TaskRunner] = []
@@ -84,9 +103,9 @@ class History:
         self._nodes: dict[str, MemoryBus] = {}
         self._isolated: set[str] = set()
         self._powerless: list[MemoryBus] = []
-        for name in SITES:
+        for name in ecology.sites:
             self._begin_site(name)
-        for name in COMPONENTS:
+        for name in ecology.processes:
             if name not in script.startable:
                 self._begin_life(name)
         self.watch = Watch(self)
@@ -113,14 +132,24 @@ class History:
         self.lab.let_pass(SETTLED)
         self._speak()
         self.lab.let_pass(SPOKEN)
+        self._ask_all()
+        self.lab.let_pass(SPOKEN)
         self.lab.until(self.watch.all_decided, LOOKED_AGAIN)
         self.watch.end()
 
     def _speak(self) -> None:
         """Let every source that acts say something."""
-        for life in self.lives:
-            for output in life.runtime.profile.outputs if life.awake and life.runtime.active else ():
+        for life in self.processes:
+            for output in life.runtime.profile.signal_outputs if life.awake and life.runtime.active else ():
                 life.recorder.emit(output.name, f"the last of {life.runtime.life}")
+
+    def _ask_all(self) -> None:
+        """Let every component that needs operations call them, but for those whose code is busy."""
+        for life in self.processes:
+            if life.awake and life.runtime.active and life.thread.busy_until <= self.network.time:
+                for needed in life.runtime.profile.needed_operations:
+                    life.recorder.said.append((ASKED, needed.name))
+                    life.recorder.ask(needed.name.removesuffix(CALL_MARK))
 
     def perform(self, action: Action) -> bool:
         """Do what an action says, if that is possible; whether it was."""
@@ -143,9 +172,30 @@ class History:
 
     # What there is.
 
+    @property
+    def lives(self) -> list[Life]:
+        """The lives of all components, with those of the composites that live now."""
+        return [*self.processes, *self.composites()]
+
+    def composites(self) -> Iterator[Life]:
+        """The composites that live now: what they do themselves is nothing, and takes no time."""
+        for site, composites in self.lab.composites.items():
+            node = self.node(site)
+            for inside in composites.living.values() if node is not None else ():
+                assert node is not None
+                thread = SimulatedCodeThread(node, inside.runtime.hung)
+                yield Life(inside.profile.component.short, inside.runtime, Recorder(), node, thread)
+
+    def insides(self) -> Iterator[InsideOfComposite]:
+        """The composites that live now, with what they are inside."""
+        for site, composites in self.lab.composites.items():
+            if self.node(site) is not None:
+                yield from composites.living.values()
+
     def living(self) -> list[TaskRunner]:
-        """The configurators that have not died."""
-        return [agent for agent in self.agents if self.lab.is_open(agent)]
+        """The configurators that have not died, those inside of composites too."""
+        runners = [inside.runner for inside in self.insides() if inside.runner is not None]
+        return [agent for agent in (*self.agents, *runners) if self.lab.is_open(agent)]
 
     def life(self, name: str) -> Life | None:
         """The latest life of a component, if it has not ended."""
@@ -153,7 +203,7 @@ class History:
 
     def lives_of(self, name: str) -> list[Life]:
         """All lives of a component that have not ended, the latest last."""
-        on = (life for life in self.lives if life.node.open and life.node not in self._powerless)
+        on = (life for life in self.processes if life.node.open and life.node not in self._powerless)
         return [life for life in on if life.name == name]
 
     def node(self, who: str) -> MemoryBus | None:
@@ -170,10 +220,10 @@ class History:
                 self.network.cut(node, lone)
 
     def _begin_site(self, name: str) -> None:
-        site = self.lab.site(name, *SITES[name])
+        site = self.lab.site(name, *self.script.ecology.sites[name])
         self.sites[name] = site
         assert isinstance(site.bus, MemoryBus)
-        names = {self.lab.profile(one).component: one for one in COMPONENTS}
+        names = {self.lab.profile(one).component: one for one in self.script.ecology.processes}
         processes: Any = SimulatedProcesses(self, site.bus, names)
         site.processes = processes
         self._joined(name, site.bus)
@@ -202,9 +252,10 @@ class History:
         )
         late: Any = ReportsLate(node, thread)
         runtime.code._bus = late
-        self.lives.append(Life(name, runtime, recorder, node, thread))
+        recorder.served = lambda operation, caller: self.watch.served(runtime, operation, caller)
+        self.processes.append(Life(name, runtime, recorder, node, thread))
         self._joined(name, node)
-        return self.lives[-1]
+        return self.processes[-1]
 
     def begin_process(self, name: str, begun: Callable[[MemoryBus | None], None]) -> None:
         """Start a process of a component; it ends at once if it sees another one. `begun` hears of its node, if any."""
@@ -224,7 +275,11 @@ class History:
         """Start a process of a component, and again if another one seems to live, but does not."""
 
         def begun(node: MemoryBus | None) -> None:
-            if node is None and attempts > 1 and all(not life.node.open for life in self.lives if life.name == name):
+            if (
+                node is None
+                and attempts > 1
+                and all(not life.node.open for life in self.processes if life.name == name)
+            ):
                 self.network.after(1.0, lambda: self._try_to_begin(name, attempts - 1))
 
         self.begin_process(name, begun)
@@ -242,8 +297,16 @@ class History:
         life = self.life(action.who)
         if life is None or not life.awake:
             return False
-        for output in life.runtime.profile.outputs:
+        for output in life.runtime.profile.signal_outputs:
             life.recorder.emit(output.name, self.network.time)
+        return True
+
+    def _ask(self, action: Action) -> bool:
+        life = self.life(action.who)
+        if life is None or not life.awake:
+            return False
+        for needed in life.runtime.profile.needed_operations:
+            life.recorder.ask(needed.name.removesuffix(CALL_MARK))
         return True
 
     def _crash(self, action: Action) -> bool:
@@ -313,10 +376,10 @@ class History:
     def _begin(self, action: Action) -> bool:
         if self.node(action.who) is not None:
             return False
-        plan = self.script.tasks[action.who]
+        plan, ecology = self.script.tasks[action.who], self.script.ecology
         agent = self.lab.agent(
-            NAVIGATE if plan.drives else DRIVELESS,
-            (("robot", ":Astrid"), ("goal", f"(AT {action.who})")),
+            ecology.whole if plan.drives else ecology.part,
+            tuple((name, value.format(task=action.who)) for name, value in ecology.bindings),
             policy=Policy.DISMANTLE if plan.dismantles else Policy.REPAIR,
             patient=plan.patient,
             name=action.who,

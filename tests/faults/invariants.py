@@ -6,18 +6,23 @@ that may not last for longer than its bound; a bound of zero means never. What m
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import LEASE, MemoryBus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
+from selfconf.model.configuration import Configuration
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.blindness import TOLERATES
+from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.supervision import GRACE
-from tests.faults.histories import History, Life
-from tests.faults.script import SITES
+from tests.faults.histories import ASKED, History, Life
 
 CALLS = 2.0
 """Seconds after which a configurator looks again at a call that was not answered."""
@@ -174,8 +179,9 @@ def acts_blind(history: History) -> Iterator[str]:
     """No actuator is on while nobody feeds it."""
     for life in awake(history):
         told = [said for said in life.recorder.said if said in (("started",), ("stopped",))]
-        if not life.runtime.profile.outputs and life.runtime.active and told[-1:] == [("started",)]:
-            sources = {wire.component for _, wire in life.runtime.inputs.followed}
+        actuates = bool(life.runtime.profile.signal_inputs) and not life.runtime.profile.outputs
+        if actuates and life.runtime.active and told[-1:] == [("started",)]:
+            sources = {wire.component for _, wire in life.followed}
             if not any(feeds(history, source, life) for source in sources):
                 yield f"{life.name} {life.runtime.life} is on, and nobody feeds it"
 
@@ -228,7 +234,7 @@ def refused_in_vain(history: History) -> Iterator[str]:
     """No task that waits could run, with what is free or held by tasks of lower priority."""
     alive = {life.runtime.profile.component for life in history.lives if life.node.open}
     sites = {name: site for name, site in history.sites.items() if history.node(name) is not None}
-    startable = {one for name in sites for one in SITES[name] if one in history.script.startable}
+    startable = {one for name in sites for one in history.script.ecology.sites[name] if one in history.script.startable}
     alive |= {history.lab.profile(name).component for name in startable}
     found = {c: a for site in sites.values() for c, a in site.shelf.advertisements.items() if c in alive}
     for agent in history.living():
@@ -266,18 +272,48 @@ def acts_otherwise(history: History) -> Iterator[str]:
 
 
 def wired_otherwise(history: History) -> Iterator[str]:
-    """Every input follows what the configuration says."""
+    """Every input follows what the configuration says; of a composite what stands behind it."""
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and agent.configuration is not None:
             for life in awake(history):
-                if holds(life).get(agent.supervisor):
-                    component = life.runtime.profile.component
+                if holds(life).get(agent.supervisor) and life.name not in history.script.ecology.composites:
                     wanted = {
-                        (c.input, c.source, c.output) for c in agent.configuration.connections if c.sink == component
+                        (c.input, *end)
+                        for c in agent.configuration.connections
+                        if c.sink == life.component and not c.output.endswith(CALL_MARK)
+                        for end in ends_behind(history, agent, c.source, c.output)
                     }
-                    followed = {(port, wire.component, wire.output) for port, wire in life.runtime.inputs.followed}
+                    followed = {(port, wire.component, wire.output) for port, wire in life.followed}
                     if wanted != followed:
                         yield f"{life.name} follows {sorted(followed)}, not {sorted(wanted)}"
+
+
+def ends_behind(history: History, agent: TaskRunner, source: IRI, output: str) -> Iterator[tuple[IRI, str]]:
+    """The outputs that stand behind one of a configuration: inside of a composite, or outside of this one."""
+    outside = agent.request.outside
+    if outside is not None and source == outside.composite:
+        behind = [one for one in history.living() if one is not agent and _acts_for(history, one, source)]
+    else:
+        behind = [i.runner for i in history.insides() if i.runner is not None and i.profile.component == source]
+        if not behind:
+            yield source, output
+    for other in behind:
+        for one in other.configuration.connections if other.configuration is not None else ():
+            if one.sink == source and one.input == output:
+                yield from ends_behind(history, other, one.source, one.output)
+
+
+def unanswered(history: History) -> Iterator[str]:
+    """Every operation that a component needs is answered, by a component that acts."""
+    acting = {life.component for life in awake(history) if life.runtime.active}
+    for life in awake(history):
+        for needed in life.runtime.profile.needed_operations:
+            said = life.recorder.said
+            if life.runtime.active and (ASKED, needed.name) in said:
+                after = said[len(said) - said[::-1].index((ASKED, needed.name)) :]
+                answers = [one for one in after if one[0] == needed.name.removesuffix(CALL_MARK)]
+                if not any(len(one) == 3 and one[1] == "answered" and one[2] in acting for one in answers):
+                    yield f"{life.name} has asked by {needed.name}, and has come to {answers}"
 
 
 def lacks_a_value(history: History) -> Iterator[str]:
@@ -310,7 +346,7 @@ def unheard(history: History) -> Iterator[str]:
     """Every input has heard what each output that it follows has issued last."""
     acting = [life for life in awake(history) if life.runtime.active]
     for life in acting:
-        for port, wire in life.runtime.inputs.followed:
+        for port, wire in life.followed:
             for source in (one for one in acting if one.runtime.profile.component == wire.component):
                 if (port, f"the last of {source.runtime.life}") not in life.recorder.said:
                     yield f"{life.name} has not heard the last of {source.name}"
@@ -332,8 +368,17 @@ ENDS = (
     Invariant("parameters are set", lacks_a_value),
     Invariant("parameters come first", started_without_values),
     Invariant("the last signal is heard", unheard),
+    Invariant("what is needed is answered", unanswered),
 )
 """What must hold in the end."""
+
+CONNECTED = "who calls is connected"
+TRIES_FIRST = "a composite tries first"
+NOTED = (CONNECTED, TRIES_FIRST)
+"""What is noted when it happens: that a call is answered though the caller is not connected, and that a composite fails
+that has not looked for another inside."""
+Composed = Sequence[tuple[IRI | None, Configuration]]
+"""Configurations, each with the composite that it is the inside of."""
 
 
 class Watch:
@@ -351,12 +396,17 @@ class Watch:
         """The names of the invariants that were broken."""
         self.longest: dict[str, float] = {}
         """How long a condition of each invariant has lasted at most."""
+        self._composed: dict[str, list[tuple[IRI | None, Configuration]]] = {}
+        """What each configurator has composed, by its life, each with the composite that it is the inside of."""
+        self._inside: dict[InsideOfComposite, tuple[TaskRunner, int]] = {}
+        """What runs, or ran, the inside of each composite, with its search of which came what ran last."""
 
     def look(self) -> None:
         """Look at the ecology as it is now; conditions need a second look only if something has changed."""
         seen = self._fingerprint()
         if seen != self._seen:
             self._seen = seen
+            self._note_composed()
             self._compare()
         now = self._history.network.time
         for (name, condition), since in self._since.items():
@@ -374,6 +424,48 @@ class Watch:
         for invariant in ENDS:
             for condition in invariant.conditions(self._history):
                 self.note(invariant.name, condition)
+
+    def _note_composed(self) -> None:
+        """Note what was composed, and which composites fail that have not looked for another inside first."""
+        for agent in self._history.living():
+            composed, outside = self._composed.setdefault(agent.supervisor, []), agent.request.outside
+            if agent.configuration is not None and (not composed or composed[-1][1] is not agent.configuration):
+                composed.append((None if outside is None else outside.composite, agent.configuration))
+        for inside in self._history.insides():
+            runner, attempt = self._inside.get(inside, (None, 0))
+            if inside.runner is not None and (
+                inside.runner is not runner or inside.runner.state.phase is Phase.RUNNING
+            ):
+                attempt = inside.runner.state.attempt if inside.runner.state.phase is Phase.RUNNING else 0
+                self._inside[inside] = inside.runner, attempt
+            failed = inside.runtime.activation.phase is ActivationPhase.FAILED
+            if failed and runner is not None and not (
+                isinstance(runner.state.refusal, Refusal) and runner.state.attempt > attempt
+            ):  # fmt: skip
+                del self._inside[inside]
+                self.note(TRIES_FIRST, f"{inside.profile.component.short} fails, and has not been refused")
+
+    def served(self, runtime: ComponentRuntime, operation: str, caller: IRI) -> None:
+        """A component answers a call: it may have been connected to the caller by a task that holds it."""
+        self._note_composed()
+        wanted, name = runtime.profile.component, operation + CALL_MARK
+        composed = [one for hold in runtime.activation.holds for one in self._composed.get(hold.claim.supervisor, ())]
+        if caller not in set(self._callers(wanted, name, composed)):
+            self.note(CONNECTED, f"{wanted.short} answers {operation!r} of {caller.short}")
+
+    def _callers(self, component: IRI, name: str, composed: Composed) -> Iterator[IRI]:
+        """Who might call an operation, by some configurations; across composites by any that there have been."""
+        everything = [one for some in self._composed.values() for one in some]
+        for outside, configuration in composed:
+            for one in configuration.connections:
+                if (one.source, one.output) != (component, name):
+                    continue
+                if one.sink == outside:
+                    yield from self._callers(one.sink, one.input, [c for c in everything if c[0] != outside])
+                elif inner := [c for c in everything if c[0] == one.sink]:
+                    yield from self._callers(one.sink, one.input, inner)
+                else:
+                    yield one.sink
 
     def _compare(self) -> None:
         now = self._history.network.time
@@ -398,7 +490,7 @@ class Watch:
         history = self._history
         self._kept = [
             *(life.runtime.activation for life in history.lives),
-            *(agent.state for agent in history.agents),
+            *(agent.state for agent in (*history.agents, *history.living())),
         ]
         return (
             [
@@ -412,7 +504,10 @@ class Watch:
                 )
                 for life in history.lives
             ],
-            [(id(agent.state), node_of(agent).open, node_of(agent).paused) for agent in history.agents],
+            [
+                (id(agent.state), node_of(agent).open, node_of(agent).paused)
+                for agent in (*history.agents, *history.living())
+            ],
             len(history.network._cut),
             sum(node.expelled for node in history.network.nodes),
             len(history.network._events) > MOST_WAITING,

@@ -4,6 +4,8 @@
     python -m tests.faults.replay SEED --shrink     drop whatever is not needed for it to go wrong
     python -m tests.faults.replay SEED --log        show what sites, components and configurators log
 
+`--ecology composed` plays it where there are operations and a composite.
+
 The exit code is 1 if an invariant was broken.
 """
 
@@ -18,6 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from selfconf.bus.memory import Faults
+from tests.faults.ecologies import ECOLOGIES
 from tests.faults.histories import History
 from tests.faults.script import Script, write
 
@@ -70,10 +73,11 @@ def main() -> int:
     parser.add_argument("seed", type=int)
     parser.add_argument("--shrink", action="store_true", help="drop whatever is not needed for it to go wrong")
     parser.add_argument("--log", action="store_true", help="show what sites, components and configurators log")
+    parser.add_argument("--ecology", choices=ECOLOGIES, default="paper", help="where it happens (default: %(default)s)")
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.DEBUG if arguments.log else logging.CRITICAL, format="%(name)s: %(message)s")
     with tempfile.TemporaryDirectory() as folder:
-        script = write(arguments.seed)
+        script = write(arguments.seed, ecology=ECOLOGIES[arguments.ecology])
         if arguments.shrink:
             logging.disable(logging.CRITICAL)
             script = shrink(script, Path(folder))

@@ -11,13 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from selfconf.bus.memory import Faults
+from tests.faults.ecologies import PAPER, FaultyEcology
 
-SITES = {
-    "living-room": ("tracker",),
-    "astrid": ("sonar", "encoder", "odometry", "control", "drive", "pippi"),
-}
-"""The sites, each with what it advertises."""
-COMPONENTS = tuple(sorted(name for names in SITES.values() for name in names))
 TASKS = ("task-1", "task-2", "task-3")
 
 
@@ -46,7 +41,7 @@ class TaskPlan:
     patient: bool = True
     dismantles: bool = False
     drives: bool = True
-    """Whether it is the paper's task; else it wants everything of it but the drive."""
+    """Whether it is of the template of most tasks; else of the other one, without the actuator."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +49,7 @@ class Script:
     """Everything that decides a history."""
 
     seed: int
+    ecology: FaultyEcology = PAPER
     faults: Faults = field(default_factory=Faults)
     clocks: Mapping[str, float] = field(default_factory=dict)
     """By how many seconds the clock of a task's node is wrong."""
@@ -63,35 +59,36 @@ class Script:
     actions: tuple[Action, ...] = ()
 
     def __str__(self) -> str:
-        lines = [f"seed {self.seed}: {self.faults}"]
+        lines = [f"seed {self.seed} in the ecology {self.ecology.name}: {self.faults}"]
         lines += [f"    {name}: {plan}, clock {self.clocks.get(name, 0.0):+g} s" for name, plan in self.tasks.items()]
         lines += [f"    started by their sites: {', '.join(sorted(self.startable))}"] if self.startable else []
         return "\n".join([*lines, *map(str, self.actions)])
 
 
 KINDS = {
-    "fail": (2, COMPONENTS),
-    "crash": (2, COMPONENTS),
-    "start": (4, COMPONENTS),
-    "lose_power": (1, COMPONENTS),
-    "duplicate": (1, COMPONENTS),
-    "twins": (1, COMPONENTS),
-    "refuse": (1, COMPONENTS),
-    "slow": (1, COMPONENTS),
-    "emit": (1, COMPONENTS),
-    "crash_site": (1, tuple(SITES)),
-    "start_site": (2, tuple(SITES)),
-    "begin": (3, TASKS),
-    "crash_task": (2, TASKS),
-    "stop_task": (1, TASKS),
-    "isolate": (2, (*COMPONENTS, *SITES, *TASKS)),
-    "rejoin": (3, (*COMPONENTS, *SITES, *TASKS)),
-    "cut": (2, (*COMPONENTS, *SITES, *TASKS)),
-    "mute": (1, (*COMPONENTS, *SITES, *TASKS)),
-    "mend": (2, (*COMPONENTS, *SITES, *TASKS)),
-    "pause": (2, (*COMPONENTS, *SITES, *TASKS)),
+    "fail": (2, "components"),
+    "crash": (2, "components"),
+    "start": (4, "components"),
+    "lose_power": (1, "components"),
+    "duplicate": (1, "components"),
+    "twins": (1, "components"),
+    "refuse": (1, "components"),
+    "slow": (1, "components"),
+    "emit": (1, "components"),
+    "ask": (6, "callers"),
+    "crash_site": (1, "sites"),
+    "start_site": (2, "sites"),
+    "begin": (3, "tasks"),
+    "crash_task": (2, "tasks"),
+    "stop_task": (1, "tasks"),
+    "isolate": (2, "all"),
+    "rejoin": (3, "all"),
+    "cut": (2, "all"),
+    "mute": (1, "all"),
+    "mend": (2, "all"),
+    "pause": (2, "all"),
 }
-"""The kinds of actions: how often each comes, and whom it may be done to."""
+"""The kinds of actions: how often each comes, and whom it may be done to; see `targets`."""
 PAIRED = ("cut", "mute", "mend")
 """The kinds that are done to a link between two."""
 PAUSES = (0.5, 2.0, 10.0)
@@ -99,7 +96,19 @@ SLOWNESS = (0.3, 3.0, 6.0, 12.0)
 MOMENTS = (0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)
 
 
-def write(seed: int, without: tuple[str, ...] = ()) -> Script:
+def targets(ecology: FaultyEcology) -> dict[str, tuple[str, ...]]:
+    """Whom the kinds of actions may be done to in an ecology."""
+    components, sites = ecology.processes, tuple(ecology.sites)
+    return {
+        "components": components,
+        "callers": tuple(name for name in components if "sc:needsOperation" in ecology.advertisements[name]),
+        "sites": sites,
+        "tasks": TASKS,
+        "all": (*components, *sites, *TASKS),
+    }
+
+
+def write(seed: int, without: tuple[str, ...] = (), ecology: FaultyEcology = PAPER) -> Script:
     """Make the script of a seed.
 
     `without` are kinds of actions that are left out; `late` stands for events that are delayed beyond the grace.
@@ -115,15 +124,17 @@ def write(seed: int, without: tuple[str, ...] = ()) -> Script:
     clocks = {name: chance.choice((0.0, 0.0, -300.0, 300.0)) for name in TASKS}
     dismantles = chance.random() < 0.3
     tasks = {name: TaskPlan(chance.choice((0, 0, 0, 1, 2)), chance.random() < 0.7, dismantles) for name in TASKS}
-    starts = frozenset(name for name in COMPONENTS if chance.random() < chance.choice((0.0, 0.5, 1.0)))
+    starts = frozenset(name for name in ecology.processes if chance.random() < chance.choice((0.0, 0.5, 1.0)))
     time, actions = 0.0, [Action(0.0, "begin", TASKS[0])]
-    kinds = [kind for kind in KINDS if kind not in without]
+    whom = targets(ecology)
+    kinds = [kind for kind, (_, group) in KINDS.items() if kind not in without and whom[group]]
     weights = [KINDS[kind][0] for kind in kinds]
     for _ in range(chance.randint(2, 14)):
         time += chance.choice(MOMENTS)
         (kind,) = chance.choices(kinds, weights)
-        who = chance.choice(KINDS[kind][1])
-        other = chance.choice([one for one in KINDS[kind][1] if one != who]) if kind in PAIRED else ""
+        some = whom[KINDS[kind][1]]
+        who = chance.choice(some)
+        other = chance.choice([one for one in some if one != who]) if kind in PAIRED else ""
         seconds = chance.choice(PAUSES if kind == "pause" else SLOWNESS) if kind in ("pause", "slow") else 0.0
         actions.append(Action(time, kind, who, other, seconds))
-    return Script(seed, faults, clocks, tasks, starts, tuple(actions))
+    return Script(seed, ecology, faults, clocks, tasks, starts, tuple(actions))

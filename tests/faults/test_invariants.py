@@ -8,19 +8,25 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults
 from selfconf.configurator.effects import ReleaseFrom
 from selfconf.configurator.events import Answered, Call
 from selfconf.deployment.calls import Calls
-from selfconf.protocol.messages import Apply, Verdict
+from selfconf.model.run_event import ComponentLost, RunEvent
+from selfconf.protocol.messages import Apply, Verdict, Wire
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import Inputs
+from selfconf.sdk.operations import Operations
 from selfconf.sdk.runtime import ComponentRuntime
+from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import History
-from tests.faults.invariants import ENDS, STEPS
+from tests.faults.invariants import ENDS, NOTED, STEPS
 from tests.faults.script import Action, Script, TaskPlan
+from tests.lab import iri
 
 CLAIM, FOLLOW, SET, START = Calls._claim, Inputs.follow, ComponentCode._set, ComponentCode._start
+FOLLOW_CALLS, REPORT = Operations.follow, InsideOfComposite._report
 LATER = Action(20.0, "emit", "sonar")
 """Until then the faults go on."""
 
@@ -56,6 +62,19 @@ def lets_go_silently(self: ComponentRuntime, tasks: Sequence[str], why: str) -> 
     self._when_at_rest(self._offer)
 
 
+def calls_a_stranger(self: Operations, message: Apply) -> None:
+    """A component that calls one that it is not connected to."""
+    FOLLOW_CALLS(self, message)
+    self._wires = {name: (Wire(iri("odometry"), "where()"),) for name in self._wires}
+
+
+def fails_at_once(self: InsideOfComposite, event: RunEvent) -> None:
+    """A composite that fails when a component inside of it is lost."""
+    REPORT(self, event)
+    if isinstance(event, ComponentLost):
+        self.runtime.fail("something inside of it is lost")
+
+
 def breaks(*_: Any) -> None:
     """A program with a mistake in it."""
     raise RuntimeError("a mistake")
@@ -67,6 +86,7 @@ class Mutation(NamedTuple):
     changes: dict[str, Any]
     actions: tuple[Action, ...] = ()
     faults: Faults = Faults()
+    ecology: FaultyEcology = PAPER
 
 
 CALLS, LIVENESS = "selfconf.deployment.calls", "selfconf.deployment.liveness"
@@ -125,6 +145,20 @@ MUTATIONS = {
         }
     ),
     "the last signal is heard": Mutation({"selfconf.sdk.inputs.InputSubscription._read": nothing}),
+    "who calls is connected": Mutation(
+        {
+            "selfconf.sdk.operations.Operations.follow": calls_a_stranger,
+            f"{RUNTIME}.callers": lambda self, operation: frozenset((iri("drive"), iri("screen"))),
+        },
+        (Action(2.0, "begin", "task-3"), Action(5.0, "ask", "drive")),
+        ecology=COMPOSED,
+    ),
+    "a composite tries first": Mutation(
+        {"selfconf.api.composites.InsideOfComposite._report": fails_at_once},
+        (Action(2.0, "crash", "camera-1"),),
+        ecology=COMPOSED,
+    ),
+    "what is needed is answered": Mutation({"selfconf.sdk.operations.Operations._ask": nothing}, ecology=COMPOSED),
     "nothing breaks": Mutation({f"{LIVENESS}.Liveness._ended": breaks}, (Action(2.0, "crash", "pippi"),)),
 }
 
@@ -133,7 +167,8 @@ def played(mutation: Mutation, folder: Path, seed: int = 1) -> History:
     """What becomes of patient tasks."""
     tasks = {"task-1": TaskPlan(), "task-2": TaskPlan(), "task-3": TaskPlan(drives=False)}
     actions = tuple(sorted((Action(0.0, "begin", "task-1"), *mutation.actions), key=lambda action: action.time))
-    history = History(Script(seed, mutation.faults, tasks=tasks, actions=actions), folder)
+    script = Script(seed, mutation.ecology, mutation.faults, tasks=tasks, actions=actions)
+    history = History(script, folder)
     history.run()
     return history
 
@@ -153,4 +188,4 @@ def test_nothing_is_wrong_where_nothing_was_changed(name: str, tmp_path: Path) -
 
 
 def test_every_invariant_has_its_mutation() -> None:
-    assert set(MUTATIONS) == {invariant.name for invariant in (*STEPS, *ENDS)} | {"nothing breaks"}
+    assert set(MUTATIONS) == {invariant.name for invariant in (*STEPS, *ENDS)} | {*NOTED, "nothing breaks"}

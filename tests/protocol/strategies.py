@@ -102,6 +102,7 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
         numbers,
         st.dictionaries(texts, numbers, max_size=3),
         inputs,
+        callers,
         seconds,
     ),
     Fail: st.builds(Fail, iris, texts, numbers, st.sampled_from(Cause), texts),
@@ -109,13 +110,15 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
     Introduction: st.builds(Introduction, texts, st.booleans()),
     Access: st.builds(Access, texts, texts, *[st.lists(names, max_size=2).map(tuple)] * 4),
     RefusedAttempt: st.builds(RefusedAttempt, texts, texts, texts, numbers, seconds),
-    Moved: st.builds(Moved, iris, texts, inputs),
+    Moved: st.builds(Moved, iris, texts, inputs, callers),
     Known: st.builds(Known, st.dictionaries(names, numbers, max_size=3)),
     LogQuestion: st.builds(LogQuestion, texts, numbers, texts),
     LogPart: st.builds(LogPart, st.lists(log_lines, max_size=3).map(tuple), texts, st.booleans()),
     Wake: st.builds(Wake, iris),
     End: st.builds(End, iris, texts),
-    Page: st.builds(Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans(), texts),
+    Page: st.builds(
+        Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans(), texts, st.booleans(), texts
+    ),
     Stamp: st.builds(
         Stamp,
         iris,

@@ -3,7 +3,8 @@
 `Partitioner` compiles the roles of a task (`CompiledRole`) and partitions an `AdvertisementIndex`. `near_misses` and
 `near_misses_by_type` find the components that one obstacle keeps out, `exclusions` everything that keeps the others
 out (`Exclusion`). `kept_out_by_ports` finds those that only the ports keep out that a shape asks for (`ports_asked`),
-`words_of_role` the words of what a role asks for. `bound_shape` is the shape of a role with its parameters replaced.
+`words_of_role` the words of what a role asks for. `bound_shape` is the shape of a role with its parameters replaced,
+`with_sent_requests` a partition whose operations know all that is sent along with them under a hierarchy.
 """
 
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
@@ -20,6 +21,7 @@ from selfconf.rdf.eligibility.role_tests import (
     RoleTest,
     SelfTest,
 )
+from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.similar_types import near_misses_by_type
 from selfconf.rdf.eligibility.unlike_ports import kept_out_by_ports, ports_asked, words_of_role
 
@@ -45,5 +47,6 @@ __all__ = [
     "prefaced",
     "statements",
     "wanted",
+    "with_sent_requests",
     "words_of_role",
 ]

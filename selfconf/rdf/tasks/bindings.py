@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -77,12 +77,19 @@ def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> 
     return TaskDocument(replace(task, bindings=bindings), document)
 
 
-def complete(given: TaskDocument) -> TaskDocument:
-    """The task with defaults filled in and every value checked against its parameter. Raises BindingError."""
+def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
+    """The task with defaults filled in and every value checked against its parameter. Raises BindingError.
+
+    The parameters that are named in `later` get their values when the task begins. Until then those stay free that stand
+    in shapes, those that are only set stand for their values themselves, and those that cannot be free have defaults.
+    """
     task, document = given.task, given.document
     bindings = dict(task.bindings)
     for parameter in task.template.parameters:
         if parameter.iri not in bindings:
+            if parameter.name in later and _rigid(given, parameter) is None:
+                bindings |= {} if parameter.in_shape else {parameter.iri: parameter.iri}
+                continue
             if parameter.default is not None:
                 bindings[parameter.iri] = parameter.default
             elif parameter.is_set and not parameter.in_shape:

@@ -1,0 +1,217 @@
+"""What composites are inside: which of them can be configured, as what, and why the others cannot.
+
+The inside of a composite is a task; its template is read from the document that advertises the composite, and its ports
+and some of its parameters are those of the composite. It is configured from the components of one site, the composite
+itself left out. Composites that could be inside of each other in a circle have no end, and are refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from selfconf.composition.composer import Composer
+from selfconf.errors import AuthorError, SelfconfError
+from selfconf.model.configuration import Configuration
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.term import IRI, Term
+from selfconf.rdf import tasks
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.tasks import TaskDocument
+from selfconf.rdf.turtle import Document
+
+DocumentOf = Callable[[Advertisement], Document]
+"""Reads the document in which a composite is advertised; raises SelfconfError."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inside:
+    """What a composite is inside: a task, of which some parameters are operational parameters of the composite."""
+
+    composite: IRI
+    task: TaskDocument
+    later: frozenset[str]
+    """The names of these parameters: they get their values when the composite is activated."""
+    hierarchy: Hierarchy
+    composer: Composer
+    """Composes the inside as it is before that, with these parameters left free."""
+
+    @classmethod
+    def of(cls, profile: Profile, document: Document, hierarchy: Hierarchy) -> Inside:
+        """What a component is inside that is advertised in a document. Raises SelfconfError if it cannot be."""
+        task = tasks.read_inside(document, profile.component)
+        _check_ports(profile, task)
+        later = frozenset(parameter.name for parameter in profile.parameters)
+        _check_parameters(later, task)
+        composer = Composer(tasks.complete(task, later), hierarchy, outside=profile.component)
+        return cls(profile.component, task, later, hierarchy, composer)
+
+    def composer_with(self, values: Mapping[str, Term]) -> Composer:
+        """What composes the inside with values for the parameters of the composite. Raises SelfconfError."""
+        if not self.later:
+            return self.composer
+        template = self.task.task.template
+        for parameter in template.parameters:
+            lacks = parameter.name in self.later and parameter.name not in values and parameter.default is None
+            if lacks and parameter.is_set and not parameter.in_shape:
+                raise AuthorError(
+                    f"the parameter {parameter.name!r} of its template {template.iri.short} needs a value, and the task"
+                    " that holds it sets none"
+                )
+        bound = tasks.bind(self.task, list(values.items()))
+        return Composer(tasks.complete(bound), self.hierarchy, outside=self.composite)
+
+    def configured(self, ecology: Mapping[IRI, Advertisement], holder: Configuration) -> Configuration | str:
+        """The inside in an ecology, with the values that a configuration sets it to; or why there is none."""
+        values = {one.name: one.value for one in holder.settings if one.component == self.composite}
+        try:
+            outcome = self.composer_with(values).compose(ecology, frozenset(), None)
+        except SelfconfError as error:
+            return str(error)
+        return outcome if isinstance(outcome, Configuration) else f"its inside is refused: {why_none(outcome)}"
+
+
+def insides(
+    known: Mapping[IRI, Advertisement],
+    document_of: DocumentOf,
+    configuration: Configuration,
+    hierarchy: Hierarchy = NOTHING_ABOVE,
+) -> Iterator[tuple[IRI, Configuration | str]]:
+    """Yield what the composites of a configuration are inside, from given advertisements, or why that is nothing.
+
+    Composites inside of these follow each after the one that holds it. The roles of the insides see `hierarchy`.
+    """
+    found, why = configurable(known, document_of, hierarchy)
+    waiting = [(component, configuration) for component in configuration.components]
+    while waiting:
+        component, holder = waiting.pop(0)
+        if component in why:
+            yield component, why[component]
+        elif component in found:
+            others = {one: a for one, a in known.items() if one != component and one not in why}
+            inside = found[component].configured(others, holder)
+            yield component, inside
+            if isinstance(inside, Configuration):
+                waiting = [*((one, inside) for one in inside.components), *waiting]
+
+
+def configurable(
+    known: Mapping[IRI, Advertisement], document_of: DocumentOf, hierarchy: Hierarchy = NOTHING_ABOVE
+) -> tuple[dict[IRI, Inside], dict[IRI, str]]:
+    """The composites whose inside can be configured, and of the others why not."""
+    found: dict[IRI, Inside] = {}
+    why: dict[IRI, str] = {}
+    for component, advertisement in known.items():
+        if advertisement.profile.inside is not None:
+            try:
+                found[component] = Inside.of(advertisement.profile, document_of(advertisement), hierarchy)
+            except SelfconfError as error:
+                why[component] = str(error)
+    composers = {one: inside.composer for one, inside in found.items()}
+    why |= _in_circles(composers, known)
+    # A composite that does not live cannot be inside of another one: again and again, until all that are left can.
+    while lacking := _refused({one: c for one, c in composers.items() if one not in why}, known):
+        why |= lacking
+    return {one: inside for one, inside in found.items() if one not in why}, why
+
+
+def _in_circles(composers: Mapping[IRI, Composer], known: Mapping[IRI, Advertisement]) -> dict[IRI, str]:
+    """The composites that could be inside of themselves, each with a sentence."""
+    # Itself is left out of the inside of each, so only a way by others leads back.
+    within = {one: _may_hold(composer, known) & (composers.keys() - {one}) for one, composer in composers.items()}
+    circles = {one: " of ".join(each.short for each in _way_back(one, within)) for one in composers}
+    sentence = "it could be inside of itself ({}); a composite of itself has no end"
+    return {one: sentence.format(circle) for one, circle in circles.items() if circle}
+
+
+def _refused(composers: Mapping[IRI, Composer], known: Mapping[IRI, Advertisement]) -> dict[IRI, str]:
+    """The composites whose inside cannot be configured beside the others, each with a sentence."""
+    able = {one: a for one, a in known.items() if a.profile.inside is None or one in composers}
+    found: dict[IRI, str] = {}
+    for component, composer in composers.items():
+        others = {one: advertisement for one, advertisement in able.items() if one != component}
+        outcome = composer.compose(others, frozenset(), None)
+        if not isinstance(outcome, Configuration):
+            itself = "; it cannot be inside of itself" if component in _may_hold(composer, known) else ""
+            found[component] = f"its inside cannot be configured now: {why_none(outcome)}{itself}"
+    return found
+
+
+def _may_hold(composer: Composer, known: Mapping[IRI, Advertisement]) -> set[IRI]:
+    """The components that could be inside of a composite, if it were no matter that one of them is itself."""
+    partition = composer.partition(dict(known))
+    players = {candidate.profile.component for some in partition.candidates[:-1] for candidate in some}
+    return players | {recruit.component for recruit in partition.recruits}
+
+
+def _way_back(component: IRI, within: Mapping[IRI, set[IRI]]) -> list[IRI]:
+    """A way from a composite by what could be inside to itself; nothing if there is none."""
+    came: dict[IRI, IRI] = {}
+    waiting = [component]
+    while waiting:
+        one = waiting.pop(0)
+        for other in sorted(within.get(one, ())):
+            if other == component:
+                way = [component, one]
+                while way[-1] != component:
+                    way.append(came[way[-1]])
+                return way
+            if other not in came:
+                came[other] = one
+                waiting.append(other)
+    return []
+
+
+def _check_ports(profile: Profile, inside: TaskDocument) -> None:
+    """Raise AuthorError where the ports of a composite are not those of its template."""
+    template = inside.task.template
+    for ports, is_input, word in ((profile.inputs, True, "input"), (profile.outputs, False, "output")):
+        own = {port.name: port.port for port in template.ports if port.is_input is is_input}
+        other = sorted({port.name for port in ports} ^ own.keys())
+        if other:
+            raise AuthorError(f"its {word}s and those of the template {template.iri.short} differ: {', '.join(other)}")
+        for port in ports:
+            if _carried(port) != _carried(own[port.name]):
+                raise AuthorError(
+                    f"its {word} {port.name!r} is {_inin_words(port)}, and that of the template {template.iri.short} is"
+                    f" {_inin_words(own[port.name])}"
+                )
+
+
+def _carried(port: Input | Output) -> tuple[object, ...]:
+    """What two ports have to have in common of which one stands for the other."""
+    return port.signals, port.request
+
+
+def _inin_words(port: Input | Output) -> str:
+    return str(port.wanted if isinstance(port, Input) else port)
+
+
+def _check_parameters(later: frozenset[str], inside: TaskDocument) -> None:
+    """Raise AuthorError where parameters of a composite are none of its template, or have a value already.
+
+    And where a parameter of the template has no value, nor will get one.
+    """
+    task, template = inside.task, inside.task.template
+    known = {parameter.name: parameter for parameter in template.parameters}
+    for name in sorted(later):
+        if name not in known:
+            raise AuthorError(f"its parameter {name!r} is none of the template {template.iri.short}")
+        if known[name].iri in task.bindings:
+            raise AuthorError(f"its grounding binds {name!r}, and it has it as an operational parameter as well")
+    for name, parameter in known.items():
+        lacks = parameter.iri not in task.bindings and parameter.default is None and name not in later
+        if lacks and parameter.is_set and not parameter.in_shape:
+            raise AuthorError(
+                f"the parameter {name!r} of the template {template.iri.short} has no value; bind it in the grounding,"
+                " or have it as an operational parameter of the composite"
+            )
+
+
+def why_none(refusal: Refusal | Undecided | None) -> str:
+    """Why there is no configuration, in a sentence."""
+    if isinstance(refusal, Refusal) and refusal.reasons:
+        return str(refusal.reasons[0])
+    return str(refusal) if isinstance(refusal, Undecided) else "it was taken down"

@@ -1,0 +1,122 @@
+"""What composites are inside, from the advertisements of a site: configured, or refused with a sentence."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.composition import Inside, configurable, why_none, insides
+from selfconf.model.configuration import Assignment, Configuration, ParameterSetting
+from selfconf.model.refusal import Undecided
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.advertisements import Advertisement, read_advertisements
+from selfconf.rdf.turtle import Document, parse
+from tests.lab import PREFIXES, iri
+
+COMPOSITE = """
+:whole a sc:Component, :Whole ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ;
+    sc:hasParameter [ sc:name "robot" ; sc:parameterType :Robot ] , [ sc:name "speed" ; sc:parameterType :Speed ] ;
+    sc:grounding [ sc:template :localise ] .
+"""
+TEMPLATE = """
+:localise a sc:Template ; sc:parameter :robot , :speed ; sc:roles ( :tracker ) ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker ] .
+:robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .
+:speed a sc:Parameter ; sc:name "speed" ; sh:datatype xsd:integer .
+:tracker a sc:Role ; sh:class :Tracker ; sh:property [ sh:path :of ; sh:in ( :robot ) ; sh:minCount 1 ] ;
+    sc:sets [ sc:parameterType :Rate ; sc:value :speed ] .
+"""
+TRACKERS = """
+:a a sc:Component, :Tracker ; :of :Astrid ; sc:hasOutput [ sc:name "where" ; sc:signalType :Pose ] ;
+    sc:hasParameter [ sc:name "rate" ; sc:parameterType :Rate ] .
+:p a sc:Component, :Tracker ; :of :Pippi ; sc:hasOutput [ sc:name "where" ; sc:signalType :Pose ] ;
+    sc:hasParameter [ sc:name "rate" ; sc:parameterType :Rate ] .
+"""
+WHOLE = iri("whole")
+
+
+def known(text: str) -> dict[IRI, Advertisement]:
+    """The advertisements of a document."""
+    found, wrong = read_advertisements((PREFIXES + text).encode(), "site.ttl")
+    assert wrong == []
+    return {one.component: one for one in found}
+
+
+def judged(text: str) -> tuple[dict[IRI, Inside], dict[IRI, str]]:
+    """The composites of a document that can be configured, and why the others cannot."""
+    return configurable(known(text), lambda one: document(text))
+
+
+def document(text: str) -> Document:
+    """A document of Turtle."""
+    return parse(PREFIXES + text, "site.ttl")
+
+
+def holding(**values: Term) -> Configuration:
+    """A configuration that holds the composite, with values for its parameters."""
+    settings = tuple(ParameterSetting(WHOLE, name, value) for name, value in values.items())
+    return Configuration(iri("task"), (Assignment(iri("role"), (WHOLE,)),), (), settings)
+
+
+def test_the_inside_is_configured_with_the_values_that_the_composite_is_set_to() -> None:
+    text = COMPOSITE + TEMPLATE + TRACKERS
+    assert [*judged(text)[0]] == [WHOLE]
+    for robot, player in (("Astrid", "a"), ("Pippi", "p")):
+        holder = holding(robot=iri(robot), speed=Literal("3", IRI("http://www.w3.org/2001/XMLSchema#integer")))
+        ((component, inside),) = insides(known(text), lambda one: document(text), holder)
+        assert component == WHOLE
+        assert isinstance(inside, Configuration)
+        assert inside.components == (iri(player),)
+        assert [one.value.lexical for one in inside.settings if isinstance(one.value, Literal)] == ["3"]
+
+
+@pytest.mark.parametrize(
+    ("values", "sentence"),
+    [
+        ({"robot": iri("Astrid")}, "the parameter 'speed' of its template localise needs a value"),
+        ({"robot": Literal("Astrid"), "speed": Literal("3")}, "cannot stand for the parameter 'robot'"),
+    ],
+)
+def test_values_with_which_there_is_no_inside_are_one_sentence(values: dict[str, Term], sentence: str) -> None:
+    text = COMPOSITE + TEMPLATE + TRACKERS
+    ((_, why),) = insides(known(text), lambda one: document(text), holding(**values))
+    assert isinstance(why, str)
+    assert sentence in why
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "sentence"),
+    [
+        (
+            'sc:name "robot" ; sc:parameterType',
+            'sc:name "robots" ; sc:parameterType',
+            "its parameter 'robots' is none of",
+        ),
+        (
+            "sc:template :localise ]",
+            "sc:template :localise ; sc:binding [ sc:parameter :robot ; sc:value :Astrid ] ]",
+            "its grounding binds 'robot', and it has it as an operational parameter as well",
+        ),
+        (
+            ', [ sc:name "speed" ; sc:parameterType :Speed ]',
+            "",
+            "the parameter 'speed' of the template localise has no value; bind it in the grounding",
+        ),
+        (
+            'sc:name "pose" ; sc:signalType :Pose ] ;\n    sc:hasParameter',
+            'sc:name "pose" ; sc:signalType :Place ] ;\n    sc:hasParameter',
+            "its output 'pose' is Place, and that of the template localise is Pose",
+        ),
+        ("sh:minCount 1 ]", "sh:minInclusive :robot ]", "the parameter 'robot' cannot be left free"),
+    ],
+)
+def test_what_a_composite_and_its_template_say_of_each_other_differs(before: str, after: str, sentence: str) -> None:
+    text = COMPOSITE + TEMPLATE + TRACKERS
+    assert before in text
+    found, why = judged(text.replace(before, after, 1))
+    assert found == {}
+    assert sentence in why[WHOLE]
+
+
+def test_why_there_is_no_configuration_is_said_in_words() -> None:
+    assert why_none(None) == "it was taken down"
+    assert why_none(Undecided(steps=7)) == str(Undecided(steps=7))

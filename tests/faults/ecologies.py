@@ -1,0 +1,97 @@
+"""The ecologies in which histories happen: who lives where, what it says of itself, and which tasks there are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
+
+
+@dataclass(frozen=True, slots=True)
+class FaultyEcology:
+    """Sites with their components, and two templates for their tasks."""
+
+    name: str
+    sites: Mapping[str, tuple[str, ...]]
+    """The sites, each with what it advertises."""
+    advertisements: Mapping[str, str]
+    composites: tuple[str, ...]
+    """The components that are no process of their own, but tasks of their site."""
+    whole: str
+    """The template of most tasks."""
+    part: str
+    """Another template, without the actuator."""
+    bindings: tuple[tuple[str, str], ...] = ()
+    """Values for parameters of either template; `{task}` stands for the name of the task."""
+
+    @property
+    def processes(self) -> tuple[str, ...]:
+        """The components that are processes."""
+        return tuple(sorted({name for names in self.sites.values() for name in names} - {*self.composites}))
+
+
+PAPER = FaultyEcology(
+    "paper",
+    {
+        "living-room": ("tracker",),
+        "astrid": ("sonar", "encoder", "odometry", "control", "drive", "pippi"),
+    },
+    ADVERTISEMENTS,
+    (),
+    NAVIGATE,
+    NAVIGATE.replace(" :drive )", " )").replace("sc:feeds :drive ;", "").partition(":drive a sc:Role")[0],
+    (("robot", ":Astrid"), ("goal", "(AT {task})")),
+)
+"""The paper's six components and Pippi's drive; the other template is the paper's task without the drive."""
+
+_POSITIONS = (
+    'sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ; sc:hasOperation [ sc:name "where" ; sc:response :Pose ]'
+)
+_TRACKER = (
+    'a sc:Component, :Tracker ; sc:hasInput [ sc:name "image" ; sc:signalType :Image ] ;'
+    ' sc:hasOutput [ sc:name "track" ; sc:signalType :Pose ] ;'
+    ' sc:hasOperation [ sc:name "locate" ; sc:response :Pose ] ;'
+    ' sc:needsOperation [ sc:name "lamp" ; sc:response :Light ] .'
+)
+_CAMERA = 'a sc:Component, :Camera ; sc:hasOutput [ sc:name "image" ; sc:signalType :Image ] .'
+_LAMP = 'a sc:Component, :Lamp ; sc:hasOperation [ sc:name "shine" ; sc:response :Light ] .'
+_ROLES = """
+:light a sc:Role ; sh:class :Lamp ; sc:feeds :position .
+:position a sc:Role ; sh:class :Positions ; sc:feeds FED .
+"""
+COMPOSED = FaultyEcology(
+    "composed",
+    {
+        "living-room": ("camera-1", "camera-2", "tracker-1", "tracker-2", "service"),
+        "astrid": ("lamp-1", "lamp-2", "odometry", "drive", "screen"),
+    },
+    {
+        "camera-1": f":camera-1 {_CAMERA}",
+        "camera-2": f":camera-2 {_CAMERA}",
+        "tracker-1": f":tracker-1 {_TRACKER}",
+        "tracker-2": f":tracker-2 {_TRACKER}",
+        "lamp-1": f":lamp-1 {_LAMP}",
+        "lamp-2": f":lamp-2 {_LAMP}",
+        "odometry": f":odometry a sc:Component, :Positions ; {_POSITIONS} .",
+        "drive": ':drive a sc:Component, :Drive ; sc:hasInput [ sc:name "position" ; sc:signalType :Pose ] ;'
+        ' sc:needsOperation [ sc:name "start" ; sc:response :Pose ] .',
+        "screen": ':screen a sc:Component, :Screen ; sc:needsOperation [ sc:name "place" ; sc:response :Pose ] .',
+        "service": f""":service a sc:Component, :Positions ; sc:preference 5 ; {_POSITIONS} ;
+    sc:needsOperation [ sc:name "light" ; sc:response :Light ] ; sc:grounding [ sc:template :localise ] .
+:localise a sc:Template ; sc:roles ( :eye :tracker ) ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker ] ;
+    sc:hasOperation [ sc:name "where" ; sc:response :Pose ; sc:of :tracker ] ;
+    sc:needsOperation [ sc:name "light" ; sc:response :Light ; sc:of :tracker ] .
+:eye a sc:Role ; sh:class :Camera ; sc:feeds :tracker .
+:tracker a sc:Role ; sh:class :Tracker .""",
+    },
+    ("service",),
+    f"{PREFIXES}:go a sc:Template ; sc:roles ( :light :position :motor ) .{_ROLES.replace('FED', ':motor')}"
+    ":motor a sc:Role ; sh:class :Drive .",
+    f"{PREFIXES}:show a sc:Template ; sc:roles ( :light :position :wall ) .{_ROLES.replace('FED', ':wall')}"
+    ":wall a sc:Role ; sh:class :Screen .",
+)
+"""A composite that has an output, offers an operation and needs one; and a component that can stand for it."""
+
+ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED)}
