@@ -8,7 +8,7 @@ why not, `insides` what those of a configuration are inside; `why_none` says why
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
-from selfconf.composition.inside import DocumentOf, Inside, configurable, why_none, insides
+from selfconf.composition.inside import DocumentOf, Inside, configurable, insides, why_none
 from selfconf.composition.nearest import exclusions_nearest_first
 from selfconf.composition.searches import Strategy
 from selfconf.composition.time_limit import TimeLimit, composed
@@ -23,6 +23,6 @@ __all__ = [
     "configurable",
     "exclusions_nearest_first",
     "explained",
-    "why_none",
     "insides",
+    "why_none",
 ]

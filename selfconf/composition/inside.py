@@ -175,8 +175,8 @@ def _check_ports(profile: Profile, inside: TaskDocument) -> None:
         for port in ports:
             if _carried(port) != _carried(own[port.name]):
                 raise AuthorError(
-                    f"its {word} {port.name!r} is {_inin_words(port)}, and that of the template {template.iri.short} is"
-                    f" {_inin_words(own[port.name])}"
+                    f"its {word} {port.name!r} is {_in_words(port)}, and that of the template {template.iri.short} is"
+                    f" {_in_words(own[port.name])}"
                 )
 
 
@@ -185,7 +185,7 @@ def _carried(port: Input | Output) -> tuple[object, ...]:
     return port.signals, port.request
 
 
-def _inin_words(port: Input | Output) -> str:
+def _in_words(port: Input | Output) -> str:
     return str(port.wanted if isinstance(port, Input) else port)
 
 

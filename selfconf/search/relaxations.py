@@ -42,6 +42,7 @@ from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.explain import FeasibilityOracle, core
 from selfconf.search.problem import Problem
+from selfconf.search.recruiting import possible_with_recruits
 from selfconf.search.reduction import Fed, LazyReduction, Played, reduced
 from selfconf.search.strategies import possible, solution
 
@@ -51,6 +52,8 @@ TRIAL_STEPS = 100_000
 """Steps for each trial."""
 RELAXATION_STEPS = 200_000
 """Steps for all trials together; each costs one for every four ports at least."""
+RECRUIT_TRIAL_STEPS = 5_000
+"""Steps to find recruits after one of the changes."""
 HELPFUL_STEPS = 10_000
 """Steps to find out whose help a conflict needs."""
 PORTS_PER_TRIAL_STEP = 4
@@ -79,7 +82,21 @@ def with_relaxations(
 def relaxations(
     problem: Problem, refused: Refusal, near_misses: NearMisses = (), steps: int | None = None
 ) -> Iterator[Relaxation]:
-    """Yield changes that make a refused problem possible, those first that are easiest to make."""
+    """Yield changes that make a refused problem possible, those first that are easiest to make.
+
+    The trials take it that whatever can be recruited is there at once; in the end a change counts only if some players
+    have recruits then.
+    """
+    recruits = any(role.recruits for role in problem.roles)
+    for one in _relaxations(problem, refused, near_misses, steps):
+        if not recruits or possible_with_recruits(relaxed_by(problem, one), RECRUIT_TRIAL_STEPS):
+            yield one
+
+
+def _relaxations(
+    problem: Problem, refused: Refusal, near_misses: NearMisses, steps: int | None
+) -> Iterator[Relaxation]:
+    """Yield changes that make a refused problem possible if all recruits were there at once."""
     budget = Budget(RELAXATION_STEPS if steps is None else min(steps, RELAXATION_STEPS))
     near_misses = near_misses[:NEAR]
     small = _reduced(problem, {miss.component for miss, _ in near_misses})

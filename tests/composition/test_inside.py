@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.composition import Inside, configurable, why_none, insides
+from selfconf.composition import Inside, configurable, insides, why_none
 from selfconf.model.configuration import Assignment, Configuration, ParameterSetting
 from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI, Literal, Term

@@ -25,7 +25,9 @@ from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.template import TemplatePort
 from selfconf.search.additions import MOST_ADDITIONS, asking_for
 from selfconf.search.problem import Problem
+from selfconf.search.relaxations import relaxed_by, with_relaxations
 from tests.effort import NIGHTLY
+from tests.search.possibility import possible
 from tests.search.strategies.test_best_recruited import PricedWorld, priced_recruiting
 from tests.search.test_recruiting import Players, Recruit
 from tests.search.worlds import CLASSES, SIGNALS, agreement, iri
@@ -112,7 +114,7 @@ def test_everything_at_once_is_answered_as_enumeration_does(problem: Problem, da
     if not found:
         assert isinstance(first, Refusal)
         assert isinstance(best, Refusal)
-        assert first.reasons
+        refused(problem, first)
         return
     assert isinstance(first, Configuration)
     # In order of the players, then of the number of recruits: the first is the first.
@@ -124,6 +126,20 @@ def test_everything_at_once_is_answered_as_enumeration_does(problem: Problem, da
     holds(problem, asked, best.configuration, least)
     if first.components:
         after_failure(problem, first, data)
+
+
+def refused(problem: Problem, refusal: Refusal) -> None:
+    """Hold a refusal against enumeration: its reasons cannot hold, could without any one, and each repair works."""
+    assert refusal.reasons
+    world = PricedWorld(problem)
+    for reason in refusal.reasons:
+        assert str(reason)
+        assert not possible(world, reason.requirements), reason
+        for dropped in reason.requirements if refusal.irreducible else ():
+            assert possible(world, [one for one in reason.requirements if one != dropped]), (str(reason), dropped)
+    for repair in with_relaxations(problem, refusal).repairs:
+        *_, possible_now = solutions(relaxed_by(problem, repair))
+        assert possible_now, str(repair)
 
 
 def after_failure(problem: Problem, running: Configuration, data: st.DataObject) -> None:

@@ -42,8 +42,8 @@ NAMED_IN_THE_MANUAL = re.findall(
     Component Input Output Template Role Interaction Parameter Task Configuration Connection Failure hasInput
     hasOutput hasParameter name signalType parameterType preference grounding parameter roles feeds from to output
     input sets value minCount maxCount Port OperationalParameter Setting Grounding Binding Assignment rate unit
-    command template binding task assignment connection setting role component epoch cause detail replaces passedOver insideOf
-    cost term property weight otherwise ofRole shareable tolerates deadline restarts depth priority
+    command template binding task assignment connection setting role component epoch cause detail replaces passedOver
+    insideOf cost term property weight otherwise ofRole shareable tolerates deadline restarts depth priority
     optional accepts frame Operation hasOperation needsOperation request response recruits recruited of
     """,
 )

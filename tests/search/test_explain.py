@@ -2,84 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from itertools import combinations, product
-
 import pytest
 from hypothesis import given
 
-from selfconf.model.partition import ANY_VALUE, Candidate
-from selfconf.model.profile import WantedSignal
 from selfconf.model.refusal import Refusal
-from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
 from tests.search.oracle import World
+from tests.search.possibility import possible
 from tests.search.worlds import agreement, component, problem, problems
-
-
-def possible(world: World, force: Iterable[Requirement]) -> bool:
-    """Return whether requirements can hold together, by enumeration; what is not required is allowed to fail."""
-    wanted = set(force)
-    choices = [
-        [
-            chosen
-            for size in (
-                range(role.minimum, role.minimum + 1) if RolePlayed(role.iri) in wanted else range(role.minimum + 1)
-            )
-            for chosen in combinations(candidates, size)
-        ]
-        for role, candidates in zip(world.roles, world.candidates, strict=True)
-    ]
-    return any(_holds(world, players, wanted) for players in product(*choices))
-
-
-def _holds(world: World, players: tuple[tuple[Candidate, ...], ...], wanted: set[Requirement]) -> bool:
-    components = [c.profile.component for role in players for c in role]
-    if OneRoleEach() in wanted and len(components) > len(set(components)):
-        return False
-    for number, variable in enumerate(world.variables):
-        if OneValue(variable.parameter.short) in wanted:
-            is_set = any(p.is_set for p in world.template.parameters if p.iri == variable.parameter)
-            common = (1 << len(variable.domain)) - 1 if is_set else ANY_VALUE
-            for role in players:
-                for candidate in role:
-                    common &= candidate.admits[number]
-            if not common:
-                return False
-    unfed = _unfed(world, players)
-    return not any(need in unfed for r in wanted if isinstance(r, InputFed) for need in ((r.role, r.wanted, r.input),))
-
-
-def _unfed(world: World, players: tuple[tuple[Candidate, ...], ...]) -> set[tuple[str, WantedSignal, str | None]]:
-    found = set()
-    for role, chosen in zip(world.roles, players, strict=True):
-        named = any(i.input for i in world.template.interactions if i.sink == role.iri)
-        for candidate in chosen:
-            for wanted in candidate.profile.inputs:
-                links = [
-                    i for i in world.template.interactions if i.sink == role.iri and i.input in (None, wanted.name)
-                ]
-                fed = any(
-                    link.output in (None, output.name) and world.feeds(output, wanted, bool(link.output and link.input))
-                    for link in links
-                    for source in players[world.place[link.source]]
-                    for output in source.profile.outputs
-                )
-                if not fed and not wanted.optional:
-                    # Inputs that the same links feed are one requirement, named after any of them.
-                    same = [
-                        i.name
-                        for c in world.candidates[world.place[role.iri]]
-                        for i in c.profile.inputs
-                        if i.wanted == wanted.wanted
-                        and not i.optional
-                        and [k for k in world.template.interactions if k.sink == role.iri and k.input in (None, i.name)]
-                        == links
-                    ]
-                    found |= {(role.iri, wanted.wanted, name if named else None) for name in same}
-    return found
 
 
 def _check(problem: Problem) -> None:

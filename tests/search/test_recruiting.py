@@ -64,9 +64,18 @@ class RecruitingWorld(World):
                         found.append((number, port.wanted))
         return found
 
-    def enough(self, players: Players, needs: Sequence[tuple[int, WantedSignal]], chosen: Sequence[Recruit]) -> bool:
-        """Whether chosen recruits feed all needs and are fed themselves, without a cycle among them."""
-        names = {c.profile.component for some in players for c in some}
+    def enough(
+        self,
+        players: Players,
+        needs: Sequence[tuple[int, WantedSignal]],
+        chosen: Sequence[Recruit],
+        distinct: bool = True,
+    ) -> bool:
+        """Whether chosen recruits feed all needs and are fed themselves, without a cycle among them.
+
+        Unless they need not be `distinct`, none of them may be a player.
+        """
+        names = {c.profile.component for some in players for c in some} if distinct else set()
         if any(recruit.component in names for recruit in chosen):
             return False
         sources = [c.profile for some in players for c in some]

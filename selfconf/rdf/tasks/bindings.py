@@ -80,8 +80,9 @@ def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> 
 def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
     """The task with defaults filled in and every value checked against its parameter. Raises BindingError.
 
-    The parameters that are named in `later` get their values when the task begins. Until then those stay free that stand
-    in shapes, those that are only set stand for their values themselves, and those that cannot be free have defaults.
+    The parameters that are named in `later` get their values when the task begins. Until then those stay free that
+    stand in shapes, those that are only set stand for their values themselves, and those that cannot be free have
+    defaults.
     """
     task, document = given.task, given.document
     bindings = dict(task.bindings)
