@@ -13,7 +13,7 @@ from selfconf.model.nearness import Near, ranked
 from selfconf.model.obstacle import NotFedItself, Obstacle
 from selfconf.model.partition import NearMiss
 from selfconf.model.port_likeness import PortLikeness, WantedPorts
-from selfconf.model.profile import Input, Profile
+from selfconf.model.profile import Condition, Input, Profile
 from selfconf.model.refusal import InputUnfed, Refusal
 from selfconf.model.relaxation import LetRecruit
 from selfconf.model.requirement import InputFed
@@ -82,7 +82,34 @@ def _obstacle(
                 return fault
     unfed = _unfed(problem, near.profile) if matching else None
     assert near.lacking is not None  # for ports are compared
-    return near.lacking if unfed is None else NotFedItself(unfed.name, unfed.signals)
+    return near.lacking if unfed is None else _not_fed(problem, near.profile, unfed)
+
+
+def _not_fed(problem: Problem, profile: Profile, unfed: Input) -> NotFedItself:
+    """Why an input of a component is not fed: nobody issues what it wants, or those are not fed themselves."""
+    way: list[IRI] = [profile.component]
+    lacking: Input | None = unfed
+    while lacking is not None and way.index(way[-1]) == len(way) - 1:  # it has come to no component twice
+        feeder = _feeder(problem, lacking)
+        if feeder is None:
+            break
+        way.append(feeder.component)
+        lacking = _unfed(problem, feeder)
+    return NotFedItself(unfed.name, unfed.signals, tuple(way[1:]), way[-1] in way[:-1])
+
+
+def _feeder(problem: Problem, wanting: Input) -> Profile | None:
+    """The first component that can be recruited and issues what an input wants."""
+    condition = wanting.condition or Condition()
+    return next(
+        (
+            recruit.profile
+            for recruit in problem.supply.recruits
+            for output in recruit.profile.outputs
+            if problem.hierarchy.pairs(output, wanting) and condition.met_by(output)
+        ),
+        None,
+    )
 
 
 def _unfed(problem: Problem, profile: Profile) -> Input | None:

@@ -103,6 +103,20 @@ class WrongCount:
 
 
 @dataclass(frozen=True, slots=True)
+class WrongShareOfValues:
+    """Fewer or more values are of some kind than the role allows (`sh:qualifiedValueShape`)."""
+
+    found: int
+    wanted: int
+    too_many: bool
+
+    def said(self, name: str) -> str:
+        """The fault of the property of that name."""
+        limit = "most" if self.too_many else "least"
+        return f"has {self.found} of {name} that are as asked for, not at {limit} {self.wanted}"
+
+
+@dataclass(frozen=True, slots=True)
 class NotAmong:
     """Some values are not among those that the role allows (`sh:in`), or not the one that it requires."""
 
@@ -155,7 +169,7 @@ class Ambiguous:
         return f"{name} has several values, so that no one {self.parameter.short} fits"
 
 
-Fault = Missing | WrongCount | NotAmong | ConstraintFailed | Ambiguous
+Fault = Missing | WrongCount | WrongShareOfValues | NotAmong | ConstraintFailed | Ambiguous
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +183,7 @@ class PropertyUnmet:
     @property
     def clause(self) -> str:
         """The obstacle as a clause: about the component where it lacks the property, else about the property."""
-        about_component = isinstance(self.faults[0], Missing | WrongCount)
+        about_component = isinstance(self.faults[0], Missing | WrongCount | WrongShareOfValues)
         return f"{'it' if about_component else 'its'} {self}"
 
     def __str__(self) -> str:
@@ -311,9 +325,19 @@ class NotFedItself(_Predicate):
     code: ClassVar[str] = "not-fed-itself"
     input: str
     signals: tuple[IRI, ...]
+    feeders: tuple[IRI, ...] = ()
+    """What could feed that input, what could feed this one, and so on."""
+    in_circle: bool = False
 
     def __str__(self) -> str:
         wanted = " or ".join(signal.short for signal in self.signals) or "signal"
+        if self.in_circle:
+            return f"is fed only in a circle: its input {self.input!r} by {' by '.join(c.short for c in self.feeders)}"
+        if self.feeders:
+            first = self.feeders[0].short
+            return (
+                f"is not fed itself: {first}, which issues a {wanted} for its input {self.input!r}, is not fed either"
+            )
         return f"is not fed itself: no component that can be recruited issues a {wanted} for its input {self.input!r}"
 
 

@@ -14,6 +14,7 @@ from selfconf.model.term import IRI
 from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG, MemoryRun
+from tests.lab import Lab
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix sh: <http://www.w3.org/ns/shacl#> .
@@ -510,3 +511,16 @@ def test_an_ecology_is_told_why_a_composite_cannot_act_now() -> None:
     house.ecology.advance(2.0)
     look()
     assert told[1:] == [""]
+
+
+def test_a_composite_of_itself_through_two_sites_lives_at_neither(tmp_path: Path) -> None:
+    bare = OUTER.removeprefix(PREFIXES).replace(":c:", ":peis-home:")
+    other = bare.replace("whole", "other").replace("Whole", "Other").replace("KIND", "Whole").replace(":part", ":piece")
+    lab = Lab(tmp_path, advertised={"whole": bare.replace("KIND", "Other"), "other": other})
+    lab.site("first", "whole")
+    lab.site("second", "other")
+    lab.let_pass(3.0)
+    assert [said.partition("does not live: ")[2] for said in lab.complaints] == [
+        "its inside cannot be configured now: no component is eligible for the role part",
+        "its inside cannot be configured now: no component is eligible for the role piece",
+    ]

@@ -560,3 +560,96 @@ def test_an_answer_that_is_not_certified_is_never_printed(desk: Desk, monkeypatc
     monkeypatch.setattr("selfconf.search.problem.Problem.compatible", lambda *_: True)
     for form in ("text", "json", "turtle"):
         assert desk.configure(*BOUND, "--format", form).is_one_sentence("the search has made a mistake", "missing")
+
+
+SUPPLIED = ":t a sc:Template ; sc:roles ( :source :user ) . :source a sc:Role ; sh:class :Source ; sc:feeds :user ."
+USER = ":user a sc:Role ; sh:class :User ."
+RECRUITING = ":t a sc:Template ; sc:roles ( :user ) . :user a sc:Role ; sh:class :User ; sc:recruits true ."
+COMPOSITE = """:NAME a sc:Component, :User, :NAME-type ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ] ;
+    sc:grounding [ sc:template :NAME-inside ] .
+:NAME-inside a sc:Template ; sc:roles ( :NAME-role ) ;
+    sc:hasOutput [ sc:name "o" ; sc:signalType :S ; sc:of :NAME-role ] .
+:NAME-role a sc:Role ; sh:class :WANTED ."""
+
+
+def source(name: str, wanted: str, issued: str) -> str:
+    """A component that makes one signal of another."""
+    issues = f'sc:hasOutput [ sc:name "o" ; sc:signalType :{issued} ]'
+    return f':{name} a sc:Component, :Source ; sc:hasInput [ sc:name "i" ; sc:signalType :{wanted} ] ; {issues} .'
+
+
+@pytest.mark.parametrize(
+    ("task", "ads", "code", "sentence"),
+    [
+        (
+            RECRUITING,
+            {
+                "user": ':u a sc:Component, :User ; sc:hasInput [ sc:name "i" ; sc:signalType :S ] .',
+                "both": source("a", "T", "S") + source("b", "S", "T"),
+            },
+            1,
+            "the nearest is a, which is fed only in a circle: its input 'i' by b by a",
+        ),
+        (
+            SUPPLIED + USER,
+            {
+                "u": ':u a sc:Component, :User ; sc:hasInput [ sc:name "i" ; sc:accepts _:s ] . _:s sh:node _:s .',
+                "s": ':s a sc:Component, :Source ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ] .',
+            },
+            1,
+            "left out https://example.org/peis-home#u: the sc:accepts of input 'i' is no shape",
+        ),
+        (
+            SUPPLIED.replace("sc:feeds :user", "") .replace(":source :user", ":user") + USER,
+            {
+                "one": COMPOSITE.replace("NAME", "one").replace("WANTED", "two-type"),
+                "two": COMPOSITE.replace("NAME", "two").replace("WANTED", "one-type"),
+            },
+            0,
+            ":one: it could be inside of itself (one of two of one); a composite of itself has no end",
+        ),
+        (
+            SUPPLIED + USER,
+            {
+                "u": ':u a sc:Component, :User ; sc:needsOperation [ sc:name "look" ; sc:response :S ] .',
+                "s": ':s a sc:Component, :Source ; sc:hasOperation [ sc:name "see" ; sc:response :T ] .',
+            },
+            1,
+            "the operation 'look' (-> S) that u needs cannot be called: no candidate of source offers an operation",
+        ),
+        (
+            SUPPLIED + USER,
+            {
+                "u": ':u a sc:Component, :User ; sc:hasInput [ sc:name "i" ; sc:signalType :S ; sc:unit "metre" ] .',
+                "s": ':s a sc:Component, :Source ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ] .',
+            },
+            1,
+            "left out https://example.org/peis-home#u: the sc:unit of 'i' is an IRI, if it is there at all",
+        ),
+        (
+            SUPPLIED.replace("sc:feeds :user", "").replace(":source :user", ":user") + USER,
+            {
+                "one": COMPOSITE.replace("NAME", "one").replace("WANTED", "Part"),
+                "part": ':part a sc:Component, :Part ; sc:hasOutput [ sc:name "o" ; sc:signalType :T ] .',
+            },
+            0,
+            "its inside cannot be configured now: the input 'o' (S) of one cannot be fed: no candidate of one-role",
+        ),
+        (
+            SUPPLIED.replace("sc:feeds :user", "").replace(":source :user", ":user") + USER,
+            {"one": COMPOSITE.replace("NAME", "one").replace("sc:of :one-role", "sc:of :nobody")},
+            0,
+            "peis-home#nobody>, which is no role of the template",
+        ),
+    ],
+    ids=["cycle", "endless", "itself", "unanswered", "unit", "unserved", "roleless"],
+)  # fmt: skip
+def test_what_cannot_be_composed_is_one_sentence(
+    task: str, ads: dict[str, str], code: int, sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "task.ttl").write_text(PREFIXES + task)
+    write_advertisements(tmp_path / "ads", advertisements=ads)
+    outcome = run(capsys, "configure", str(tmp_path / "task.ttl"), "--ads", str(tmp_path / "ads"))
+    assert outcome.code == code
+    assert sentence in outcome.out + outcome.err
+    assert "Traceback" not in outcome.err

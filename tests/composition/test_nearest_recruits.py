@@ -62,6 +62,23 @@ def test_a_recruit_that_is_not_fed_itself_is_named_with_what_it_lacks() -> None:
     assert names == ["converter", "sonar"]
 
 
+def converter(name: str, wanted: str, issued: str) -> str:
+    """A component that makes one signal of another."""
+    made = f'sc:hasOutput [ sc:name "o" ; sc:signalType :{issued} ]'
+    return f':{name} a sc:Component , :Source ; sc:hasInput [ sc:name "i" ; sc:signalType :{wanted} ] ; {made} .'
+
+
+def test_recruits_that_only_feed_each_other_are_named_as_a_circle() -> None:
+    said, names = nearest(converter("a", "Raw", "Scan"), converter("b", "Scan", "Raw"))
+    assert said == "a, which is fed only in a circle: its input 'i' by b by a"
+    assert names == ["a"]
+
+
+def test_a_recruit_whose_own_supplier_is_not_fed_is_named_with_that() -> None:
+    said, _ = nearest(converter("a", "Raw", "Scan"), converter("b", "Ore", "Raw"))
+    assert said == "a, which is not fed itself: b, which issues a Raw for its input 'i', is not fed either"
+
+
 def test_a_recruit_in_another_unit_or_that_is_not_accepted_is_named_with_that() -> None:
     said, _ = nearest(source("lidar", "Scan", " ; sc:unit unit:MilliM"), wanting=" ; sc:unit unit:M")
     assert said == "lidar, which issues what is in MilliM, not in M, a unit of the same dimension (output 'o')"

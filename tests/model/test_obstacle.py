@@ -27,6 +27,7 @@ from selfconf.model.obstacle import (
     UnlikePorts,
     WrongComponent,
     WrongCount,
+    WrongShareOfValues,
     WrongType,
 )
 from selfconf.model.signal_match import Degree, SignalMatch
@@ -111,6 +112,21 @@ WORDED: list[tuple[Obstacle, str, str]] = [
         NotFedItself("raw", (IRI("urn:Echo"), IRI("urn:Ping"))),
         "is not fed itself: no component that can be recruited issues a Echo or Ping for its input 'raw'",
         "it is not fed itself: no component that can be recruited issues a Echo or Ping for its input 'raw'",
+    ),
+    (
+        NotFedItself("raw", (IRI("urn:Echo"),), (IRI("urn:b"), IRI("urn:a")), True),
+        "is fed only in a circle: its input 'raw' by b by a",
+        "it is fed only in a circle: its input 'raw' by b by a",
+    ),
+    (
+        NotFedItself("raw", (IRI("urn:Echo"),), (IRI("urn:b"),)),
+        "is not fed itself: b, which issues a Echo for its input 'raw', is not fed either",
+        "it is not fed itself: b, which issues a Echo for its input 'raw', is not fed either",
+    ),
+    (
+        unmet(WrongShareOfValues(1, 2, False), WrongShareOfValues(3, 1, True)),
+        "has 1 of place that are as asked for, not at least 2; has 3 of place that are as asked for, not at most 1",
+        "it has 1 of place that are as asked for, not at least 2; has 3 of place that are as asked for, not at most 1",
     ),
     (NotJudged("too much"), "is not judged: too much", "it is not judged: too much"),
     *(

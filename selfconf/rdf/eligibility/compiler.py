@@ -5,6 +5,7 @@
 * `sh:class`, `sh:in` and `sh:hasValue` on the node (SHACL 4.1.1, 4.8.2, 4.8.3);
 * property shapes over one predicate with `sh:in`, `sh:hasValue`, `sh:minCount`, `sh:maxCount` (4.8, 4.2), and what
   `selfconf.rdf.shacl.value_tests` knows of single values (4.1.2, 4.1.3, 4.3, 4.4) and of pairs (4.5.3, 4.5.4);
+* `sh:qualifiedValueShape` over a node shape that asks such things of single values (4.7.3);
 * `sh:and`, `sh:or`, `sh:xone`, `sh:not` and `sh:node` over shapes of that kind (4.6, 4.7.1);
 * a parameter left unbound inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
 
@@ -16,7 +17,7 @@ judges the survivors by the whole shape. That both ways give one partition is a 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import TypeGuard
 
@@ -28,6 +29,7 @@ from selfconf.rdf.eligibility.role_tests import (
     Count,
     ParameterTest,
     PropertyTest,
+    QualifiedCount,
     RoleTest,
     SelfTest,
 )
@@ -66,6 +68,8 @@ _OWN_VALUES = frozenset(
     )
 )  # fmt: skip
 """What looks at values alone, or compares the values of two properties of the node that has them."""
+_QUALIFIED = frozenset(SH[f"qualified{name}"] for name in ("ValueShape", "MinCount", "MaxCount", "ValueShapesDisjoint"))
+"""How many values conform to a shape."""
 
 
 def compile_role(
@@ -135,6 +139,8 @@ class _PropertyParts:
     free_in: list[tuple[IRI, frozenset[Term]]] = field(default_factory=list)
     free_required: list[IRI] = field(default_factory=list)
     compared: list[PairTest] = field(default_factory=list)
+    qualified: dict[IRI, list[Term]] = field(default_factory=dict)
+    """How many values conform to which shape."""
     others: dict[IRI, list[Term]] = field(default_factory=dict)
     """The values of all other constraints."""
 
@@ -222,9 +228,15 @@ class _Compiler:
         parts = _PropertyParts()
         for predicate, raw in dict.fromkeys(self.document.about(shape)):
             self._constraint_of_values(predicate, raw, parts)
+        test = self._test(path, parts)
+        self.rest = self.rest or self._repeats(shape)
+        yield replace(test, qualified=tuple(self._qualified(parts.qualified))) if parts.qualified else test
+
+    def _test(self, path: IRI, parts: _PropertyParts) -> PropertyTest:
+        """The test of the values of a path, but for how many of them conform to another shape."""
         each, covered = compiled(parts.others)
-        self.rest = self.rest or not parts.others.keys() <= covered or self._repeats(shape)
-        yield PropertyTest(
+        self.rest = self.rest or not parts.others.keys() <= covered
+        return PropertyTest(
             path,
             parts.minimum,
             parts.maximum,
@@ -236,6 +248,42 @@ class _Compiler:
             tuple(parts.compared),
         )
 
+    def _qualified(self, said: Mapping[IRI, list[Term]]) -> Iterator[QualifiedCount]:
+        """How many values conform to a shape; `rest` where only pySHACL can judge that, or part of it."""
+        shapes, *counts = (said.get(SH[f"qualified{name}"], []) for name in ("ValueShape", "MinCount", "MaxCount"))
+        numbers = [
+            [int(n.lexical) for n in some if isinstance(n, Literal) and n.lexical.isdecimal()] for some in counts
+        ]
+        ill_formed = len(shapes) != 1 or not any(counts) or any(len(some) > 1 for some in counts) or numbers == [[], []]
+        if ill_formed or SH.qualifiedValueShapesDisjoint in said:
+            self.rest = True
+            return
+        whole, self.rest = self.rest, False
+        value = self._of_a_value(shapes[0])
+        exact, self.rest = not self.rest, whole or self.rest
+        # Of a shape that is compiled in part, more values may seem to conform than do.
+        least, most = next(iter(numbers[0]), 0), next(iter(numbers[1]), None)
+        yield QualifiedCount(value, least, most if exact else None)
+
+    def _of_a_value(self, shape: Term) -> PropertyTest:
+        """What a node shape asks of a single value; `rest` where it asks for more."""
+        parts = _PropertyParts()
+        if (
+            self.document.value(shape, SH.path) is not None
+            or self._true(shape, SH.deactivated)
+            or self._mentions(shape)
+        ):
+            self.rest = True
+        else:
+            for predicate, raw in dict.fromkeys(self.document.about(shape)):
+                self._constraint_of_values(predicate, raw, parts)
+        # These are no constraints of node shapes.
+        if parts.minimum or parts.maximum is not None or parts.compared or parts.qualified:
+            self.rest = True
+            parts = _PropertyParts()
+        self.rest = self.rest or self._repeats(shape)
+        return self._test(SH.value, parts)
+
     def _constraint_of_values(self, predicate: IRI, raw: Term, parts: _PropertyParts) -> None:
         """One constraint of a property shape."""
         value = self._bound(raw)
@@ -243,6 +291,8 @@ class _Compiler:
             self._among(raw, parts)
         elif predicate == SH.hasValue and value in self.free and isinstance(value, IRI):
             parts.free_required.append(value)
+        elif predicate in _QUALIFIED:
+            parts.qualified.setdefault(predicate, []).append(value)
         elif predicate in PAIRS and self._plain(value):
             parts.compared.append(PairTest(predicate, value))
         elif predicate in SH and predicate not in _SILENT and not parts.takes(predicate, value):

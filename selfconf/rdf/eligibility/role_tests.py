@@ -26,6 +26,7 @@ from selfconf.model.obstacle import (
     PropertyUnmet,
     WrongComponent,
     WrongCount,
+    WrongShareOfValues,
     WrongType,
 )
 from selfconf.model.profile import Profile
@@ -58,6 +59,25 @@ class SelfTest:
 
 
 @dataclass(frozen=True, slots=True)
+class QualifiedCount:
+    """How many values of a property conform to a shape over single values: at least and at most so many."""
+
+    value: PropertyTest
+    """The shape, as what it asks of the only value of a property."""
+    minimum: int = 0
+    maximum: int | None = None
+
+    def fault(self, values: frozenset[Term]) -> WrongShareOfValues | None:
+        """What is wrong with the number of those that conform among some values."""
+        found = sum(not any(self.value.faults(frozenset((value,)))) for value in values)
+        if found < self.minimum:
+            return WrongShareOfValues(found, self.minimum, False)
+        if self.maximum is not None and found > self.maximum:
+            return WrongShareOfValues(found, self.maximum, True)
+        return None
+
+
+@dataclass(frozen=True, slots=True)
 class PropertyTest:
     """The values of one property: how many, which ones are allowed, which ones must be there, what each is like."""
 
@@ -72,6 +92,7 @@ class PropertyTest:
     """The free parameters that stand in `sh:hasValue`."""
     each: tuple[ValueTest, ...] = ()
     compared: tuple[PairTest, ...] = ()
+    qualified: tuple[QualifiedCount, ...] = ()
 
     @property
     def looked_at(self) -> Iterator[IRI]:
@@ -85,7 +106,7 @@ class PropertyTest:
 
     def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
         values = self.values(profile, hierarchy)
-        faults = [*self._faults(values)]
+        faults = [*self.faults(values)]
         for pair in self.compared if values else ():
             others = _values(pair.other, profile, hierarchy)
             wrong = frozenset([value for value in values if not pair.passes(value, others)])
@@ -94,9 +115,10 @@ class PropertyTest:
         return PropertyUnmet(self.path, tuple(faults)) if faults else None
 
     # complexity: one case for each field of the test, in the order in which faults are told
-    def _faults(self, values: frozenset[Term]) -> Iterator[Fault]:
+    def faults(self, values: frozenset[Term]) -> Iterator[Fault]:
         """All that is wrong with some values: one property is one obstacle, with all that it takes to remove it."""
-        if not values and (self.minimum or self.required or self.free_required):
+        asked = self.minimum or self.required or self.free_required or any(one.minimum for one in self.qualified)
+        if not values and asked:
             yield Missing()
             return
         too_many = self.maximum is not None and len(values) > self.maximum
@@ -110,6 +132,7 @@ class PropertyTest:
             wrong = frozenset([value for value in values if not test.passes(value)])
             if wrong:
                 yield ConstraintFailed(wrong, test.constraint, test.wanted)
+        yield from (fault for one in self.qualified if (fault := one.fault(values)) is not None)
         for parameter, members in self.free_in:
             if len(values - members) > 1:
                 yield Ambiguous(parameter)

@@ -44,6 +44,9 @@ CONSTRAINTS = st.sampled_from(
         "sh:in ( :Astrid )", "sh:minInclusive 5", "sh:maxExclusive 5", "sh:datatype xsd:integer", "sh:nodeKind sh:IRI",
         'sh:pattern "^o"', "sh:hasValue :Data", "sh:hasValue :Scan", "sh:node [ sh:nodeKind sh:IRI ]",
         'sh:languageIn ( "en" )', "sh:minLength 2", "sh:class :Raw", "sh:not [ sh:hasValue 3 ]",
+        "sh:qualifiedValueShape [ sh:nodeKind sh:IRI ] ; sh:qualifiedMinCount 1",
+        'sh:qualifiedValueShape [ sh:minLength 2 ; sh:pattern "^o" ] ; sh:qualifiedMaxCount 0',
+        "sh:qualifiedValueShape [ sh:in ( :Astrid unit:M 9 ) ] ; sh:qualifiedMinCount 1 ; sh:qualifiedMaxCount 1",
     )
 )  # fmt: skip
 PROPERTIES = st.builds(

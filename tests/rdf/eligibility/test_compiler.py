@@ -61,6 +61,19 @@ CONSTRAINTS = st.one_of(
     st.sampled_from(("sh:lessThan :r", "sh:lessThanOrEquals :q")),
     st.just("sh:uniqueLang true"),
 )
+QUALIFYING = (
+    "sh:nodeKind sh:IRI", "sh:in ( :x 1 )", "sh:hasValue :x", "sh:datatype xsd:integer", "sh:minInclusive 1",
+    'sh:pattern "^a"', 'sh:nodeKind sh:Literal ; sh:pattern "^A" ; sh:flags "i"', "sh:class :Place", "sh:minLength 2",
+    'sh:languageIn ( "en" )', "sh:deactivated true ; sh:hasValue :x", "sh:property [ sh:path :q ; sh:minCount 1 ]",
+    "sh:not [ sh:hasValue :x ]", "sh:maxExclusive 2 ; sh:in ( 1 2 :y )", "sh:disjoint :q", "",
+)  # fmt: skip
+BOUNDARIES = (
+    "sh:qualifiedMinCount 1", "sh:qualifiedMinCount 2", "sh:qualifiedMaxCount 0", "sh:qualifiedMaxCount 1",
+    "sh:qualifiedMinCount 1 ; sh:qualifiedMaxCount 1", "sh:qualifiedMinCount 0",
+    "sh:qualifiedMinCount 1 ; sh:qualifiedValueShapesDisjoint true",
+)  # fmt: skip
+QUALIFIED = [f"sh:qualifiedValueShape [ {said} ] ; {bounds}" for said in QUALIFYING for bounds in BOUNDARIES]
+CONSTRAINTS |= st.integers(0, len(QUALIFIED) - 1).map(lambda number: QUALIFIED[number])  # printed in short
 
 
 def predicate(constraint: str) -> str:
