@@ -51,6 +51,11 @@ _DISPLAY = ":display a sc:Component, rob:Display"
 _TEMPLATE = ":radio a sc:Template ; sc:roles ( :source :sink ) ."
 _SOURCE = ":source a sc:Role ; sh:class rob:Tuner ; sc:feeds :sink ."
 _SINK = ":sink a sc:Role ; sh:class rob:Speaker ."
+_INSIDE = (
+    ":play a sc:Template ; sc:roles ( :tuner-role ) ;\n"
+    '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :tuner-role ] .\n'
+    ":tuner-role a sc:Role ; sh:class rob:Tuner ."
+)
 _PAIR = f"{_TEMPLATE}\n{_SOURCE}\n{_SINK}"
 _BOUND = (
     f"{_PAIR}\n:radio sc:parameter :room .\n:sink sh:property [ sh:path rob:place ; sh:in ( :room ) ] .\n"
@@ -255,6 +260,14 @@ CODES: tuple[Code, ...] = (
             "OperationNode", "OperationNameOnce", "OperationNameText", "OperationRequest", "OperationResponse",
             "OptionalOffer", "OptionalNeed", "OperationNamesDistinct",
         ),
+    ),
+    Code(
+        "SC-A22", "A composite has the ports of the template of its inside, and only parameters of that.",
+        "What is outside of it is connected to what its template connects inside, and is set to what that is bound to.",
+        f"{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] .",
+        f'{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] ;\n'
+        '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        ("CompositePorts", "CompositeParameters"),
     ),
     Code(
         "SC-T01", "A template has an IRI and is a sc:Template.",
