@@ -105,8 +105,8 @@ class InsideOfComposite:
         self._wires, self._called_by = dict(message.inputs), called_by
         if self.runner is None:
             self._begin(message)
-        elif message.values != self._values:
-            self._again, self.settled = message, False
+        elif self._again is not None or message.values != self._values:
+            self._again, self.settled = message, False  # the newest call counts, also while the last inside ends
             self.runner.stop()
         elif changed:
             self.runner.rewire()
