@@ -728,6 +728,13 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L23", "A unit is called as QUDT calls it.",
+        "Two ports agree in their units if these have one name, and only QUDT's names tell what a unit measures.",
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:unit unit:metre ] .',
+        f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:unit unit:M ] .',
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

@@ -35,6 +35,16 @@ _UNITS: dict[str, str] = {
     "UNITLESS": "ratio", "PERCENT": "ratio", "PPM": "ratio", "PPB": "ratio", "FRACTION": "ratio",
     "MOL": "amount", "T": "magnetic flux density", "GAUSS": "magnetic flux density",
 }  # fmt: skip
+_SPELT_OUT = {
+    "M": "metre meter", "GM": "gram gramme", "KiloGM": "kilogram kilogramme kg", "SEC": "second sec s", "MIN": "minute",
+    "HR": "hour h", "HZ": "hertz hz", "RAD": "radian", "DEG": "degree", "K": "kelvin", "DEG_C": "celsius",
+    "A": "ampere", "V": "volt", "OHM": "ohm", "N": "newton", "J": "joule", "W": "watt", "PA": "pascal", "L": "litre liter",
+    "LUX": "lux lx", "PERCENT": "percent", "BYTE": "byte", "MilliM": "millimetre millimeter mm",
+    "CentiM": "centimetre centimeter cm", "KiloM": "kilometre kilometer km", "MilliSEC": "millisecond ms",
+    "M-PER-SEC": "mps", "IN": "inch", "FT": "foot feet", "MI": "mile", "BAR": "bar",
+}  # fmt: skip
+_MEANT = {word: unit for unit, words in _SPELT_OUT.items() for word in words.split()}
+"""The units that words of a language stand for, in the singular."""
 _COMPOSED = {"volume": {"length": 3}, "power": {"energy": 1, "time": -1}, "frequency": {"time": -1}}
 """The dimensions of this list that are composed of others of it."""
 
@@ -80,6 +90,18 @@ def _composed(found: Counter[str]) -> Dimension:
         for part, times in _COMPOSED.get(name, {name: 1}).items():
             whole[part] += power * times
     return frozenset((name, power) for name, power in whole.items() if power)
+
+
+def meant_unit(unit: IRI) -> str | None:
+    """The name that QUDT has for a unit whose name is spelt out, as in `unit:metres`; None for any other name.
+
+    >>> meant_unit(IRI("http://qudt.org/vocab/unit/metres"))
+    'M'
+    """
+    if dimension(unit) is not None:
+        return None
+    word = unit.short.casefold()
+    return _MEANT.get(word) or _MEANT.get(word.removesuffix("s"))
 
 
 def differ_in_dimension(one: IRI, other: IRI) -> bool | None:

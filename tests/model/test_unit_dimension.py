@@ -6,7 +6,7 @@ import pytest
 
 from selfconf.importing.units import SPELLINGS
 from selfconf.model.term import IRI
-from selfconf.model.unit_dimension import differ_in_dimension, dimension
+from selfconf.model.unit_dimension import differ_in_dimension, dimension, meant_unit
 from selfconf.rdf.vocabulary import UNIT
 
 
@@ -43,3 +43,11 @@ def test_of_a_name_that_is_not_understood_nothing_is_said(name: str) -> None:
 def test_spellings_that_are_one_unit_have_a_dimension_for_the_most_part() -> None:
     known = [name for name in SPELLINGS if dimension(UNIT[name]) is not None]
     assert len(known) > len(SPELLINGS) * 0.8
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [("metres", "M"), ("m", None), ("Hz", "HZ"), ("seconds", "SEC"), ("mm", "MilliM"), ("M", None), ("Zorkmid", None)],
+)
+def test_a_name_that_is_spelt_out_means_a_unit(name: str, meant: str | None) -> None:
+    assert meant_unit(UNIT[name]) == meant

@@ -15,6 +15,8 @@ from typing import NamedTuple
 
 import pyoxigraph as ox
 
+from selfconf.model.term import IRI
+from selfconf.model.unit_dimension import meant_unit
 from selfconf.rdf.permitted_fields import COMPONENT, Field, Subject
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE
 
@@ -239,9 +241,10 @@ def _owned(statements: Statements) -> bool:
 
 
 def _of_one_unit(statements: Statements) -> bool:
-    """Whether all ports that state a unit state the same one; others may be of another dimension."""
+    """Whether all ports that state a unit state the same one, not spelt out; others may be of another dimension."""
     stated = (said for said in statements.values() if SC.unit in said and not _TYPED.isdisjoint(said))
-    return len({unit for said in stated for unit in said[SC.unit]}) < 2
+    units = {unit for said in stated for unit in said[SC.unit]}
+    return len(units) < 2 and all(isinstance(unit, str) and meant_unit(IRI(unit)) is None for unit in units)
 
 
 @dataclass(frozen=True, slots=True)

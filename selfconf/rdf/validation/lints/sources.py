@@ -15,12 +15,12 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.term import IRI
 from selfconf.model.term import Literal as TypedLiteral
-from selfconf.model.unit_dimension import differ_in_dimension
+from selfconf.model.unit_dimension import differ_in_dimension, meant_unit
 from selfconf.rdf.conformance import violations
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import SC, UNIT
 
 _INPUT, _OUTPUT, _UNIT, _SIGNAL = (URIRef(one) for one in (SC.hasInput, SC.hasOutput, SC.unit, SC.signalType))
 _ACCEPTS = URIRef(SC.accepts)
@@ -42,6 +42,15 @@ def incommensurable_units(file: LintedFile) -> Iterator[Diagnostic]:
                 "this signal type in this file has."
             )
             yield at(file.positions, file.positions.triples[port, _UNIT, wanted].object, "SC-L21", message)
+
+
+def misnamed_units(file: LintedFile) -> Iterator[Diagnostic]:
+    """Units whose names are spelt out, which QUDT calls otherwise: nothing is known of them."""
+    for port, unit in sorted(file.graph.subject_objects(_UNIT), key=lambda pair: file.offset(pair[0])):
+        meant = meant_unit(IRI(unit)) if isinstance(unit, URIRef) and unit in UNIT else None
+        if meant is not None:
+            message = f"QUDT has no unit {file.short(str(unit))}; did you mean {file.short(UNIT[meant])}?"
+            yield at(file.positions, file.positions.triples[port, _UNIT, unit].object, "SC-L23", message)
 
 
 def unmet_shapes(file: LintedFile) -> Iterator[Diagnostic]:

@@ -22,7 +22,7 @@ from selfconf.rdf import vocabulary
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
-from selfconf.rdf.validation.lints.sources import incommensurable_units, unmet_shapes
+from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
 from selfconf.rdf.validation.lints.templates import (
     impossible_roles,
     queried_parameters,
@@ -205,6 +205,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     untyped_ports,
     literals_for_iris,
     local_components,
+    misnamed_units,
 )
 TEMPLATES = (
     unlisted_roles,

@@ -14,7 +14,7 @@ def found(tmp_path: Path, text: str) -> list[str]:
     """The codes of these lints that a file earns."""
     path = tmp_path / "file.ttl"
     path.write_text(PREFIXES + text)
-    return [one.code for one in validate([str(path)]).diagnostics if one.code in ("SC-L21", "SC-L22")]
+    return [one.code for one in validate([str(path)]).diagnostics if one.code in ("SC-L21", "SC-L22", "SC-L23")]
 
 
 def component(name: str, link: str, more: str) -> str:
@@ -38,6 +38,14 @@ def test_a_unit_that_no_output_can_be_converted_to_is_told(
     text = component("in", "hasInput", " ; sc:unit unit:M")
     text += "".join(component(f"o{n}", "hasOutput", f" ; sc:unit unit:{unit}") for n, unit in enumerate(outputs))
     assert found(tmp_path, text) == codes
+
+
+@pytest.mark.parametrize(
+    ("unit", "codes"),
+    [("unit:metres", ["SC-L23"]), ("unit:Hz", ["SC-L23"]), ("unit:M", []), ("unit:Zorkmid", []), (":metre", [])],
+)
+def test_a_unit_whose_name_is_spelt_out_is_told(tmp_path: Path, unit: str, codes: list[str]) -> None:
+    assert found(tmp_path, component("o", "hasOutput", f" ; sc:unit {unit}")) == codes
 
 
 RATED = " ; sc:rate [ sc:value 5 ; sc:unit unit:HZ ]"
