@@ -38,7 +38,8 @@ _UNITS: dict[str, str] = {
 _SPELT_OUT = {
     "M": "metre meter", "GM": "gram gramme", "KiloGM": "kilogram kilogramme kg", "SEC": "second sec s", "MIN": "minute",
     "HR": "hour h", "HZ": "hertz hz", "RAD": "radian", "DEG": "degree", "K": "kelvin", "DEG_C": "celsius",
-    "A": "ampere", "V": "volt", "OHM": "ohm", "N": "newton", "J": "joule", "W": "watt", "PA": "pascal", "L": "litre liter",
+    "A": "ampere", "V": "volt", "OHM": "ohm", "N": "newton", "J": "joule", "W": "watt", "PA": "pascal",
+    "L": "litre liter",
     "LUX": "lux lx", "PERCENT": "percent", "BYTE": "byte", "MilliM": "millimetre millimeter mm",
     "CentiM": "centimetre centimeter cm", "KiloM": "kilometre kilometer km", "MilliSEC": "millisecond ms",
     "M-PER-SEC": "mps", "IN": "inch", "FT": "foot feet", "MI": "mile", "BAR": "bar",
