@@ -85,6 +85,7 @@ class WatchedTask:
             "host": status.host,
             "process": status.process,
             "template": status.template,
+            "inside_of": status.outside,
             "components": [] if over else list(status.components),
             "owed": list(status.owed),
             "dropped": dict(status.dropped),
