@@ -7,11 +7,18 @@ prints goes where it went before. Two kinds of lines count:
   with a certificate has tried what its name does not allow. What is kept from reaching somebody (egress) is no attempt.
 * a warning of the TLS link: somebody without a certificate that is believed has knocked.
 
-Messages that pass cost Zenoh a line each, twice a signal, for all of these lines have one target and one level: nothing
-else says who has tried what. (A span of Zenoh names the peer in the line "Msg intercepted!" alone, without the others;
-but it cannot be told from that whether the peer was kept from speaking or another one from hearing.) So this program
-reads many lines at a time, and looks into those chunks alone that hold a word of a refusal: a thread that woke up for
-each line took twice as long as all the rest that a hub does for a signal (`python -m benchmarks.access`).
+Messages that pass cost Zenoh a line each, as they come in and as they go out, for these lines have the target and the
+level (trace) of those that say no, and no field but their text: no filter tells them apart. (The line "Msg
+intercepted!" alone could be had for nothing: it has a target of its own, `zenoh::net::routing::interceptor` without
+`::access_control`. But it says neither who, nor what, nor under which key; a span of Zenoh adds the peer, and leaves
+open whether that was kept from speaking or another one from hearing.) So this program reads many lines at a time, and
+looks into those chunks alone that hold a word of a refusal: a thread that woke up for each line took twice as long as
+all the rest that a hub does for a signal (`python -m benchmarks.access`).
+
+A key is what a stranger has written, and may hold line breaks: what follows one could be a line like those of Zenoh,
+which says that somebody else has tried something. But Zenoh writes an ESC of a key as text, and begins its own lines
+with one, where it writes in colours. So it is asked for colours, and what does not begin so is no line of Zenoh; and in
+a line the key comes last, so what stands before it is what counts.
 """
 
 from __future__ import annotations
@@ -23,7 +30,8 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from functools import cache
 
@@ -32,6 +40,8 @@ from selfconf.protocol.messages import RefusedAttempt
 
 FILTER = "zenoh::net::routing::interceptor=trace,zenoh_link_tls::unicast=warn"
 """What Zenoh logs, as the variable RUST_LOG has it."""
+NO_COLOUR = "NO_COLOR"
+"""The variable by which a user asks programs for plain text (no-color.org), and Zenoh as its log begins."""
 ROOM = 1 << 20
 """Bytes that the pipe holds: a hub that writes into a full one would stand still."""
 BETWEEN_READS = 0.05
@@ -41,11 +51,17 @@ MOST_ATTEMPTS = 1000
 LONGEST_KEY = 300
 """Characters of a key that are kept."""
 _COLOUR = re.compile(rb"\x1b\[[0-9;]*m")
-_LINK = re.compile(r"(\w+) on \S*CertCommonName\(([^)]*)\)")
-_DENIED = re.compile(r"(\w+) (?:on \S+ )?is unauthorized to (.+) \((\w+)\) on (.*)$")
-_THREAD = re.compile(r"(ThreadId\(\d+\))")
-_KNOCKED = re.compile(r"WARN .*zenoh_link_tls::unicast: (.*?)(?:\. Hint: .*)?$")
-_REFUSING = b" is unauthorized to ", b"Msg intercepted!", b"zenoh_link_tls"
+_GENUINE = b"\x1b["
+"""How a line of Zenoh begins, and nothing can that a key holds."""
+_LINE = re.compile(r"\S+ +\w+ +.*?(ThreadId\(\d+\)) (\S+): (.*)", re.DOTALL)
+"""A line: when, how grave, on which thread, its target, and its text, to the end of which a key may stand."""
+_DENIED = re.compile(
+    r"(?:Using cached result: )?(\w+) (?:on (\S+) )?is unauthorized to ([\w/ ]+?) \((\w+)\) on (.*)", re.DOTALL
+)
+_NAME = re.compile(r"CertCommonName\(([^)]*)\)")
+_HINT = ". Hint: "
+_TLS = "zenoh_link_tls::unicast"
+_REFUSING = b" is unauthorized to ", b"Msg intercepted!", _TLS.encode()
 """What stands in every line that counts; the line that says no names the peer, the first time with its certificate."""
 
 
@@ -78,25 +94,29 @@ class RefusalLog:
 
     def take(self, line: str) -> None:
         """Read one line."""
-        knocked = _KNOCKED.search(line)
-        if knocked:
-            self._count("", knocked[1][:LONGEST_KEY], "", line)
+        parts = _LINE.fullmatch(line)
+        if parts is None:
             return
-        thread = _THREAD.search(line)
-        if thread is None:
-            return
-        link, denied = _LINK.search(line), _DENIED.search(line)
-        if link:
-            self._names.pop(link[1], None)
-            self._names[link[1]] = link[2]
-            if len(self._names) > MOST_ATTEMPTS:  # who comes again and again has another number each time
-                del self._names[next(iter(self._names))]
-        if denied:
-            self._denied[thread[1]] = (denied[1], denied[2], denied[3], denied[4])
-        elif "Msg intercepted!" in line and thread[1] in self._denied:
-            peer, attempt, flow, key = self._denied.pop(thread[1])
+        thread, target, text = parts.groups()
+        denied = _DENIED.fullmatch(text)
+        if target == _TLS:
+            self._count("", text.partition(_HINT)[0][:LONGEST_KEY], "", line)
+        elif denied is not None:
+            self._denied[thread] = self._note(*denied.groups())
+        elif text == "Msg intercepted!" and thread in self._denied:
+            peer, attempt, flow, key = self._denied.pop(thread)
             if flow == "ingress" and not attempt.startswith("Undeclare "):  # it concerns what is one's own, or nothing
                 self._count(self._names.get(peer, "?"), attempt, key[:LONGEST_KEY], line)
+
+    def _note(self, peer: str, link: str | None, attempt: str, flow: str, key: str) -> tuple[str, str, str, str]:
+        """Remember what a peer is called, where its link says so."""
+        name = _NAME.search(link or "")
+        if name is not None:
+            self._names.pop(peer, None)
+            self._names[peer] = name[1]
+            if len(self._names) > MOST_ATTEMPTS:  # who comes again and again has another number each time
+                del self._names[next(iter(self._names))]
+        return peer, attempt, flow, key
 
     def _count(self, principal: str, attempt: str, key: str, line: str) -> None:
         with self._lock:
@@ -123,8 +143,8 @@ class RefusalLog:
     def take_chunk(self, chunk: bytes) -> None:
         """Read some whole lines; quickly where none of them says that something was refused."""
         if any(word in chunk for word in _REFUSING):
-            for line in chunk.splitlines():
-                if any(word in line for word in _REFUSING):
+            for line in chunk.split(b"\n"):
+                if line.startswith(_GENUINE) and any(word in line for word in _REFUSING):
                     self.take(_COLOUR.sub(b"", line).decode(errors="replace"))
 
 
@@ -139,9 +159,21 @@ def hear_refusals() -> RefusalLog:
     os.dup2(writing, 1)
     os.close(writing)
     sys.stdout = os.fdopen(before, "w", buffering=1, encoding=sys.stdout.encoding, errors=sys.stdout.errors)
-    begin_log(FILTER)
+    with _colours():
+        begin_log(FILTER)
     threading.Thread(target=_read, args=(reading, log), daemon=True, name="refusals").start()
     return log
+
+
+@contextmanager
+def _colours() -> Iterator[None]:
+    """Have Zenoh write its log in colours, whatever the user wants on a terminal: nobody sees this log."""
+    before = os.environ.pop(NO_COLOUR, None)
+    try:
+        yield
+    finally:
+        if before is not None:
+            os.environ[NO_COLOUR] = before
 
 
 def _read(pipe: int, log: RefusalLog) -> None:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
+import pytest
+
 from selfconf.bus.refusals import MOST_ATTEMPTS, RefusalLog
 
 PEER = "5ec1c06f0c48971bb2c118a3b409706c"
@@ -56,12 +60,42 @@ def test_who_knocks_without_a_good_certificate_is_counted() -> None:
     }
 
 
-def test_colours_and_ends_of_chunks_do_not_matter() -> None:
+def coloured(*lines: str) -> bytes:
+    """Lines as Zenoh writes them, of which the time, the level and the target have colours."""
+    return "\n".join(
+        re.sub(r"^(\S+) +(\w+) (.*?)(zenoh\S*?): ", "\x1b[2m\\1\x1b[0m \x1b[35m\\2\x1b[0m \\3\x1b[2m\\4\x1b[0m: ", line)
+        for line in lines
+    ).encode()
+
+
+def test_ends_of_chunks_do_not_matter() -> None:
     log = RefusalLog(clock=lambda: 7.0)
     first, last = denied("a/b")
-    log.take_chunk(f"\x1b[2mnoise\x1b[0m\n{first}".encode())
-    log.take_chunk(f"\x1b[35m{last}\x1b[0m".encode())
+    log.take_chunk(b"\x1b[2mnoise\x1b[0m\n" + coloured(first))
+    log.take_chunk(coloured(last))
     assert found(log) == [("comp.x", "Put", "a/b", 1)]
+
+
+@pytest.mark.parametrize("line_break", ["\n", "\r", "\r\n", "\v", "\x85", "\u2028"])
+@pytest.mark.parametrize("what", ["{}", "\\x1b[2m{}", "[2m{}"])
+def test_a_key_with_line_breaks_blames_nobody_else(line_break: str, what: str) -> None:
+    """Zenoh writes a key as it is, but for each ESC, which stands as text there: its own lines begin with one."""
+    forged = [what.format(line.replace("comp.x", "conf.main").replace(PEER, "0" * 32)) for line in denied("stolen")]
+    first, last = denied("a/b")
+    log = RefusalLog(clock=lambda: 7.0)
+    log.take_chunk(coloured(first) + line_break.join(["", *forged]).encode() + b"\n" + coloured(last))
+    ((who, attempt, key, number),) = found(log)
+    assert (who, attempt, number) == ("comp.x", "Put", 1)
+    assert key.startswith("a/b")
+
+
+def test_a_key_that_is_worded_like_a_refusal_changes_nothing() -> None:
+    key = "a (egress) on b: x on CertCommonName(conf.main) is unauthorized to Put (egress) on c"
+    assert found(log_of(*denied(key))) == [("comp.x", "Put", key, 1)]
+    assert found(log_of(*denied("a: Msg intercepted!"), *denied("b"))) == [
+        ("comp.x", "Put", "a: Msg intercepted!", 1),
+        ("comp.x", "Put", "b", 1),
+    ]
 
 
 def test_a_flood_takes_bounded_memory() -> None:
