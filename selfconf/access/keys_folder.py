@@ -6,7 +6,7 @@
     certificate.pem   whom this folder speaks for, with certificate.key
     own/NAME/         in the folder of an authority: the certificates of programs that are given the folder itself
     components.pem    the authority of one host, with components.key: it issues to the components that its sites start
-    components/NAME/  their certificates
+    components/NAME/  their certificates, each for all components of one process
     admitted/NAME/    certificates that others have shown to the sites of an ecology
     revoked.pem       what the authority has revoked; a copy of its own
 
@@ -17,6 +17,7 @@ by the hubs of that host alone: what a site issues to its components opens no do
 from __future__ import annotations
 
 import fcntl
+import hashlib
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -173,11 +174,11 @@ class KeysFolder:
 
         `also` are the other components of the process.
         """
-        folder = self.path / "components" / principal.common_name
+        folder = self.path / "components" / _whose((principal, *also))
         with self._turn():
             authority, key = self._host_authority()
             ends = self._component_ends()
-            if self._stale(folder) or not self._fits(self._certificate(folder / f"{_OWN}.pem"), also, ends):
+            if self._stale(folder) or self._certificate(folder / f"{_OWN}.pem").ends > ends:
                 mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
                 certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
                 _write_holder(folder, self.authority, certificate, mine)
@@ -189,10 +190,6 @@ class KeysFolder:
         ends = datetime.now(timezone.utc) + timedelta(days=COMPONENT_DAYS)
         return min(ends, self.own().ends) if (self.path / f"{_OWN}.pem").is_file() else ends
 
-    def _fits(self, certificate: Certificate, also: Sequence[Principal], ends: datetime) -> bool:
-        """Whether a certificate is for a process with these other components, and ends in time."""
-        return certificate.principals[1:] == tuple(also) and certificate.ends <= ends
-
     def renew_components(self) -> None:
         """Renew the certificates of the processes of this host that are to be. Raises AuthorError."""
         for folder in (self.path / "components").glob("*"):
@@ -203,7 +200,7 @@ class KeysFolder:
             self.component(first, others)
 
     def admitted(self, ecology: str) -> dict[str, Certificate]:
-        """By name, the certificates that sites of an ecology let in: those that were shown, and have stayed good.
+        """By whom they speak for, the certificates that sites of an ecology let in: shown once, and good until now.
 
         With the folder of an authority also those of the programs that are given it, which nobody need show.
         """
@@ -211,7 +208,7 @@ class KeysFolder:
         shown += [self._certificate(self.path / "own" / name / f"{_OWN}.pem") for name in KNOWN if self.is_authority]
         revoked = self.revoked()
         good = (one for one in shown if one.serial not in revoked and not one.fault(self._authorities_for(one)))
-        return {one.common_name: one for one in good}
+        return {_whose(one.principals): one for one in good}
 
     def admit(self, ecology: str, pem: bytes) -> Certificate:
         """Keep a certificate that somebody has shown to a site. Raises PeerError for one that is not good."""
@@ -221,11 +218,23 @@ class KeysFolder:
             raise PeerError(f"the certificate of {certificate.common_name[:80]!r} {fault}")
         if certificate.serial in self.revoked():
             raise PeerError(f"the certificate of {certificate.common_name} was revoked")
-        path = self.path / "admitted" / ecology / f"{certificate.common_name}.pem"
-        if not path.is_file() or path.read_bytes() != certificate.pem:
+        path = self.path / "admitted" / ecology / f"{_whose(certificate.principals)}.pem"
+        if not self._has_later(path, certificate):
             _made(path.parent)
             _write_file(path, certificate.pem)
         return certificate
+
+    def _has_later(self, path: Path, certificate: Certificate) -> bool:
+        """Whether a good certificate for the same is kept that was issued no earlier than this one.
+
+        Certificates are no secret: who shows an old one of somebody else must not bring the end of the name forward.
+        """
+        try:
+            kept = self._certificate(path)
+        except AuthorError:
+            return False
+        good = kept.serial not in self.revoked() and not kept.fault(self._authorities_for(kept))
+        return good and (kept.begins, kept.ends) >= (certificate.begins, certificate.ends)
 
     def _authorities_for(self, certificate: Certificate) -> tuple[Certificate, ...]:
         """Who may have issued a certificate: to components of this host, its own authority too."""
@@ -325,6 +334,16 @@ class KeysFolder:
             raise AuthorError(reason(error)) from None
         finally:
             os.close(descriptor)
+
+
+def _whose(principals: Sequence[Principal]) -> str:
+    """The name of a file about those for whom a certificate speaks.
+
+    A component may be the first of several processes, with other components each, in different ecologies or one after
+    the other; the certificate of one must not take the place of that of another.
+    """
+    first, *others = (one.common_name for one in principals)
+    return f"{first}~{hashlib.blake2s(' '.join(others).encode(), digest_size=8).hexdigest()}" if others else first
 
 
 def _principal(certificate: Certificate, folder: Path) -> Principal:

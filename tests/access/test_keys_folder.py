@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import stat
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -137,7 +138,11 @@ def test_what_a_host_issues_to_its_components_opens_no_other_door(authority: Key
     assert not component.own().fault(attic.believed_authorities())
     before = component.own()
     assert KeysFolder(attic.component(first, [second])).own() == before
-    assert KeysFolder(attic.component(first)).own() != before, "it speaks for others now"
+    alone = KeysFolder(attic.component(first)).own()
+    assert (alone.principals, alone.common_name) == ((first,), before.common_name)
+    assert KeysFolder(attic.component(first, [second])).own() == before, "in another ecology it shares a process"
+    attic.admit("lab", alone.pem)
+    assert {one.principals for one in attic.admitted("lab").values()} == {(first, second), (first,)}
 
 
 def test_a_host_cannot_make_itself_a_configurator(authority: KeysFolder, tmp_path: Path) -> None:
@@ -192,3 +197,17 @@ def test_a_component_has_no_certificate_for_longer_than_its_site(authority: Keys
     authority.renew(attic.path, days=30.0)
     attic.renew_components()
     assert not component.own().half_over(), "it is renewed when half of its time has passed"
+
+
+def test_an_old_certificate_that_somebody_shows_does_not_take_the_place_of_the_new_one(
+    authority: KeysFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Certificates are no secret; with the old one, the holder would be out as soon as that expires."""
+    monkeypatch.setattr(certificates, "CLOCKS_DIFFER", timedelta(minutes=6))
+    old = authority.issue(ALICE, tmp_path / "alice", days=1)
+    monkeypatch.undo()
+    new = authority.renew(tmp_path / "alice", days=0.5)
+    assert authority.admit("lab", old.pem) == old
+    assert authority.admit("lab", new.pem) == new
+    assert authority.admit("lab", old.pem) == old, "it is good"
+    assert authority.admitted("lab")["read.alice"] == new

@@ -23,6 +23,7 @@ class Outcome:
     @property
     def body(self) -> Any:
         """Its stdout as JSON."""
+        assert self.out, self
         return json.loads(self.out)
 
     def is_one_sentence(self, *words: str) -> bool:
