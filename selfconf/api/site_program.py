@@ -143,7 +143,11 @@ def _beyond_loopback(listen: str | None) -> bool:
     """Whether an endpoint can be reached from other hosts."""
     if listen is None:
         return False
-    host = listen.partition("/")[2].rpartition(":")[0].strip("[]")
+    return is_beyond_loopback(listen.partition("/")[2].rpartition(":")[0].strip("[]"))
+
+
+def is_beyond_loopback(host: str) -> bool:
+    """Whether other hosts can reach what listens at an address, or at a name, of this one."""
     try:
         found = {str(place[4][0]) for place in socket.getaddrinfo(host or None, None)}
     except (OSError, UnicodeError):

@@ -51,6 +51,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="let pages of this origin, such as https://yasgui.example, ask SPARQL and the directory from within a"
         " browser; repeatable (default: no page but that of this server)",
     )
+    parser.add_argument(
+        "--insecure",
+        action="store_true",
+        help="with keys, listen beyond this host: by HTTP whoever reaches it sees what they protect",
+    )
     add_ecology_arguments(parser)
 
 
@@ -60,9 +65,11 @@ def run(given: argparse.Namespace) -> int:
     if missing:
         raise InstallationError(f"{' and '.join(missing)} is missing; install the extra `serve`")
     from selfconf import rendezvous
-    from selfconf.serve import ServerOptions, serve_ecology
+    from selfconf.serve import ServerOptions, refuse_exposure, serve_ecology
 
     shown = rendezvous.credentials(given.keys, "read", "conf", "site")
+    if not given.insecure:
+        refuse_exposure(given.host, shown)
     with joined(given) as ecology:
         name, endpoints = ecology.name, ecology.endpoints
     options = ServerOptions(given.host, given.port, given.answer_seconds, given.history, given.origins)

@@ -15,6 +15,7 @@ from types import FrameType
 import uvicorn
 
 from selfconf.api.membership import beliefs, member
+from selfconf.api.site_program import is_beyond_loopback
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
 from selfconf.discovery import Beliefs
@@ -51,6 +52,16 @@ class ServerOptions:
     """Where the history is kept, if it is."""
     origins: Collection[str] = ()
     """Whose pages may ask besides its own, as browsers write an origin."""
+
+
+def refuse_exposure(host: str, credentials: Credentials | None) -> None:
+    """Raise AuthorError where other hosts can reach a server with keys: by HTTP it asks nobody who asks it for any."""
+    if credentials is not None and is_beyond_loopback(host):
+        raise AuthorError(
+            f"{host} can be reached from other hosts, and whoever asks by HTTP sees what {credentials.name} may see,"
+            " without keys: listen on 127.0.0.1, behind a server that asks who it is, or give --insecure if that is"
+            " what you want"
+        )
 
 
 def serve_ecology(

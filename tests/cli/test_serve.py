@@ -8,6 +8,7 @@ import json
 import re
 import signal
 import socket
+from pathlib import Path
 from typing import Any, cast
 from urllib.parse import quote
 
@@ -145,3 +146,17 @@ def test_without_the_extra_it_says_what_to_install(
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     assert run(capsys, "serve").is_one_sentence("install the extra `serve`")
+
+
+def test_with_keys_it_is_shown_to_other_hosts_only_if_told_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By HTTP nobody is asked for keys: who reaches the server sees what they protect."""
+    pytest.importorskip("cryptography", reason="the extra `keys` is not installed")
+    keys = ("--keys", str(tmp_path / "keys"))
+    assert run(capsys, "keys", "init", keys[1]).code == 0
+    for host in ("0.0.0.0", "::"):
+        assert run(capsys, "serve", *keys, "--host", host).is_one_sentence("sees what read.main may see", "--insecure")
+    told = run(capsys, "serve", *keys, "--host", "0.0.0.0", "--insecure", "--ecology", "nowhere")
+    assert told.code == 2
+    assert "--insecure" not in told.err, "it looks for the ecology"
