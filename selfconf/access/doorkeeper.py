@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TypeGuard
 
 from selfconf.access.beliefs import believed
+from selfconf.access.certificates import Certificate
 from selfconf.access.expiry import CertificateWatch
 from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
@@ -119,8 +120,11 @@ class Doorkeeper:
         """What was said to be wrong with the keys or the hub, and when."""
         self._pause = LOOK
         self._undo_retry: Callable[[], None] = lambda: None
-        self._asks_soon = False
-        """Whether others are about to be asked what they advertise."""
+        self._asks_soon = self._renews_soon = False
+        """Whether others are about to be asked what they advertise, and whether the rules are about to be made anew."""
+        self._admitted = set[Certificate]()
+        """The good certificates that were shown in these moments, and since when that is noted."""
+        self._admitted_at = bus.now()
         self._renewed_at = credentials.certificate.stat().st_mtime_ns
         self.rules = rules
         bus.serve(self._keys.introduce(site), self._introduced)
@@ -139,6 +143,8 @@ class Doorkeeper:
         """Somebody shows a certificate: the hub lets in whom the authority vouches for."""
         try:
             known = self._admit(decode(request.payload, Introduction).certificate)
+            if not known:
+                self._renew_rules_soon()
             mine = self._credentials.certificate.read_text()
             beside = tuple(sorted(self._of_this_host()))
             request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known, beside)))
@@ -148,12 +154,26 @@ class Doorkeeper:
             request.refuse(f"site {self._name} cannot read its certificate: {error.strerror}")
         finally:
             request.finish()
-        self._bus.later(0.0, self._renew_rules)  # after the answer is on its way
 
-    def _admit(self, certificate: str) -> bool:
-        """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good."""
-        name = self._folder.admit(self._keys.ecology, certificate.encode()).common_name
-        return name in self.rules.principals
+    def _admit(self, pem: str) -> bool:
+        """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good.
+
+        One that is shown again within moments is not looked at again: it takes a site milliseconds each time.
+        """
+        now = self._bus.now()
+        if now - self._admitted_at > LOOK:
+            self._admitted, self._admitted_at = set(), now
+        shown = Certificate.read(pem.encode())
+        if shown not in self._admitted:
+            self._folder.admit(self._keys.ecology, shown.pem)
+            self._admitted.add(shown)
+        return self.rules.knows(shown.principals)
+
+    def _renew_rules_soon(self) -> None:
+        """Have the rules made anew once what is done now is done, however many show their certificates meanwhile."""
+        if not self._renews_soon:
+            self._renews_soon = True
+            self._bus.later(0.0, self._renew_rules)
 
     def _introduce(self) -> None:
         """Show the certificate of this site to all others, and learn theirs."""
@@ -253,6 +273,7 @@ class Doorkeeper:
 
     def _renew_rules(self) -> None:
         """Have the hub opened anew if who may do what has changed."""
+        self._renews_soon = False
         try:
             rules = self._made()
         except SelfconfError as error:

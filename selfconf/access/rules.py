@@ -11,7 +11,7 @@ with `@`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from selfconf.access.principal import Principal, PrincipalKind
@@ -32,16 +32,29 @@ class AccessRules:
     """Who may do what at the hubs of one site."""
 
     accesses: tuple[Access, ...]
+    """What each may do; the first is what everybody may."""
+    at_uplinks: Access | None = None
+    """What everybody may do at uplinks: there the other end is a hub that this site was told to connect to, and it has
+    to answer who shows a certificate before it is known. At a hub only sites that are known answer that."""
 
     @property
     def principals(self) -> frozenset[str]:
         """The common names that they speak of."""
         return frozenset(access.principal for access in self.accesses)
 
-    def access_control(self) -> dict[str, Any]:
-        """The rules as the member `access_control` of a configuration of Zenoh."""
+    def knows(self, principals: Sequence[Principal]) -> bool:
+        """Whether they speak of the holder of a certificate, and of the components that share its process."""
+        first, *others = principals
+        about = {access.principal: access.about for access in self.accesses}.get(first.common_name)
+        return about is not None and all(one.name in about for one in others)
+
+    def access_control(self, at_uplinks: bool = False) -> dict[str, Any]:
+        """The rules as the member `access_control` of a configuration of Zenoh: of a hub, or of its uplinks."""
         rules, subjects, policies = [], [], []
-        for number, access in enumerate(self.accesses):
+        accesses = self.accesses
+        if at_uplinks and self.at_uplinks is not None:
+            accesses = (self.at_uplinks, *accesses[1:])
+        for number, access in enumerate(accesses):
             identity = access.principal or "everybody"
             mine = _rules(str(number), access)
             who = {"cert_common_names": [access.principal]} if access.principal else {"link_protocols": ["tls"]}
@@ -86,14 +99,13 @@ def rules_of(
             found.append(_reader(keys, principal))
         elif principal.name != site:
             found.append(_other_site(keys, principal, others.get(principal.name, ()), said_here))
-    return AccessRules(tuple(found))
+    return AccessRules(tuple(found), replace(_everybody(keys), says=(keys.introduce("*"),)))
 
 
 def _everybody(keys: Keys) -> Access:
     return Access(
         "",
         "everybody with a certificate of the authority may show it to a site, and learn which sites live",
-        says=(keys.introduce("*"),),
         hears=(keys.introduce("*"), any_ecology()),
     )
 
@@ -113,7 +125,7 @@ def _component(keys: Keys, principal: Principal, process: Iterable[Principal]) -
     own = tuple(key for chunk in mine for key in keys.all_of_component(chunk))
     heard = (
         keys.any_output(),
-        keys.any_operation(),
+        *map(keys.any_operation, mine),
         keys.any_fail(),
         keys.any_free(),
         keys.any_life(),
@@ -121,7 +133,7 @@ def _component(keys: Keys, principal: Principal, process: Iterable[Principal]) -
     )
     return Access(
         principal.common_name,
-        "speaks on its own outputs, FAIL and calls; hears signals, FAIL and who lives, and asks for operations",
+        "speaks on its own outputs, FAIL and calls; hears signals, FAIL and who lives; asks for operations as itself",
         says=own,
         asked=(keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_call("state")),
         hears=(*own, *heard),
@@ -178,13 +190,14 @@ def _other_site(keys: Keys, principal: Principal, components: Collection[IRI], s
     vouched = tuple(sorted(map(component_chunk, components)))
     said = [*keys.all_of_site(principal.name), *keys.all_of_configurators("*"), keys.task()]
     said += [key for chunk in vouched for key in keys.all_of_component(chunk)]
+    asks = (*keys.all_but_operations(), *map(keys.any_operation, vouched), any_ecology())
     return Access(
         principal.common_name,
         f"another site: speaks for itself, the {len(vouched)} components that it advertises, and the configurators that"
-        " are connected to it; hears everything",
+        " are connected to it; hears everything, and asks for operations as these components",
         says=tuple(said),
         asked=(*keys.everything(), any_ecology()),
-        hears=(*keys.everything(), any_ecology()),
+        hears=asks,
         about=vouched,
         told=tuple(said_here),
     )

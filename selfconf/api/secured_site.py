@@ -57,7 +57,7 @@ class SecuredSite:
         return self._security(self._first)
 
     def _security(self, rules: AccessRules) -> Security:
-        return Security(self._credentials, rules.access_control())
+        return Security(self._credentials, rules.access_control(), rules.access_control(at_uplinks=True))
 
     def introduce(self, bus: Bus, ecology: str) -> None:
         """Show the certificate of the site to the one that relays on this host. Raises NetworkError."""

@@ -19,6 +19,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -154,7 +155,10 @@ class Relay:
 
     def open_uplink(self) -> Any:
         """A session that connects the hub to the others."""
-        return open_session("router", connect=[self._hub.from_here, *self._others], security=self._hub.security)
+        security = self._hub.security
+        if security is not None:
+            security = replace(security, access_control=security.at_uplinks)
+        return open_session("router", connect=[self._hub.from_here, *self._others], security=security)
 
     def tell(self, uplink: _Uplink, other: str, up: bool) -> None:
         """Have the change of a link noted on the loop's thread."""

@@ -17,7 +17,7 @@
     selfconf/{ecology}/c/{shard}/{component}/fail           FAIL (put)
     selfconf/{ecology}/c/{shard}/{component}/free           it is free, and for whom (put)
     selfconf/{ecology}/c/{shard}/{component}/moved          what issues the outputs of a composite (put)
-    selfconf/{ecology}/c/{shard}/{component}/@op/{name}     an operation that it offers (call)
+    selfconf/{ecology}/c/{shard}/{component}/@op/{name}/{caller}  an operation that it offers (call)
     selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    reserve, apply, release, state (call)
     selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
     selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (queryable)
@@ -26,6 +26,7 @@
 
 `{component}` is the base-32 of the ten-byte BLAKE2s of the component's IRI, `{shard}` the first byte of the same hash
 in hexadecimal: the cost of siblings under one chunk grows with the square of their number, so no chunk has thousands.
+`{caller}` is the same of the component that calls: so a rule about keys can hold each component to its own name.
 `{life}` is a random text, new for each incarnation. A chunk that starts with `@` is matched by no wildcard, so that a
 broad query can never activate anything.
 """
@@ -153,16 +154,17 @@ class Keys:
     def all_of_component(self, chunk: str) -> tuple[str, ...]:
         """What a component says, given by its chunk, under whatever key."""
         place = f"selfconf/{self.ecology}/c/{base64.b32decode(chunk.upper())[0]:02x}/{chunk}"
-        return f"{place}/**", f"{place}/@ctl/*", f"{place}/@op/*"
+        return f"{place}/**", f"{place}/@ctl/*", f"{place}/@op/*/*"
 
-    def operation(self, component: IRI, name: str) -> str:
-        return self._component(component, f"@op/{quote(name, safe='')}")
+    def operation(self, component: IRI, name: str, caller: IRI) -> str:
+        return self._component(component, f"@op/{quote(name, safe='')}/{component_chunk(caller)}")
 
     def operations(self, component: IRI) -> str:
-        return self._component(component, "@op/*")
+        return self._component(component, "@op/*/*")
 
-    def any_operation(self) -> str:
-        return f"selfconf/{self.ecology}/c/*/*/@op/*"
+    def any_operation(self, caller: str) -> str:
+        """Every operation of the ecology, as a component calls it that is given by its chunk."""
+        return f"selfconf/{self.ecology}/c/*/*/@op/*/{caller}"
 
     def fail(self, component: IRI) -> str:
         return self._component(component, "fail")
@@ -190,8 +192,12 @@ class Keys:
 
     def everything(self) -> tuple[str, ...]:
         """Every key of the ecology."""
+        return *self.all_but_operations(), f"selfconf/{self.ecology}/**/@op/**"
+
+    def all_but_operations(self) -> tuple[str, ...]:
+        """Every key of the ecology by which no operation of a component is called."""
         whole = f"selfconf/{self.ecology}/**"
-        return whole, f"{whole}/@ctl/**", f"{whole}/@op/**"
+        return whole, f"{whole}/@ctl/**"
 
     def _configurator(self, name: str, rest: str) -> str:
         return f"selfconf/{self.ecology}/conf/{name}/{rest}"
@@ -290,9 +296,10 @@ def site_of(key: str) -> str:
     return chunks[3]
 
 
-def operation_of(key: str) -> str:
-    """The name of the operation at the end of the key by which it is called."""
-    return unquote(key.rsplit("/", 1)[-1])
+def operation_of(key: str) -> tuple[str, str]:
+    """The name of the operation that is called by a key, and the chunk of the component that calls it."""
+    *_, name, caller = key.split("/")
+    return unquote(name), caller
 
 
 def call_of(key: str) -> str:

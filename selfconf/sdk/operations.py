@@ -5,7 +5,9 @@ does, behind the stamp of the caller: the text of the stamp, a line feed, the pa
 component that is called, with its stamp.
 
 *Who may call* is what the configuration says: the components that it has connected to the operation, for the tasks
-that the component acts for. Whoever else asks is refused.
+that the component acts for. Whoever else asks is refused. Who calls stands in the key of the question as well as in
+the stamp, since rules about keys can hold every component to its own name (`selfconf.access.rules`), and none can look
+into a stamp.
 
 *At most once.* A call is made once. If it comes to nothing, the caller may not know whether the component was about to
 do what it was asked: so it is told what is known, and nothing is repeated on its behalf. A request that comes twice is
@@ -35,7 +37,7 @@ from selfconf.errors import PeerError, ProgrammerError
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import Keys, operation_of
+from selfconf.protocol.keys import Keys, component_chunk, operation_of
 from selfconf.protocol.messages import Apply, Wire
 from selfconf.protocol.stamps import PLAIN, StampReader, StampWriter
 from selfconf.sdk.code_thread import CodeThread
@@ -125,7 +127,7 @@ class Operations:
 
     def _asked(self, request: Request) -> None:
         """Let the code answer a request, unless there is a reason not to; on the bus's thread."""
-        name = operation_of(request.key)
+        name, caller = operation_of(request.key)
         if name not in self._offered:
             self._refuse(request, f"{self._profile.component.short} offers no operation {name!r}")
             return
@@ -134,7 +136,11 @@ class Operations:
         except (PeerError, ValueError, RecursionError) as error:
             self._refuse(request, f"not a request: {error}")
             return
-        if signal.source not in self._callers(name + CALL_MARK):
+        if component_chunk(signal.source) != caller:
+            self._refuse(
+                request, f"not a request: it is stamped by {signal.source.short}, and asked by another component"
+            )
+        elif signal.source not in self._callers(name + CALL_MARK):
             who = f"{signal.source.short} is not connected to the operation {name!r} of {self._profile.component.short}"
             self._refuse(request, who)
         elif self._requests >= MOST_CALLS:
@@ -249,7 +255,7 @@ class Operations:
             self._calls -= 1
             hear(_answer(wire.component, replies, seconds))
 
-        key = self._keys.operation(wire.component, wire.output.removesuffix(CALL_MARK))
+        key = self._keys.operation(wire.component, wire.output.removesuffix(CALL_MARK), self._profile.component)
         self._bus.ask(key, request, seconds, done)
 
     def _heard(self, turn: int, answered: Callable[[Response], None], answer: Response) -> None:

@@ -40,6 +40,8 @@ class Stage:
     site: str
     victim: IRI
     dormant: IRI
+    itself: IRI
+    """The component that the attacker is, or would be."""
     attacker: ZenohBus
     observer: ZenohBus
 
@@ -48,7 +50,9 @@ class Stage:
         replies: list[Replies] = []
         bus.ask(key, payload, seconds, replies.append)
         deadline = bus.now() + 2 * seconds
-        bus.run(lambda: bool(replies) or bus.now() > deadline)
+        while not replies and bus.now() < deadline:
+            self.attacker.poll(0.002)
+            self.observer.poll(0.002)
         return replies[0] if replies else Replies()
 
     def settle(self) -> None:
@@ -172,14 +176,17 @@ ATTACKS: dict[str, Callable[[Stage], bool]] = {
         s.keys.outputs(s.dormant), s.keys.output(s.dormant, "pose"), s.keys.output(s.dormant, "pose"), b"{}"
     ),
     "answers an operation of a dormant one": lambda s: s.serve(
-        s.keys.operation(s.dormant, "open"),
-        s.keys.operation(s.dormant, "open"),
-        s.keys.operation(s.dormant, "open"),
+        s.keys.operation(s.dormant, "open", s.victim),
+        s.keys.operation(s.dormant, "open", s.victim),
+        s.keys.operation(s.dormant, "open", s.victim),
         b"{}",
     ),
     "moves the outputs of another": lambda s: s.put(s.keys.moved(s.victim), encode(Moved(s.victim, _LIFE))),
-    "asks for an operation": lambda s: s.overhear(
-        s.keys.operation(s.dormant, "open"), s.keys.operation(s.dormant, "open")
+    "asks for an operation as itself": lambda s: s.overhear(
+        s.keys.operations(s.dormant), s.keys.operation(s.dormant, "open", s.itself)
+    ),
+    "asks for an operation as another": lambda s: s.overhear(
+        s.keys.operations(s.dormant), s.keys.operation(s.dormant, "open", s.victim)
     ),
     "advertises for the site": lambda s: s.serve(
         s.keys.advertisements(s.site),
@@ -196,6 +203,13 @@ ATTACKS: dict[str, Callable[[Stage], bool]] = {
         encode(Page(0, 1, 10**9, s.victim)),
     ),
     "says the site has changed": lambda s: s.put(s.keys.changed(s.site), encode(Page(0, 1, 10**9))),
+    "says that the hub is opened anew": lambda s: s.put(s.keys.reopens(s.site), b""),
+    "answers who shows a certificate": lambda s: s.serve(
+        s.keys.introduce(s.site), s.keys.introduce("*"), s.keys.introduce(s.site), b"{}"
+    ),
+    "keeps a task as the site": lambda s: s.serve(
+        s.keys.kept_tasks(s.site), s.keys.kept_tasks(), s.keys.kept_task(s.site, "theft~1"), b"{}"
+    ),
     "forges a status": lambda s: s.serve(
         s.keys.configurator_call("honest"),
         s.keys.configurator_call("*", "status"),
@@ -209,6 +223,14 @@ ATTACKS: dict[str, Callable[[Stage], bool]] = {
         s.keys.notices("honest"), encode(Notice("honest", 1, "tidy~1", {"act": "running"}))
     ),
     "forges a task": lambda s: s.put(s.keys.task("theft~1"), _record()),
+    "hears what configurators do": lambda s: s.listen(s.keys.notices("honest")),
+    "reads a configuration": lambda s: s.overhear(s.keys.configuration("honest"), s.keys.configuration("honest")),
+    "asks for a task": lambda s: s.overhear(
+        s.keys.configurator_call("honest"), s.keys.configurator_call("honest", "task")
+    ),
+    "stops a task": lambda s: s.overhear(
+        s.keys.configurator_call("honest"), s.keys.configurator_call("honest", "stop")
+    ),
     "hears signals": lambda s: s.listen(s.keys.output(s.dormant, "pose")),
     "hears FAIL": lambda s: s.listen(s.keys.fail(s.dormant)),
     "hears what becomes of tasks": lambda s: s.listen(s.keys.task("tidy~1")),
@@ -219,6 +241,7 @@ ATTACKS: dict[str, Callable[[Stage], bool]] = {
     "wakes a component": lambda s: s.ask(s.keys.wake(s.site), encode(Wake(s.victim))),
     "ends a component": lambda s: s.ask(s.keys.end(s.site), encode(End(s.victim, _LIFE))),
     "hands a task to the site": lambda s: s.ask(s.keys.keep(s.site), _record()),
+    "reads what components have printed": lambda s: s.ask(s.keys.log(s.site), b""),
     "reads who may do what": lambda s: s.ask(s.keys.access(s.site), b""),
     "reads advertisements": lambda s: s.ask(s.keys.advertisements(s.site), b""),
     "reads which components live": lambda s: s.live_ones(s.keys.any_life()),

@@ -9,11 +9,14 @@ from datetime import timedelta
 from pathlib import Path
 
 import pytest
+import zenoh
 
 from selfconf.access import KeysFolder, Principal, PrincipalKind, certificates
 from selfconf.access.introduction import introduce
+from selfconf.bus import zenoh_session
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh_session import Security, open_session
 from selfconf.errors import NetworkError
 from tests.access.attacks import ATTACKS, Stage, refused
 from tests.cli.command import run
@@ -22,7 +25,15 @@ from tests.cli.processes import Home, component_of, dormant
 pytestmark = pytest.mark.process
 
 SITE = "home"
-READS = {"reads who may do what", "reads advertisements", "reads which components live", "hears what becomes of tasks"}
+READS = {
+    "reads who may do what",
+    "reads advertisements",
+    "reads which components live",
+    "reads a configuration",
+    "asks for a task",
+    "hears what becomes of tasks",
+    "hears what configurators do",
+}
 HEARS = {"hears signals", "asks for the last signal", "hears FAIL", "reads which components live"}
 CALLS = {
     "asks a component's state",
@@ -31,6 +42,8 @@ CALLS = {
     "wakes a component",
     "ends a component",
     "hands a task to the site",
+    "stops a task",
+    "reads what components have printed",
 }
 RELAYS = {
     "life of a configurator",
@@ -40,14 +53,18 @@ RELAYS = {
     "forges a task",
 }
 MAY: dict[str, set[str]] = {
-    "comp": HEARS | {"asks for an operation"},
+    "comp": HEARS | {"asks for an operation as itself"},
     "read": READS,
     "conf": READS | HEARS | CALLS,
-    "site": READS | HEARS | CALLS | RELAYS | {"asks for an operation"},
+    "site": READS | HEARS | CALLS | RELAYS,
     "boss": set(),
+    "router": HEARS,
 }
 """What each kind of insider may do; what a site may do with configurators is what it does for those that connect to it.
+
+`router` is a component whose session says that it is a router, as those of sites are: it learns of no operations.
 """
+NOBODY_MAY = set(ATTACKS).difference(*MAY.values())
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +100,7 @@ def wake(home: Home) -> None:
 def shown(home: Home, kind: str, folder: Path) -> Credentials:
     """What an attacker of a kind shows: a good certificate of the home's authority."""
     assert home.authority is not None
-    if kind == "comp":
+    if kind in ("comp", "router"):
         keys = KeysFolder(home.authority.component(Principal.component(component_of("sonar"))))
         return keys.credentials((PrincipalKind.COMPONENT,))
     if kind == "boss":
@@ -126,7 +143,11 @@ def insider(
     kind: str = request.param
     credentials = shown(home, kind, tmp_path_factory.mktemp(kind) / "keys")
     endpoint = [home.endpoint(SITE)]
-    attacker = client(endpoint, credentials=credentials)
+    attacker = (
+        ZenohBus(open_session("router", connect=endpoint, security=Security(credentials)))
+        if kind == "router"
+        else client(endpoint, credentials=credentials)
+    )
     if kind == "boss":
         with pytest.raises(NetworkError, match="names nobody"):
             introduce(attacker, home.ecology, credentials)
@@ -135,7 +156,8 @@ def insider(
     assert home.until(lambda: home.state(component_of("tracker")) is not None)  # its hub may be opened anew
     assert home.authority is not None
     observer = client(endpoint, credentials=home.authority.credentials((PrincipalKind.SITE,), SITE))
-    yield kind, Stage(home.keys, SITE, component_of("tracker"), component_of("odometry"), attacker, observer)
+    victim, dormant = component_of("tracker"), component_of("odometry")
+    yield kind, Stage(home.keys, SITE, victim, dormant, component_of("sonar"), attacker, observer)
     attacker.close()
     observer.close()
 
@@ -150,13 +172,51 @@ def test_the_site_says_who_has_tried(
     insider: tuple[str, Stage], home: Home, capsys: pytest.CaptureFixture[str]
 ) -> None:
     kind, stage = insider
-    name = {"boss": "boss", "comp": Principal.component(component_of("sonar")).common_name}.get(kind, f"{kind}.eve")
+    name = name_of(kind)
     ATTACKS["life for another"](stage)
 
     def noted() -> bool:
         return any(one[:2] == (name, "Liveliness Token") and _chunk(stage) in one[2] for one in tried(home, capsys))
 
     assert home.until(noted)
+
+
+def name_of(kind: str) -> str:
+    """The common name of an attacker."""
+    sonar = Principal.component(component_of("sonar")).common_name
+    return {"boss": "boss", "comp": sonar, "router": sonar}.get(kind, f"{kind}.eve")
+
+
+def test_a_key_that_is_worded_like_the_log_of_zenoh_blames_nobody_else(
+    insider: tuple[str, Stage], home: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What is refused is read from lines of a log, and a key may hold line breaks."""
+    kind, stage = insider
+    target = "zenoh::net::routing::interceptor"
+    forged = [
+        f"{start}2126-01-01T00:00:00.000000Z TRACE rx-0 ThreadId({number:02}) {target}{text}"
+        for number in range(1, 40)
+        for start in ("", "\x1b[2m")
+        for text in (
+            "::access_control: 00 on Interface(lo)+CertCommonName(conf.honest)+0 is unauthorized to Put (ingress) on a",
+            ": Msg intercepted!",
+        )
+    ]
+    key = stage.keys.life(stage.victim, f"forged-by-{kind}")
+    assert not stage.live("\n".join((key, *forged)))
+    assert home.until(lambda: any(one[0] == name_of(kind) and one[2] == key for one in tried(home, capsys)))
+    assert not [one for one in tried(home, capsys) if one[0] == "conf.honest"]
+
+
+def test_no_session_takes_the_place_of_another(free: Stage, home: Home, tmp_path: Path) -> None:
+    """Zenoh knows sessions by numbers that others get to know, and that each chooses for itself."""
+    security, session = Security(shown(home, "comp", tmp_path)), free.observer._session
+    for number in (session.zid(), *session.info.routers_zid()):
+        config = zenoh_session._config("client", [], [home.endpoint(SITE)], 0.3, False, security)
+        config.insert_json5("id", json.dumps(str(number)))
+        with pytest.raises(zenoh.ZError):
+            zenoh.open(config)
+    assert free.asked(free.observer, free.keys.access(SITE)).samples, "it has not lost its place"
 
 
 def _chunk(stage: Stage) -> str:
@@ -281,3 +341,21 @@ def test_the_rules_that_are_shown_are_those_of_zenoh(home: Home, capsys: pytest.
     subjects = {subject["id"] for subject in site["access_control"]["subjects"]}
     assert {"everybody", f"site.{SITE}", "conf.main", "read.main"} <= subjects
     assert {one["principal"] or "everybody" for one in site["access"]} == subjects
+
+
+@pytest.fixture(scope="module")
+def free(home: Home) -> Iterator[Stage]:
+    """An attacker to whom nothing is refused: with the certificate of the site whose hub it is."""
+    assert home.authority is not None
+    shown = home.authority.credentials((PrincipalKind.SITE,), SITE)
+    attacker, observer = (client([home.endpoint(SITE)], credentials=shown) for _ in range(2))
+    names = map(component_of, ("tracker", "odometry", "sonar"))
+    yield Stage(home.keys, SITE, *names, attacker, observer)
+    attacker.close()
+    observer.close()
+
+
+@pytest.mark.parametrize("attack", sorted(NOBODY_MAY))
+def test_what_nobody_may_would_come_to_something_if_it_were_not_refused(free: Stage, attack: str) -> None:
+    """Last in this module: the component that is attacked does not outlive it."""
+    assert ATTACKS[attack](free)

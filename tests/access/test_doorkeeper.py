@@ -6,7 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import AccessRules, Doorkeeper, KeysFolder, Principal, PrincipalKind, believe, first_rules
+from selfconf.access import (
+    AccessRules,
+    Certificate,
+    Doorkeeper,
+    KeysFolder,
+    Principal,
+    PrincipalKind,
+    believe,
+    first_rules,
+)
 from selfconf.access.doorkeeper import RAREST_RETRY
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
@@ -126,6 +135,28 @@ def test_who_shows_nonsense_is_refused(certificate: str, door: Door) -> None:
     assert door.enforced == []
 
 
+class LookedAt(KeysFolder):
+    """A folder of keys that counts how often all that was shown is looked at."""
+
+    times = 0
+
+    def admitted(self, ecology: str) -> dict[str, Certificate]:
+        self.times += 1
+        return super().admitted(ecology)
+
+
+def test_certificates_without_end_cost_no_look_at_all_others_each(door: Door, tmp_path: Path) -> None:
+    folder = LookedAt(door.folder.path)
+    door = Door(folder)
+    alice = folder.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice").pem.decode()
+    before, began = folder.times, door.bus.now()
+    for _ in range(100):
+        assert door.introduce("nonsense").errors
+        assert door.introduce(alice).samples
+        assert door.introduce(f"The same, in other words.\n{alice}").samples
+    assert folder.times - before <= 2 + (door.bus.now() - began), "once for alice, and once a second"
+
+
 def advertise(door: Door, site: str, *components: IRI) -> MemoryBus:
     """Another site, that has shown its certificate and advertises some components."""
     bus = door.network.node()
@@ -174,7 +205,7 @@ def test_a_site_goes_on_with_its_own(door: Door) -> None:
 
 def test_what_was_refused_is_told_once_and_shown_to_who_asks(door: Door) -> None:
     for _ in range(3):
-        door.refusals.take("WARN x zenoh_link_tls::unicast: peer sent no certificates. Hint: something")
+        door.refusals.take("2126Z WARN acc-0 ThreadId(1) zenoh_link_tls::unicast: peer sent no certificates. Hint: x")
     door.pass_time(10.0)
     assert door.said == ["refused: somebody without a certificate that is believed: peer sent no certificates"]
     replies = door.ask(KEYS.access("home"))

@@ -27,9 +27,9 @@ def rules() -> AccessRules:
     )
 
 
-def passes(principal: str, flow: str, message: str, key: str) -> bool:
+def passes(principal: str, flow: str, message: str, key: str, at_uplinks: bool = False) -> bool:
     """Whether a message passes, as Zenoh has it: by default not, and by inclusion of keys."""
-    control: dict[str, Any] = rules().access_control()
+    control: dict[str, Any] = rules().access_control(at_uplinks)
     subjects = {s["id"] for s in control["subjects"] if s.get("cert_common_names", [principal]) == [principal]}
     allowed = {rule for p in control["policies"] if subjects & set(p["subjects"]) for rule in p["rules"]}
     return any(
@@ -62,6 +62,9 @@ def test_all_components_are_asked_at_once_how_they_are_and_for_nothing_else() ->
         (CAM, "liveliness_token", KEYS.life(DRIVE, "1"), False),
         (CAM, "query", KEYS.call(DRIVE, "state"), False),
         (CAM, "declare_subscriber", KEYS.output(DRIVE, "speed"), True),
+        (CAM, "query", KEYS.operation(DRIVE, "halt", CAMERA), True),
+        (CAM, "query", KEYS.operation(DRIVE, "halt", LAMP), False),
+        (DRV, "query", KEYS.operation(CAMERA, "takePhoto", LAMP), True),
         ("conf.alice", "query", KEYS.call(DRIVE, "apply"), True),
         ("conf.alice", "liveliness_token", KEYS.configurator_life("alice-1", "1"), True),
         ("conf.alice", "liveliness_token", KEYS.configurator_life("bob-1", "1"), False),
@@ -77,6 +80,9 @@ def test_all_components_are_asked_at_once_how_they_are_and_for_nothing_else() ->
         ("site.attic", "put", KEYS.output(IRI("urn:bell"), "ring"), True),
         ("site.attic", "put", KEYS.output(DRIVE, "speed"), False),
         ("site.attic", "reply", KEYS.advertisement("home", DRIVE), False),
+        ("site.attic", "query", KEYS.operation(DRIVE, "halt", IRI("urn:bell")), True),
+        ("site.attic", "query", KEYS.operation(DRIVE, "halt", CAMERA), False),
+        ("site.attic", "query", KEYS.call(DRIVE, "state"), True),
         ("site.home", "put", KEYS.output(DRIVE, "speed"), True),
         ("conf.unknown", "query", KEYS.advertisements("*"), False),
         ("conf.unknown", "query", KEYS.introduce("*"), True),
@@ -84,6 +90,18 @@ def test_all_components_are_asked_at_once_how_they_are_and_for_nothing_else() ->
 )
 def test_each_may_do_what_its_name_says(principal: str, message: str, key: str, allowed: bool) -> None:
     assert passes(principal, "ingress", message, key) is allowed
+
+
+def test_only_sites_that_are_known_answer_who_shows_a_certificate() -> None:
+    """Else anybody who is let in could have each program that starts wait for an answer that never comes."""
+    for message in ("declare_queryable", "reply"):
+        assert passes("site.attic", "ingress", message, KEYS.introduce("attic"))
+        assert not passes("site.attic", "ingress", message, KEYS.introduce("home"))
+        for stranger in ("read.alice", "conf.alice", CAM, "site.unknown"):
+            assert not passes(stranger, "ingress", message, KEYS.introduce("home"))
+        # A hub that this site has connected to answers before it is known.
+        assert passes("site.unknown", "ingress", message, KEYS.introduce("unknown"), at_uplinks=True)
+    assert not passes("site.unknown", "ingress", "put", KEYS.changed("unknown"), at_uplinks=True)
 
 
 def test_the_rules_do_not_depend_on_an_order() -> None:

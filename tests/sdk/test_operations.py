@@ -268,7 +268,7 @@ class Peer:
     def __init__(self, answer: Callable[[Request], None]) -> None:
         self.album = Album()
         self.stage = Stage(self.album, ALBUM_PROFILE)
-        self.stage.others.serve(KEYS.operation(CAMERA, "takePhoto"), answer)
+        self.stage.others.serve(KEYS.operation(CAMERA, "takePhoto", ALBUM), answer)
         self.stage.call(reserve(inputs=CALLING))
         self.stage.call(apply(inputs=CALLING))
 
@@ -345,10 +345,10 @@ class Served:
         self.stage.profile = CAMERA_PROFILE
         self.stage.call(apply(callers={"takePhoto" + CALL_MARK: (ALBUM,)}))
 
-    def ask(self, request: bytes, operation: str = "takePhoto") -> Replies:
-        """The replies to a request, whatever it says."""
+    def ask(self, request: bytes, operation: str = "takePhoto", caller: IRI = ALBUM) -> Replies:
+        """The replies to a request of a component, whatever it says."""
         replies: list[Replies] = []
-        self.stage.caller.ask(KEYS.operation(CAMERA, operation), request, 1.0, replies.append)
+        self.stage.caller.ask(KEYS.operation(CAMERA, operation, caller), request, 1.0, replies.append)
         assert self.stage.network.run(lambda: bool(replies), 5.0)
         return replies[0]
 
@@ -371,16 +371,26 @@ def test_a_request_that_comes_twice_is_served_once() -> None:
 def test_only_who_is_connected_is_answered() -> None:
     served = Served()
     assert json.loads(served.ask(request_of(ALBUM)).samples[0].payload) == {"by": "camera", "sent": None}
-    refused = served.ask(request_of(IRI("urn:c:stranger")))
+    stranger = IRI("urn:c:stranger")
+    refused = served.ask(request_of(stranger), caller=stranger)
     assert refused.samples == ()
     assert refused.errors == ("stranger is not connected to the operation 'takePhoto' of camera",)
+
+
+def test_who_asks_in_the_name_of_another_is_refused() -> None:
+    """The key says who asks, which rules can hold a component to; the stamp has to say the same."""
+    served = Served()
+    refused = served.ask(request_of(ALBUM), caller=DIARY)
+    assert refused.samples == ()
+    assert refused.errors == ("not a request: it is stamped by album, and asked by another component",)
+    assert served.ask(request_of(ALBUM)).samples
 
 
 def test_an_answer_that_was_promised_is_cancelled_when_the_component_is_stopped() -> None:
     promise: Future[Any] = Future()
     served = Served(Camera(reply=lambda request: promise))
     replies: list[Replies] = []
-    served.stage.caller.ask(KEYS.operation(CAMERA, "takePhoto"), request_of(ALBUM), 5.0, replies.append)
+    served.stage.caller.ask(KEYS.operation(CAMERA, "takePhoto", ALBUM), request_of(ALBUM), 5.0, replies.append)
     served.stage.let_pass(0.1)
     served.stage.call(release())
     assert served.stage.network.run(lambda: bool(replies), 5.0)
@@ -398,17 +408,17 @@ def test_who_is_connected_no_more_is_refused_while_others_go_on() -> None:
     served = Served()
     served.stage.call(apply(2, callers={"takePhoto" + CALL_MARK: (DIARY,)}))
     assert served.ask(request_of(ALBUM)).errors
-    assert served.ask(request_of(DIARY)).samples
+    assert served.ask(request_of(DIARY), caller=DIARY).samples
 
 
 def test_each_task_that_shares_a_component_has_its_callers() -> None:
     served = Served()
     served.stage.call(apply(1, THEM, callers={"takePhoto" + CALL_MARK: (DIARY,)}))
     assert served.ask(request_of(ALBUM)).samples
-    assert served.ask(request_of(DIARY)).samples
+    assert served.ask(request_of(DIARY), caller=DIARY).samples
     served.stage.call(release())
     assert not served.ask(request_of(ALBUM)).samples
-    assert served.ask(request_of(DIARY)).samples
+    assert served.ask(request_of(DIARY), caller=DIARY).samples
 
 
 @pytest.mark.parametrize(
@@ -499,7 +509,7 @@ def test_a_refusal_and_the_caller_that_is_not_connected_are_told_on_a_real_netwo
     assert until(lambda: bool(album.answers))
     assert (album.answers[0].status, album.answers[0].detail) == (CallStatus.REFUSED, "the lens is covered")
     errors: list[Replies] = []
-    key = living.keys.operation(CAMERA, "takePhoto")
+    key = living.keys.operation(CAMERA, "takePhoto", DIARY)
     living.caller.wake_up(lambda: living.caller.ask(key, request_of(DIARY), PATIENCE, errors.append))
     assert until(lambda: bool(errors))
     assert errors[0].errors == ("diary is not connected to the operation 'takePhoto' of camera",)
