@@ -38,9 +38,9 @@ quick: $(VENV)/with-dev
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow'
 
 # Mistakes in good files, ten thousand random ecologies for each property of the search, against every oracle, ten
-# thousand histories with faults, all that is recorded, drives of ten seeds, and a hundred kills of a server that writes
-# its history; about half an hour.
-nightly: $(VENV)/with-dev fuzz
+# thousand histories with faults, all that is recorded, drives of ten seeds, a hundred kills of a server that writes its
+# history, and the ecologies of all tests once more with keys; about forty minutes.
+nightly: $(VENV)/with-dev fuzz test-keys
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/composition/test_searches.py \
 		tests/test_certificate.py tests/faults tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
 		tests/test_compare_benchmark.py tests/test_ci_for_users.py tests/access/test_expiry.py \

@@ -156,7 +156,7 @@ class Relay:
     def open_uplink(self) -> Any:
         """A session that connects the hub to the others."""
         security = self._hub.security
-        if security is not None:
+        if security is not None and security.at_uplinks is not None:
             security = replace(security, access_control=security.at_uplinks)
         return open_session("router", connect=[self._hub.from_here, *self._others], security=security)
 

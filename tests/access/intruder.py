@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from selfconf.access import KeysFolder, PrincipalKind
 from selfconf.access.introduction import introduce
-from selfconf.bus.port import Replies, Request, Urgency
+from selfconf.bus.port import Replies, Request
 from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
@@ -41,12 +41,15 @@ class Tried(NamedTuple):
 
 
 def put(key: Callable[[Keys], str], payload: bytes, attachment: bytes = b"", rate: int = 0) -> Tried:
-    """Put something once, or so many times a second."""
+    """Put something once, or so many times a second.
+
+    Nothing is declared before: who is not told of any listener would not send what it has declared.
+    """
 
     def attack(bus: ZenohBus, keys: Keys) -> bool:
-        publisher, began, sent = bus.publisher(key(keys), Urgency.EVENT), bus.now(), 0
+        began, sent = bus.now(), 0
         while sent < max(1, (bus.now() - began) * rate) and bus.now() - began < FLOOD:
-            publisher.put(payload, attachment)
+            bus._session.put(key(keys), payload, attachment=attachment)
             sent += 1
             time.sleep(1 / rate if rate else 0.0)  # the rate of the flood
         bus.poll(0.1)
@@ -105,6 +108,9 @@ ATTACKS: dict[str, Tried] = {
         b"<urn:x> <urn:y> <urn:z> .",
         encode(STOLEN),
     ),
+    "answers who shows a certificate": serve(lambda k: k.introduce(SITE), lambda k: k.introduce(SITE), b"{}"),
+    "keeps a task as the site": serve(lambda k: k.kept_tasks(SITE), lambda k: k.kept_task(SITE, "theft~1"), b"{}"),
+    "operation as another": ask(lambda k: k.operation(DORMANT, "open", VICTIM), b""),
     "answers for a dormant one": serve(lambda k: k.call(DORMANT), lambda k: k.call(DORMANT, "state"), b"yes"),
     "call": ask(lambda k: k.call(VICTIM, "release"), encode(Release(*CLAIM))),
     "set": ask(lambda k: k.call(VICTIM, "apply"), b"{}"),
