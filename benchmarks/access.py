@@ -2,7 +2,7 @@
 
     python -m benchmarks.access [--rounds 3] [--smoke]
 
-It takes four minutes a round.
+It takes a minute and a half a round.
 
 All processes are real, and each round has a new ecology of either kind.
 

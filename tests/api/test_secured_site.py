@@ -15,6 +15,7 @@ from selfconf.errors import AuthorError
 from tests.cli.processes import Home, component_of, dormant
 
 pytestmark = pytest.mark.process
+DOORBELL = Path(__file__).parents[2] / "examples/doorbell"
 
 
 def test_the_keys_of_somebody_else_are_refused(tmp_path: Path) -> None:
@@ -93,3 +94,29 @@ def test_beyond_loopback_keys_are_needed(tmp_path: Path) -> None:
         assert "without keys by everybody there: give --keys DIR" in refused.complaints
     finally:
         bare.close()
+
+
+def test_an_operation_is_called_on_another_host(home: Home, tmp_path: Path) -> None:
+    """Hubs let a site ask for operations in the name of the components that it advertises."""
+    assert home.authority is not None
+    (tmp_path / "attic").mkdir()
+    attic = Home(tmp_path / "attic", keys=False)
+    attic.ecology = home.ecology
+    try:
+        home.authority.issue(Principal(PrincipalKind.SITE, "attic"), attic.folder / "keys", ["127.0.0.2"])
+        attic.environment["SELFCONF_KEYS"] = str(attic.folder / "keys")
+        home.site("home", str(DOORBELL / "doorbell.ttl"))
+        attic.site(
+            "attic",
+            str(DOORBELL / "cameras.ttl"),
+            connect=(home.endpoint("home"),),
+            options=("--listen", "tls/127.0.0.2:0"),
+        )
+        run = home.selfconf("run", str(DOORBELL / "answer-the-door.ttl"), "--ecology", home.ecology, "--wait")
+        printed = home.runtime / f"log/{home.ecology}@home.log"
+        assert home.until(lambda: printed.is_file() and "front-camera: the postman" in printed.read_text()), (
+            run.complaints
+        )
+        assert run.end(signal.SIGINT) == 0
+    finally:
+        attic.close()
