@@ -153,12 +153,18 @@ class Relay:
             self._lingering.remove(uplink)
             threading.Thread(target=uplink.close, daemon=True).start()
 
-    def open_uplink(self) -> Any:
-        """A session that connects the hub to the others."""
+    def open_uplink(self) -> list[Any]:
+        """The sessions that connect the hub to the others: one, or with keys one for each of them.
+
+        A session that connects two others with each other is a way between them as short as their own, and Zenoh may
+        choose it. With keys nothing would get through there: no site speaks for another.
+        """
         security = self._hub.security
         if security is not None and security.at_uplinks is not None:
             security = replace(security, access_control=security.at_uplinks)
-        return open_session("router", connect=[self._hub.from_here, *self._others], security=security)
+        reached = [self._others] if security is None else [[other] for other in self._others]
+        here = self._hub.from_here
+        return [open_session("router", connect=[here, *others], security=security) for others in reached]
 
     def tell(self, uplink: _Uplink, other: str, up: bool) -> None:
         """Have the change of a link noted on the loop's thread."""
@@ -166,14 +172,17 @@ class Relay:
 
 
 class _Uplink:
-    """One session of a relay's uplink, and which links it has lost and regained."""
+    """The sessions of a relay's uplink at a time, and which links they have lost and regained."""
 
     def __init__(self, relay: Relay) -> None:
         self._relay, self._lost = relay, set[str]()
         self.regained = False
         """Whether it has lost a hub and has it again: what is declared does not get through to it any more."""
-        self._session = relay.open_uplink()
-        self._listener = self._session.info.declare_transport_events_listener(Callback(self._changed, indirect=False))
+        self._sessions = relay.open_uplink()
+        self._listeners = [
+            session.info.declare_transport_events_listener(Callback(self._changed, indirect=False))
+            for session in self._sessions
+        ]
 
     def _changed(self, event: zenoh.TransportEvent) -> None:
         """Called by Zenoh, on a thread of its own."""
@@ -188,7 +197,8 @@ class _Uplink:
 
     def close(self) -> None:
         """Leave the network."""
-        _close(self._session)
+        for session in self._sessions:
+            _close(session)
 
 
 def _close(session: Any) -> None:

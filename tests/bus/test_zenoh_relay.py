@@ -24,7 +24,7 @@ class CountedRelay(Relay):
 
     opened = 0
 
-    def open_uplink(self) -> Any:
+    def open_uplink(self) -> list[Any]:
         self.opened += 1
         return super().open_uplink()
 
