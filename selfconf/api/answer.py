@@ -239,7 +239,7 @@ class Inquiry:
         """The configuration, or why there is none, within the time of the method."""
         limit = TimeLimit(self.method.seconds)
         began = time.perf_counter()
-        with collector_looking_at_new():
+        with collector_looking_at_new(len(self.ecology)):
             found = composed(self.composer, self.ecology, frozenset(self.holders), None, limit)
         self.seconds["search"] = time.perf_counter() - began
         if isinstance(found, Undecided):

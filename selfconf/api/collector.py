@@ -1,6 +1,7 @@
 """The garbage collector of Python, kept from looking again and again at values that stay.
 
-Values are not garbage, but looking at a million of them takes as long as making them.
+Values are not garbage, but looking at a million of them takes as long as making them. A program that has frozen
+something itself does so for its own reasons, and keeps what it has frozen.
 """
 
 from __future__ import annotations
@@ -8,6 +9,11 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+MANY_VALUES = 10_000
+"""From how many new values on it is worth asking what is frozen, which takes longer the more that is."""
+MANY_COMPONENTS = 1_000
+"""And from how many components on."""
 
 
 @contextmanager
@@ -18,7 +24,7 @@ def collector_at_rest() -> Iterator[None]:
     try:
         yield
     finally:
-        if not gc.get_freeze_count():  # a program that has frozen something itself does so for its own reasons
+        if gc.get_count()[0] >= MANY_VALUES and not gc.get_freeze_count():
             gc.freeze()
             gc.unfreeze()  # moves everything to the oldest generation, without a look at it
         if collecting:
@@ -26,9 +32,9 @@ def collector_at_rest() -> Iterator[None]:
 
 
 @contextmanager
-def collector_looking_at_new() -> Iterator[None]:
-    """Garbage collection of what is made meanwhile alone: what is there at the beginning is not looked at."""
-    if gc.get_freeze_count():  # a program that has frozen something itself does so for its own reasons
+def collector_looking_at_new(components: int) -> Iterator[None]:
+    """Garbage collection of what is made meanwhile alone, where many components are there: they are not looked at."""
+    if components < MANY_COMPONENTS or gc.get_freeze_count():
         yield
         return
     gc.freeze()

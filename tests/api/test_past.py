@@ -90,7 +90,7 @@ def test_the_answer_is_that_of_the_moment(at: float | None, words: list[str], ke
 
 
 def test_it_is_read_while_a_server_writes(tmp_path: Path) -> None:
-    history = History(tmp_path)
+    history = History(tmp_path, Clock())
     for number in range(5):
         history.note({GRAPH: told(number, "tracker", at=1_000_000.0 + number)})
         assert len(past_graphs(tmp_path)) == number + 1

@@ -76,22 +76,18 @@ def roles(shapes: Document) -> list[IRI]:
 
 
 def advertised(data: Document) -> list[ParsedAdvertisement]:
-    """Each IRI that is described, as a component; what is said of blank nodes goes along with the first."""
+    """Each IRI that is described, as a component; what is said of blank nodes goes along with each."""
     nodes = [subject for subject in data.statements if isinstance(subject, IRI)]
     rest = [triple for triple in data.triples() if not isinstance(triple[0], IRI)]
     found = []
-    for number, node in enumerate(nodes):
+    for node in nodes:
         said = data.statements[node]
         profile = Profile(
             node,
             frozenset(value for predicate, value in said if predicate == TYPE and isinstance(value, IRI)),
             tuple((predicate, value) for predicate, value in dict.fromkeys(said) if predicate not in STRUCTURE),
         )
-        found.append(
-            ParsedAdvertisement(
-                profile, tuple((node, *statement) for statement in said) + tuple(() if number else rest)
-            )
-        )
+        found.append(ParsedAdvertisement(profile, (*((node, *statement) for statement in said), *rest)))
     return found
 
 

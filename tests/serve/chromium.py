@@ -15,12 +15,15 @@ import socket
 import subprocess
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 CHROMIUM = os.environ.get("SELFCONF_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 PATIENCE = 60.0
 """Seconds that anything may take, on a busy machine."""
+ENDING = 10.0
+"""Seconds that the browser may take to end."""
 OPTIONS = (
     "--headless=new",
     "--no-sandbox",  # it asks for rights that a container does not have, and the page is our own
@@ -70,9 +73,14 @@ class Chromium:
         os.close(theirs_out)
 
     def close(self) -> None:
-        """End the browser."""
-        self._process.kill()
-        self._process.wait()
+        """End the browser, by its own means if it can: its other processes write into its folder until they know."""
+        with suppress(OSError, AssertionError):
+            self.call("Browser.close", {})
+        try:
+            self._process.wait(ENDING)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
         os.close(self._to)
         os.close(self._from)
         self._proxy.close()

@@ -231,7 +231,8 @@ JUDGED_LATER = "accepts-path-"
 
 def broken(path: Path) -> bool:
     """Whether a bad file breaks the shape of an advertisement, and not another."""
-    expected = re.match(r"# expect: \S+ error\[SC-A", path.read_text()) is not None
+    # SC-A22 compares an advertisement with a template, which the reader of advertisements does not look at.
+    expected = re.match(r"# expect: \S+ error\[SC-A(?!22)", path.read_text()) is not None
     return expected and not path.stem.startswith(JUDGED_LATER)
 
 
