@@ -195,8 +195,9 @@ class LivingEcology(Ecology):
     def holders(self) -> Mapping[IRI, Holder]:
         """The tasks that hold components which they do not share, by component; as of the last discovery."""
         replies = self._ask(self._view.keys.configurator_call("*", "status"))
-        shared = {c for c, one in self.discovery.found.items() if one.advertisement.profile.is_shareable}
-        return {c: holder for c, holder in holders_in(replies, self._view.keys).items() if c not in shared}
+        held, found = holders_in(replies, self._view.keys), self.discovery.found
+        shared = {c for c in held if c in found and found[c].advertisement.profile.is_shareable}
+        return {c: holder for c, holder in held.items() if c not in shared}
 
     def state(self, component: IRI) -> str:
         """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.
