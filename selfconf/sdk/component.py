@@ -115,8 +115,8 @@ class Component:
 
         Raise Refused to say why there is none. An answer is what JSON has, bytes, or an array, of 1 MiB at most. For
         one that takes its time return a `concurrent.futures.Future`, so that nothing else waits: its result is the
-        answer, and a Refused that it raises the reason why there is none. It is cancelled when the component is
-        stopped.
+        answer, and a Refused that it raises the reason why there is none. It is cancelled when nobody waits for it any
+        more: the component is stopped, or the caller has waited long enough or is connected no more.
         """
         raise Refused(f"{operation!r} is advertised, and not written yet")
 

@@ -172,7 +172,7 @@ class ComponentCode:
         A future that was cancelled is a refusal.
         """
         if answer.cancelled():
-            raise Refused(f"{self._name} was stopped before it answered")
+            raise Refused(f"{self._name} ended the call before it answered")
         return self._judged(operation, answer.result)
 
     def _judged(self, operation: str, answer: Callable[[], Any]) -> Any:

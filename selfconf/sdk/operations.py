@@ -14,7 +14,8 @@ do what it was asked: so it is told what is known, and nothing is repeated on it
 served once.
 
 *Later.* The code of a component may return a future in the place of an answer: it then goes on with other things, and
-the request is answered when the future comes to something. Futures are cancelled when the component is stopped.
+the request is answered when the future comes to something. A future is cancelled when nobody waits for it any more: the
+component is stopped, the caller is connected no more, or has waited for as long as it said beside its request.
 
 *Bounds.* A request and an answer have at most `MOST_PAYLOAD` bytes; at most `MOST_CALLS` requests wait for the code of
 a component, or for its futures, and at most as many of its own calls for their answers.
@@ -51,6 +52,8 @@ MOST_PAYLOAD = 1 << 20
 """The most bytes that a request may have, and an answer."""
 MOST_CALLS = 64
 """How many requests wait for the code of a component at most, and how many calls of one for their answers."""
+LONGEST_PATIENCE = 1e6
+"""For how many seconds a caller can say that it waits: more than eleven days."""
 MOST_REMEMBERED = 4 * MOST_CALLS
 """Of how many requests it is remembered that they came."""
 _END_OF_STAMP = b"\n"
@@ -96,8 +99,8 @@ class Operations:
         """The latest requests, by caller, its life, and the number of the stamp: one that is doubled is not served."""
         self._requests = self._calls = 0
         """How many requests wait for the code, and how many calls for their answers."""
-        self._promised: set[Future[Any]] = set()
-        """The futures that the code has returned in the place of answers."""
+        self._promised: dict[Future[Any], tuple[str, IRI]] = {}
+        """The futures that the code has returned in the place of answers: of which operation, and to which caller."""
         self._served = bus.serve(keys.operations(profile.component), self._asked) if self._offered else lambda: None
 
     def follow(self, message: Apply) -> None:
@@ -112,6 +115,12 @@ class Operations:
         )
         for name in sorted(before.keys() ^ self._wires.keys()):
             self._code.connection_changed(name, name in self._wires)
+
+    def callers_changed(self) -> None:
+        """Cancel what was promised to components that are connected no more."""
+        for promise, (name, caller) in list(self._promised.items()):
+            if caller not in self._callers(name + CALL_MARK):
+                promise.cancel()
 
     def end(self) -> None:
         """Call nothing, and wait for no answer that the code has promised."""
@@ -133,6 +142,7 @@ class Operations:
             return
         try:
             life, signal = _read_request(request.payload)
+            patience = _read_patience(request.attachment)
         except (PeerError, ValueError, RecursionError) as error:
             self._refuse(request, f"not a request: {error}")
             return
@@ -146,17 +156,17 @@ class Operations:
         elif self._requests >= MOST_CALLS:
             self._refuse(request, f"{self._profile.component.short} is busy: {MOST_CALLS} requests wait for it")
         else:
-            self._take(request, name, signal, (signal.source, life, signal.sequence))
+            self._take(request, name, signal, patience, (signal.source, life, signal.sequence))
 
-    def _take(self, request: Request, name: str, signal: Signal, number: tuple[IRI, str, int]) -> None:
+    def _take(self, request: Request, name: str, signal: Signal, patience: float, number: tuple[IRI, str, int]) -> None:
         if number in self._seen:
             request.finish()
             return
         self._seen.append(number)
         self._requests += 1
-        self._thread.signal(partial(self._serve, request, name, signal))
+        self._thread.signal(partial(self._serve, request, name, signal, patience))
 
-    def _serve(self, request: Request, name: str, signal: Signal) -> None:
+    def _serve(self, request: Request, name: str, signal: Signal, patience: float) -> None:
         """Have the code answer a request; on its thread."""
 
         def served() -> Any:
@@ -166,17 +176,28 @@ class Operations:
                 raise Refused(f"what is sent along {error}") from None
             answer = self._code.serve(name, replace(signal, value=value))
             if isinstance(answer, Future):
-                self._promised.add(answer)
+                self._promised[answer] = name, signal.source
                 answer.add_done_callback(partial(self._kept, request, name))
+                if patience:
+                    self._then(self._limit, answer, patience)
                 if not self._code.active:  # it was stopped while it returned the future
                     answer.cancel()
             return answer
 
         self._answer(request, name, served)
 
+    def _limit(self, promise: Future[Any], seconds: float) -> None:
+        """Cancel a future after a time, if it has come to nothing until then."""
+
+        def cancel() -> None:
+            promise.cancel()
+
+        undo = self._bus.later(seconds, cancel)
+        promise.add_done_callback(lambda _: self._then(undo))
+
     def _kept(self, request: Request, name: str, promise: Future[Any]) -> None:
         """Answer a request with what a future has come to; on whatever thread it does."""
-        self._promised.discard(promise)
+        self._promised.pop(promise, None)
         self._answer(request, name, partial(self._code.outcome, name, promise))
 
     def _answer(self, request: Request, name: str, answered: Callable[[], Any]) -> None:
@@ -256,7 +277,7 @@ class Operations:
             hear(_answer(wire.component, replies, seconds))
 
         key = self._keys.operation(wire.component, wire.output.removesuffix(CALL_MARK), self._profile.component)
-        self._bus.ask(key, request, seconds, done)
+        self._bus.ask(key, request, seconds, done, f"{min(seconds, LONGEST_PATIENCE):g}".encode())
 
     def _heard(self, turn: int, answered: Callable[[Response], None], answer: Response) -> None:
         self._thread.signal(partial(self._code.answered, turn, partial(answered, answer)))
@@ -288,6 +309,14 @@ def _read_request(text: bytes) -> tuple[str, Signal]:
     if len(payload) > MOST_PAYLOAD:
         raise PeerError(f"a request of {len(payload)} bytes is too large; {MOST_PAYLOAD} are allowed")
     return _read_signal(stamp, payload)
+
+
+def _read_patience(attachment: bytes) -> float:
+    """For how many seconds the caller of a request waits; 0 if it does not say so. Raises ValueError for other text."""
+    seconds = float(attachment[:32]) if attachment else 0.0
+    if not 0.0 <= seconds <= LONGEST_PATIENCE:
+        raise ValueError(f"nobody waits for {seconds:g} s")
+    return seconds
 
 
 def _read_signal(attachment: bytes, payload: bytes) -> tuple[str, Signal]:

@@ -395,7 +395,33 @@ def test_an_answer_that_was_promised_is_cancelled_when_the_component_is_stopped(
     served.stage.call(release())
     assert served.stage.network.run(lambda: bool(replies), 5.0)
     assert promise.cancelled()
-    assert replies[0].errors == ("camera was stopped before it answered",)
+    assert replies[0].errors == ("camera ended the call before it answered",)
+
+
+@pytest.mark.parametrize("ended", ["the caller is connected no more", "the caller waits no longer"])
+def test_an_answer_that_nobody_waits_for_is_cancelled(ended: str) -> None:
+    promises: list[Future[Any]] = [Future(), Future()]
+    unused = iter(promises)
+    served = Served(Camera(reply=lambda request: next(unused)))
+    served.stage.call(apply(2, callers={"takePhoto" + CALL_MARK: (ALBUM, DIARY)}))
+    patience = b"0.5" if "longer" in ended else b""
+    for caller, attachment in ((ALBUM, patience), (DIARY, b"50")):
+        key = KEYS.operation(CAMERA, "takePhoto", caller)
+        served.stage.caller.ask(key, request_of(caller), 60.0, lambda replies: None, attachment)
+        served.stage.let_pass(0.1)
+    if not patience:
+        served.stage.call(apply(3, callers={"takePhoto" + CALL_MARK: (DIARY,)}))
+    served.stage.let_pass(1.0)
+    assert [promise.cancelled() for promise in promises] == [True, False]
+
+
+@pytest.mark.parametrize("patience", [b"long", b"-1", b"inf", b"nan", b"\xff"])
+def test_a_request_that_does_not_say_how_long_is_waited_is_refused(patience: bytes) -> None:
+    served, replies = Served(), list[Replies]()
+    key = KEYS.operation(CAMERA, "takePhoto", ALBUM)
+    served.stage.caller.ask(key, request_of(ALBUM), 1.0, replies.append, patience)
+    assert served.stage.network.run(lambda: bool(replies), 5.0)
+    assert replies[0].errors[0].startswith("not a request: ")
 
 
 def test_a_component_that_is_released_is_connected_to_nobody() -> None:
