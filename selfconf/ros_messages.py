@@ -4,7 +4,8 @@ A signal that is a message travels as CDR (XCDR1, as ROS 2 writes it) with the m
 of which type it is, so that it goes from node to node as it is, and is read only where something else receives it.
 Which types there are is known by `rosbags`, the extra `ros2`, for the distributions jazzy, kilted and lyrical; a type
 is the one that is meant if its hash is (REP 2011). So it is with services, of which `ros_services` knows some: what
-travels is a request or a response, and the hash is that of the service, which says that of both.
+travels is a request or a response, and the hash is that of the service, which says that of both. An action is two
+services and a message.
 """
 
 from __future__ import annotations
@@ -162,7 +163,7 @@ def _stores() -> tuple[Any, ...]:
 
 
 def _add_services(store: Any) -> None:
-    """Make the services known to the types of a distribution: their parts, and what their hash is computed of."""
+    """Make services and actions known to the types of a distribution: parts, and what their hashes are computed of."""
     from rosbags.interfaces import Nodetype
     from rosbags.typesys import get_types_from_msg
 
@@ -172,6 +173,9 @@ def _add_services(store: Any) -> None:
     fields = [(name, (Nodetype.ARRAY, (octet, 16)) if name == "client_gid" else kind) for name, kind in fields]
     store.fielddefs[_EVENT_INFO] = constants, fields
     found: dict[str, Any] = {}
+    for action in ros_services.KNOWN_ACTIONS:
+        for name, text in ros_services.action_messages(action).items():
+            (found[name],) = get_types_from_msg(text, "_/msg/_").values()
     for name in ros_services.SERVICES:
         ends = (ros_services.REQUEST, ros_services.RESPONSE)
         for end, text in zip(ends, ros_services.parts(name), strict=True):

@@ -6,12 +6,21 @@ import pytest
 
 from selfconf import ros_messages
 from selfconf.ros_messages import MessageType, ServiceParts
-from selfconf.ros_services import SERVICES, parts
+from selfconf.ros_services import FEEDBACK_MESSAGE, KNOWN_ACTIONS, SERVICES, parts
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
-# Of AddTwoInts as the design of rmw_zenoh says it, of the others as hiroz 0.2.1, a native implementation, has them.
+# Of AddTwoInts as the design of rmw_zenoh says it, of actions as the type descriptions of jazzy and lyrical have them,
+# of the others as hiroz 0.2.1, a native implementation, has them.
 HASHES = {
     "example_interfaces/srv/AddTwoInts": "e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a",
+    "action_msgs/srv/CancelGoal": "573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a",
+    "example_interfaces/action/Fibonacci_SendGoal": "d1a57fb2a4afe8c21e34fb10db206f16ce6729b28531141472df92277c55b557",
+    "example_interfaces/action/Fibonacci_GetResult": "1b0de0d5d29dc955d92f546706568428632771db13ec84c15ec1c1a59f424a57",
+    "action_tutorials_interfaces/action/Fibonacci_SendGoal": (
+        "a0603060ed69fe2dfbd1a6f3b982a1749957ef346e4a4d2b311a05e305ec37bb"
+    ),
+    "tf2_msgs/action/LookupTransform_SendGoal": "4646ff5706c86b04d0a1098d329951a9731a7517e16702905de6073cc72c8530",
+    "tf2_msgs/action/LookupTransform_GetResult": "3cd1715751899e3167b5aec3e4ac194f7da9e8493a77285f9f6a4c914f5e8b24",
     "rcl_interfaces/srv/DescribeParameters": "845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff",
     "rcl_interfaces/srv/GetParameters": "bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc",
     "rcl_interfaces/srv/GetParameterTypes": "da199c878688b3e530bdfe3ca8f74cb9fa0c303101e980a9e8f260e25e1c80ca",
@@ -40,6 +49,18 @@ def test_the_parts_of_a_service_are_written_and_read(name: str) -> None:
     for kind, text in zip(found(name), parts(name), strict=True):
         fields = ros_messages.message_fields(ros_messages.message({}, kind), kind)
         assert list(fields) == [line.split()[1] for line in text.split("\n") if line]
+
+
+@pytest.mark.parametrize("name", KNOWN_ACTIONS)
+def test_the_feedback_of_an_action_is_written_and_read(name: str) -> None:
+    kind = ros_messages.usual_type(name + FEEDBACK_MESSAGE)
+    assert kind is not None
+    assert list(ros_messages.message_fields(ros_messages.message({}, kind), kind)) == ["goal_id", "feedback"]
+
+
+def test_the_feedback_of_an_action_has_the_hash_that_others_compute() -> None:
+    name, number = "example_interfaces/action/Fibonacci_FeedbackMessage", "c1de71afd52e49a89c53d8262366884185bc0a02f78c"
+    assert ros_messages.usual_type(name) == MessageType(name, f"RIHS01_{number}e051c4e46b0a7fe59bb2")
 
 
 def test_a_request_without_fields_has_an_octet() -> None:

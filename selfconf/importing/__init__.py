@@ -9,8 +9,8 @@ a URL has answered, asked for what is `ACCEPTED`, within `FETCH_SECONDS` and up 
 `described_things` reads each `DescribedThing` of them and notes in an `ImportLedger` what it leaves out. An
 `ImportedComponent` with its `ImportedPort`s and `ImportedOperation`s is a component; as an `ImportedDocument`,
 `described_text` writes it as Turtle, in which a `NestedNode` has no name and a `TermList` is a list. `NodeReader` makes
-a component of a ROS 2 node's `NodeInterface`s, each of an `InterfaceKind`; `ROS2` are the terms for them. `slug` makes
-a name of a text.
+a component of a ROS 2 node's `NodeInterface`s, each of an `InterfaceKind`; `ROS2` are the terms for them, and
+`feedback_port` names the output that the feedback of an action is. `slug` makes a name of a text.
 """
 
 from selfconf.importing.conversion import (
@@ -33,7 +33,7 @@ from selfconf.importing.imported import (
 )
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import slug
-from selfconf.importing.ros2 import ROS2, InterfaceKind, NodeInterface, NodeReader
+from selfconf.importing.ros2 import ROS2, InterfaceKind, NodeInterface, NodeReader, feedback_port
 from selfconf.importing.sources import ACCEPTED, FETCH_SECONDS, LARGEST_SOURCE, SourceDocument, document_at, gather
 from selfconf.importing.turtle_text import described_text
 from selfconf.importing.wot import DescribedThing, described_things
@@ -64,6 +64,7 @@ __all__ = [
     "described_text",
     "described_things",
     "document_at",
+    "feedback_port",
     "gather",
     "import_descriptions",
     "import_documents",

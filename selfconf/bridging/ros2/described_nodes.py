@@ -7,16 +7,18 @@ back: such an input accepts no second output of a node, for from node to node th
 An output promises the rate that its deadline says. An input that is to be reliable, or is to receive what was published
 before, accepts no output that says it is otherwise (`sc:accepts`), as ROS 2 would not connect them; what comes from no
 node says nothing about that, and is accepted. A service that the node serves is an operation that it offers, one that
-it is a client of an operation that it needs. What every node publishes, its log and the changes of its parameters, is
-left out, and so is what is hidden.
+it is a client of an operation that it needs. An action that it serves is an operation that it offers and an output for
+the feedback (`actions`). What every node publishes, its log and the changes of its parameters, is left out, and so is
+what else is hidden.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
+from selfconf.bridging.ros2.actions import RosAction, actions_of
 from selfconf.bridging.ros2.domain import BRIDGE_NODE
 from selfconf.bridging.ros2.signal_translations import SignalTranslation, translation_of
 from selfconf.bridging.ros2.tokens import CLIENT, PUBLISHER, SERVER, SUBSCRIPTION, RosEndpoint, RosQuality, RosToken
@@ -31,6 +33,7 @@ from selfconf.importing import (
     NodeReader,
     SourceDocument,
     TermList,
+    feedback_port,
     slug,
 )
 from selfconf.model.term import IRI, Literal
@@ -51,6 +54,8 @@ class NodePorts(NamedTuple):
     """The services that it serves."""
     needed: EndpointsByName
     """The services that it is a client of."""
+    actions: dict[str, RosAction]
+    """The actions that it serves, besides `offered`; their feedback is among the outputs."""
 
 
 def translated_name(name: str, translation: SignalTranslation) -> str:
@@ -69,13 +74,17 @@ def is_bridged(token: RosToken) -> bool:
     return not token.name.startswith("_") and not token.name.startswith(BRIDGE_NODE)
 
 
-def ports_of(endpoints: Iterable[RosEndpoint]) -> NodePorts:
+def ports_of(endpoints: Collection[RosEndpoint]) -> NodePorts:
     """The ports and operations of a node, by their names; of two endpoints of one name and kind the first counts."""
     found: dict[str, EndpointsByName] = {kind: {} for kind in (PUBLISHER, SUBSCRIPTION, SERVER, CLIENT)}
     for each in sorted(endpoints, key=lambda one: one.entity):
         if each.topic not in OF_EVERY_NODE and not is_hidden(each.topic):
             found[each.kind].setdefault(each.topic.strip("/"), each)
-    return NodePorts(*(dict(sorted(named.items())) for named in found.values()))
+    actions = {name: each for name, each in actions_of(endpoints).items() if name not in found[SERVER]}
+    for name, action in actions.items():
+        found[PUBLISHER].setdefault(feedback_port(name), action.feedback)
+    outputs, inputs, offered, needed = (dict(sorted(named.items())) for named in found.values())
+    return NodePorts(outputs, inputs, offered, needed, actions)
 
 
 def is_hidden(name: str) -> bool:
@@ -85,17 +94,19 @@ def is_hidden(name: str) -> bool:
 
 def described_node(token: RosToken, ports: NodePorts, ledger: ImportLedger | None = None) -> ImportedComponent:
     """A node as the component that it is; a ledger says what its name begins with, and hears what is left out."""
-    outputs, inputs, offered, needed = ports
+    outputs, inputs, offered, needed, actions = ports
+    topics = {name: each for name, each in outputs.items() if not is_hidden(each.topic)}
     interfaces = [
         NodeInterface(kind, name, each.type.name, qualities(each.quality))
         for kind, named, qualities in (
-            (InterfaceKind.PUBLISHER, outputs, _qualities),
+            (InterfaceKind.PUBLISHER, topics, _qualities),
             (InterfaceKind.SUBSCRIBER, inputs, _qualities),
             (InterfaceKind.SERVICE_SERVER, offered, _no_qualities),
             (InterfaceKind.SERVICE_CLIENT, needed, _no_qualities),
         )
         for name, each in named.items()
     ]
+    interfaces += (NodeInterface(InterfaceKind.ACTION_SERVER, name, each.type) for name, each in actions.items())
     source = SourceDocument(f"the domain {token.node.domain} of ROS 2", "", b"")
     ledger = ledger or ImportLedger(NODE_NAMESPACE, lambda error: None)
     facts = {"nodeName": token.name, "nodeNamespace": token.namespace or "/"}

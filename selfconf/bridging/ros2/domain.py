@@ -5,12 +5,14 @@ from __future__ import annotations
 import itertools
 import secrets
 import threading
+import time
 from collections.abc import Callable
 from typing import NamedTuple
 
+from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.tokens import NODE, RosEndpoint, RosNodeId, RosToken
 from selfconf.bridging.ros2.topic_sources import TopicSources
-from selfconf.bus.port import Bus
+from selfconf.bus.port import Bus, Replies
 
 BRIDGE_NODE = "selfconf_bridge"
 """The name of the node as which a bridge is seen in ROS 2."""
@@ -64,6 +66,13 @@ class RosDomain:
         """As whom the bridge publishes on the key of a topic, or calls a service, for as long as it is there."""
         with self._lock:
             return self._own.setdefault(key, OwnPublisher(secrets.token_bytes(16), itertools.count(1)))
+
+    def ask(self, service: RosEndpoint, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+        """Call a service as the bridge, on the thread of the bus; `done` receives what comes of it within that time."""
+        key = service.key(self.number)
+        own = self.own(key)
+        attachment = RosAttachment(next(own.numbers), time.time_ns(), own.identifier).pack()
+        self.bus.ask(key, payload, seconds, done, attachment)
 
     def is_own(self, key: str, identifier: bytes) -> bool:
         """Whether a message on the key of a topic is the bridge's own: what it publishes is heard here as well."""

@@ -7,13 +7,11 @@ one out of the active state that nobody here has asked for. A node that was acti
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
 from selfconf import ros_messages
-from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.domain import RosDomain
 from selfconf.bridging.ros2.tokens import RosEndpoint
 from selfconf.bus.port import Replies, Sample, Undo
@@ -129,7 +127,7 @@ class NodeLifecycle:
         kind = ros_messages.usual_type(endpoint.type.name)
         parts = None if kind is None else ros_messages.service_parts(kind)
         assert parts is not None, "the services of lifecycle nodes are known"
-        turn, key, answered = self._turn, endpoint.key(self._domain.number), parts.response
+        turn, answered = self._turn, parts.response
 
         def done(replies: Replies) -> None:
             if turn != self._turn:
@@ -141,10 +139,8 @@ class NodeLifecycle:
             except MessageError as error:
                 failed(f"what the service {endpoint.topic} answers {error}")
 
-        own = self._domain.own(key)
-        attachment = RosAttachment(next(own.numbers), time.time_ns(), own.identifier).pack()
         payload = ros_messages.message(fields, parts.request)
-        self._domain.bus.ask(key, payload, TRANSITION_SECONDS, done, attachment)
+        self._domain.ask(endpoint, payload, TRANSITION_SECONDS, done)
 
     def _transition(self, event: RosEndpoint, sample: Sample) -> None:
         """The node has told of a transition."""

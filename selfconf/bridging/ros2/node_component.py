@@ -4,7 +4,8 @@ What the node publishes is issued as CDR, with its type in the media type; what 
 topic of it, by the bridge as a node of its own. A message goes to a topic only if its type has the same hash. An object
 is written as a message first; and what is published is issued as a signal too, where `signal_translations` has a kind
 for it. Where a message came from the very topic that it would go to, ROS 2 has brought it there already, and it is not
-brought twice. Services are the affair of `services`, and what a lifecycle node is in that of `lifecycle`.
+brought twice. Services are the affair of `services`, actions that of `actions`, and what a lifecycle node is in that of
+`lifecycle`.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from selfconf import ros_messages
+from selfconf.bridging.ros2.actions import call_action
 from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.described_nodes import NodePorts, translated_name
 from selfconf.bridging.ros2.domain import OwnPublisher, RosDomain, bridge_token, place_of
@@ -90,7 +92,10 @@ class NodeComponent(Component):
             self._domain.bus.wake_up(self._publish_next)
 
     def called(self, operation: str, request: Signal) -> Future[Any]:
-        """Ask the service that an operation is; the response comes from the network."""
+        """Ask the service or the action that an operation is; the response comes from the network."""
+        action = self._ports.actions.get(operation)
+        if action is not None:
+            return call_action(self._domain, action, request)
         return call_service(self._domain, self._ports.offered[operation], request)
 
     def connected(self, operation: str) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from selfconf.bridging.ros2.actions import action_name
 from selfconf.bridging.ros2.described_nodes import OF_EVERY_NODE, described_node, is_bridged, is_hidden, ports_of
 from selfconf.bridging.ros2.tokens import NODE, ROOT, NodeIdentity, RosToken
 from selfconf.bus.port import Bus
@@ -44,15 +45,18 @@ def living_graph(bus: Bus, domain: int, ledger: ImportLedger) -> Iterator[Import
 
 def _described(tokens: list[RosToken], ledger: ImportLedger, source: SourceDocument) -> ImportedDocument:
     endpoints = [token.endpoint for token in tokens if token.endpoint is not None]
-    hidden = sum(is_hidden(each.topic) for each in endpoints)
+    ports = ports_of(endpoints)
+    hidden = sum(
+        is_hidden(each.topic) and action_name(each.topic).strip("/") not in ports.actions for each in endpoints
+    )
     usual = sum(each.topic in OF_EVERY_NODE for each in endpoints)
     for number, what, why in (
-        (hidden, "hidden topics and services", "they are parts of actions, or of tools"),
+        (hidden, "hidden topics and services", "they are parts of actions that others serve, or of tools"),
         (usual, "topics of logs and of changed parameters", "every node has them"),
     ):
         if number:
             ledger.leave_out(what, why, source, number)
-    component = described_node(tokens[0], ports_of(endpoints), ledger)
+    component = described_node(tokens[0], ports, ledger)
     name = "/".join(map(slug, source.name.split("/")))
     return ImportedDocument(name, source.shown, (component.described(),), {})
 

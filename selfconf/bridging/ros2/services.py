@@ -50,10 +50,7 @@ def call_service(domain: RosDomain, endpoint: RosEndpoint, request: Signal) -> F
             if answer.set_running_or_notify_cancel():
                 answer.set_exception(refused)
             return
-        key = endpoint.key(domain.number)
-        own = domain.own(key)
-        attachment = RosAttachment(next(own.numbers), time.time_ns(), own.identifier).pack()
-        domain.bus.ask(key, payload, SERVICE_SECONDS, heard, attachment)
+        domain.ask(endpoint, payload, SERVICE_SECONDS, heard)
 
     domain.bus.wake_up(ask)
     return answer
@@ -77,18 +74,32 @@ def _request(kind: MessageType, request: Signal) -> bytes:
 
 def _response(endpoint: RosEndpoint, replies: Replies, as_bytes: bool) -> Any:
     """What a server has answered. Raises Refused."""
-    who = f"the service {endpoint.topic}"
-    if not replies.samples:
-        late = f"has not answered within {SERVICE_SECONDS:g} s" if not replies.complete else "does not answer"
-        raise Refused(f"{who} refuses: {replies.errors[0][:200]}" if replies.errors else f"{who} {late}")
-    payload, parts = replies.samples[0].payload, ros_messages.service_parts(endpoint.type)
-    if parts is None:
+    payload = response_payload(endpoint, replies, SERVICE_SECONDS)
+    if ros_messages.service_parts(endpoint.type) is None:
         return payload
+    fields = response_fields(endpoint, payload)
+    return payload if as_bytes else fields
+
+
+def response_payload(endpoint: RosEndpoint, replies: Replies, seconds: float) -> bytes:
+    """The CDR that a service has answered, which had that long to do so. Raises Refused if it has not."""
+    if replies.samples:
+        return replies.samples[0].payload
+    who = f"the service {endpoint.topic}"
+    if replies.errors:
+        raise Refused(f"{who} refuses: {replies.errors[0][:200]}")
+    raise Refused(f"{who} does not answer" if replies.complete else f"{who} has not answered within {seconds:g} s")
+
+
+def response_fields(endpoint: RosEndpoint, payload: bytes) -> dict[str, Any]:
+    """The fields of a response of a service that is known, arrays as lists. Raises Refused if it is none."""
+    parts = ros_messages.service_parts(endpoint.type)
+    assert parts is not None, "a response is read only where its definition is known"
     try:
         fields = ros_messages.message_fields(payload, parts.response)
     except MessageError as error:
-        raise Refused(f"what {who} answers {error}") from None
-    return payload if as_bytes else _listed(fields)
+        raise Refused(f"what the service {endpoint.topic} answers {error}") from None
+    return {name: _listed(value) for name, value in fields.items()}
 
 
 def _listed(value: Any) -> Any:

@@ -1,19 +1,30 @@
 """ROS 2 nodes as components: publishers are outputs, subscribers inputs, services and actions operations.
 
+The feedback of an action is an output of the node that serves it; a component that calls an action may leave it unused.
+
 A subscriber that nobody publishes to waits without harm, and in most systems some do, so an input may stay unfed unless
 the systems that have the node connect it. A client needs its operation in the same way.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from selfconf.importing.imported import ImportedComponent, ImportedOperation, ImportedPort
 from selfconf.importing.ledger import ImportLedger
-from selfconf.importing.ros2.interfaces import ACTIONS, PARAMETER_TYPES, ROS2, InterfaceKind, NodeInterface, node_class
+from selfconf.importing.ros2.interfaces import (
+    ACTIONS,
+    PARAMETER_TYPES,
+    ROS2,
+    InterfaceKind,
+    NodeInterface,
+    feedback_port,
+    node_class,
+)
 from selfconf.importing.sources import SourceDocument
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.ros_services import FEEDBACK_MESSAGE, GOAL, REQUEST, RESPONSE, RESULT
 
 Wired = Callable[[NodeInterface], bool]
 
@@ -50,7 +61,10 @@ class NodeReader:
             labels=(Literal(facts["nodeName"]),),
             properties=tuple(said),
             inputs=tuple(self._port(each, not wired(each)) for each in of[InterfaceKind.SUBSCRIBER]),
-            outputs=tuple(self._port(each) for each in of[InterfaceKind.PUBLISHER]),
+            outputs=(
+                *(self._port(each) for each in of[InterfaceKind.PUBLISHER]),
+                *self._feedback(of[InterfaceKind.ACTION_SERVER], {each.name for each in of[InterfaceKind.PUBLISHER]}),
+            ),
             parameters=tuple(self._parameters(parameters)),
             operations=tuple(
                 self._operation(each) for each in (*of[InterfaceKind.SERVICE_SERVER], *of[InterfaceKind.ACTION_SERVER])
@@ -67,13 +81,24 @@ class NodeReader:
         types = () if kind is None else (kind,)
         return ImportedPort(interface.name, types, None, optional, depth, interface.properties())
 
+    def _feedback(self, actions: list[NodeInterface], taken: set[str]) -> Iterator[ImportedPort]:
+        """The outputs that the feedback of actions is, but for names that topics have already."""
+        for each in actions:
+            name, kind = feedback_port(each.name), each.signal_type()
+            if name in taken:
+                self.ledger.leave_out("feedback of actions", "a topic of the node has its name", self.source)
+            else:
+                yield ImportedPort(name, () if kind is None else (IRI(kind + FEEDBACK_MESSAGE),))
+
     def _operation(self, interface: NodeInterface, optional: bool = False) -> ImportedOperation:
         kind = self._type(interface)
         if interface.kind in ACTIONS:
-            asked, answered = "_Goal", "_Result"
-            self.ledger.leave_out("feedback of actions", "an operation has a request and a response", self.source)
+            asked, answered = GOAL, RESULT
+            if not interface.kind.is_source:
+                reason = "a component that calls an action waits for its result"
+                self.ledger.leave_out("feedback of actions that are called", reason, self.source)
         else:
-            asked, answered = "_Request", "_Response"
+            asked, answered = REQUEST, RESPONSE
         request, response = (None, None) if kind is None else (IRI(kind + asked), IRI(kind + answered))
         return ImportedOperation(interface.name, request, response, optional, interface.properties())
 

@@ -97,6 +97,11 @@ def node_class(package: str, name: str) -> IRI | None:
     return absolute(f"{TYPE_BASE}{package}/node/{slug(name)}") if package and name else None
 
 
+def feedback_port(action: str) -> str:
+    """The name of the output that the feedback of an action is."""
+    return f"{action}/feedback"
+
+
 def type_iri(name: str, kind: InterfaceKind) -> IRI | None:
     """The IRI of a ROS type, written `package/msg/Name`, `package/Name` or `package.Name`."""
     found = _TYPE.fullmatch(name.strip())

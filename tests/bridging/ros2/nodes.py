@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import struct
+import subprocess
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -168,6 +170,13 @@ def bridging_domain(stage: LivingStage, folder: Path) -> Iterator[BridgedDomain]
 def node(name: str) -> IRI:
     """The component that a node of a name is."""
     return IRI(f"urn:selfconf:ros2:{DOMAIN}/{name}")
+
+
+def lines_of(judge: subprocess.Popen[str]) -> list[str]:
+    """What a judge says; the list grows."""
+    found: list[str] = []
+    threading.Thread(target=lambda: found.extend(judge.stdout or ()), daemon=True).start()
+    return found
 
 
 class Reader(Component):

@@ -12,6 +12,7 @@ from selfconf.importing import ImportedDocument, described_text
 from selfconf.rdf.advertisements import read_advertisements
 from selfconf.rdf.vocabulary import ROB
 from selfconf.ros_messages import MessageType
+from tests.bridging.ros2.action_parts import ACTION, parts_of
 from tests.bridging.ros2.nodes import ADD_HASH
 from tests.test_ros_messages import STRING_HASH
 
@@ -27,7 +28,7 @@ def endpoint(number: int, kind: str, topic: str, quality: RosQuality = USUAL) ->
 
 
 def test_topics_are_ports_and_what_every_node_has_is_left_out() -> None:
-    outputs, inputs, offered, needed = ports_of(
+    outputs, inputs, offered, needed, actions = ports_of(
         [
             endpoint(7, "SS", "/front/reset"),
             endpoint(8, "SC", "/add"),
@@ -41,7 +42,7 @@ def test_topics_are_ports_and_what_every_node_has_is_left_out() -> None:
     )
     assert {name: each.entity for name, each in outputs.items()} == {"front/scan": 4}
     assert {name: each.entity for name, each in inputs.items()} == {"front/scan": 5}
-    assert (list(offered), list(needed)) == (["front/reset"], ["add"])
+    assert (list(offered), list(needed), actions) == (["front/reset"], ["add"], {})
 
 
 def test_a_node_is_a_component_that_can_be_advertised() -> None:
@@ -79,6 +80,21 @@ def test_a_node_is_a_component_that_can_be_advertised() -> None:
     assert text.count(accepted) == 1
     assert text.count('[ sh:path ros2:reliability ; sh:in ( "reliable" ) ]') == 1
     assert text.count("[ sh:path ros2:translatedFrom ; sh:maxCount 0 ]") == 2
+
+
+def test_an_action_is_an_operation_and_an_output_and_its_parts_are_no_ports() -> None:
+    usual = endpoint(9, "MP", "/other/feedback")
+    ports = ports_of([*parts_of("/dock"), *parts_of("/other"), usual, endpoint(8, "SS", "/other")])
+    text = described_text(ImportedDocument("", "", (described_node(LIDAR, ports).described(),), {}))
+    ((advertisement,), bad) = read_advertisements(text.encode(), "lidar.ttl", "file:///lidar.ttl")
+    assert not bad
+    offered = {port.name: str(port.request) for port in advertisement.profile.operations}
+    assert offered["dock()"] == f"https://w3id.org/selfconf/ros2/{ACTION}_Goal"
+    assert offered["other()"].endswith("_Request")  # what is a service already is no action
+    outputs = {port.name: list(map(str, port.signals)) for port in advertisement.profile.signal_outputs}
+    assert outputs["dock/feedback"] == [f"https://w3id.org/selfconf/ros2/{ACTION}_FeedbackMessage"]
+    assert ports.outputs["other/feedback"] == usual
+    assert set(outputs) == {"dock/feedback", "other/feedback", "other/feedback as Text"}
 
 
 def test_what_was_translated_is_not_translated_back() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import pytest
 
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
-from tests.bridging.ros2.nodes import DOMAIN, bridging_domain, node, reader
+from tests.bridging.ros2.nodes import DOMAIN, bridging_domain, lines_of, node, reader
 from tests.sdk.living import LivingStage, until
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
@@ -47,13 +46,6 @@ def judges(living: LivingStage) -> Iterator[dict[str, subprocess.Popen[str]]]:
         process.wait()
         if process.stdout is not None:
             process.stdout.close()
-
-
-def lines_of(judge: subprocess.Popen[str]) -> list[str]:
-    """What a judge says; the list grows."""
-    found: list[str] = []
-    threading.Thread(target=lambda: found.extend(judge.stdout or ()), daemon=True).start()
-    return found
 
 
 def test_components_and_foreign_nodes_feed_each_other(

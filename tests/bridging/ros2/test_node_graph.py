@@ -10,6 +10,7 @@ from selfconf.api.living_import import import_living_nodes
 from selfconf.bridging.ros2 import living_graph
 from selfconf.bus.zenoh_bus import client
 from selfconf.importing import FileState, ImportLedger, described_text
+from tests.bridging.ros2.action_parts import parts_of
 from tests.bridging.ros2.nodes import ADD_KEY, DOMAIN, StandIn, bridging_domain
 from tests.sdk.living import LivingStage, until
 
@@ -34,16 +35,24 @@ def test_each_node_is_described_by_the_graph_alone(living: LivingStage) -> None:
     first.token("SS", "/add", key=ADD_KEY)
     first.token("MP", "/rosout")
     first.token("MP", "/dock/_action/status")
+    for part in parts_of("/turn"):
+        package, segment, name = part.type.name.split("/")
+        first.token(part.kind, part.topic, key=f"{package}::{segment}::dds_::{name}_/{part.type.hash}")
     first.bus.announce(f"@ros2_lv/{DOMAIN}/nonsense")
     try:
-        assert until(lambda: "zeta" in str(graph(living)))
+        assert until(lambda: "turn/feedback" in str(graph(living)))
         found, complaints = graph(living)
         assert (found, complaints) == graph(living)
         assert list(found) == ["lidar"]
         text = found["lidar"]
         assert text.index("alpha") < text.index("zeta") < text.index("AddTwoInts")
         assert f"<urn:test:{DOMAIN}/lidar> a sc:Component, ros2:Node" in text
-        for words in ("is no token", "further nodes of one name (1)", "hidden topics", "topics of logs"):
+        for words in (
+            "is no token",
+            "further nodes of one name (1)",
+            "hidden topics and services (1)",
+            "topics of logs",
+        ):
             assert any(words in one for one in complaints), complaints
     finally:
         for one in (first, second):

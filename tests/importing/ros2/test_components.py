@@ -48,6 +48,20 @@ def test_a_node_takes_and_gives_what_its_interfaces_say() -> None:
         ),
         needs=(ImportedOperation("x", IRI(BASE + "a/action/B_Goal"), IRI(BASE + "a/action/B_Result"), optional=True),),
     )
+    assert left_out == {"feedback of actions that are called"}
+
+
+def test_an_action_is_an_operation_and_its_feedback_an_output() -> None:
+    dock = NodeInterface(InterfaceKind.ACTION_SERVER, "dock", "a/action/B")
+    component, left_out = read((dock,))
+    assert component.operations == (
+        ImportedOperation("dock", IRI(BASE + "a/action/B_Goal"), IRI(BASE + "a/action/B_Result")),
+    )
+    assert component.outputs == (ImportedPort("dock/feedback", (IRI(BASE + "a/action/B_FeedbackMessage"),)),)
+    assert not left_out
+    taken = NodeInterface(InterfaceKind.PUBLISHER, "dock/feedback")
+    component, left_out = read((dock, taken))
+    assert component.outputs == (ImportedPort("dock/feedback"),)
     assert left_out == {"feedback of actions"}
 
 
