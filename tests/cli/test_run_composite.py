@@ -42,6 +42,13 @@ def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_b
     connect = (home.endpoint("harbour"),)
     home.site("ferry", str(EXAMPLE / "ferry"), connect=connect, options=("--listen", home.anywhere))
     where = ("--ecology", home.ecology, "--connect", home.endpoint("ferry"), "--format", "json")
+
+    def advertised() -> dict[str, dict[str, object]]:
+        body = run_command(capsys, "discover", "--format", "json", *where[:4]).body
+        return {one["component"]: one for one in body["components"]}
+
+    # With keys a hub is opened anew when it gets to know another, and hears nobody meanwhile.
+    assert home.until(lambda: {HARBOUR + "lookout", HARBOUR + "pilot"} <= advertised().keys())
     run = home.selfconf("run", str(EXAMPLE / "approach.ttl"), *where)
     roles = run.act("running")["configuration"]["roles"]
     assert [role["components"] for role in roles] == [[HARBOUR + "lookout"], [HARBOUR + "pilot"]]
@@ -60,11 +67,8 @@ def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_b
     assert "its inside is refused: no component is eligible for the role tracker" in lost["detail"]
     assert run.ended() == 1
 
-    def reason() -> str:
-        body = run_command(capsys, "discover", "--format", "json", *where[:4]).body
-        (lookout,) = [one for one in body["components"] if one["component"] == HARBOUR + "lookout"]
-        return str(lookout["reason"])
-
     (home.folder / "harbour" / "parts.ttl").unlink()
-    assert home.until(lambda: "no component is eligible for the role eye" in reason())
+    assert home.until(
+        lambda: "no component is eligible for the role eye" in str(advertised()[HARBOUR + "lookout"]["reason"])
+    )
     assert "cannot act now: its inside cannot be configured now" in run_command(capsys, "discover", *where[:4]).out
