@@ -32,7 +32,7 @@ from statistics import median
 from typing import NamedTuple
 
 import selfconf as sc
-from benchmarks.live.__main__ import line, program, until
+from benchmarks.live.__main__ import act_until_stdin_ends, line, program, until
 from benchmarks.machine import described, quantile, table
 from selfconf import rendezvous
 from selfconf.sdk import Component, Signal
@@ -107,20 +107,11 @@ def needs(number: int) -> list[int]:
 
 def act(folder: Path) -> None:
     """Be all sensors and drives, in one process that ends with its stdin."""
-    host, over = open_host(), threading.Event()
-
-    def end_with_stdin() -> None:
-        sys.stdin.read()
-        over.set()
-        host.code.wake_up()
-
-    threading.Thread(target=end_with_stdin, daemon=True).start()
+    host = open_host()
     for path in sorted(folder.glob("*.ttl")):
         output = "pose" if path.stem.startswith("sensor") else ""
         host.add(type("One", (Actor,), {"advertisement": str(path), "output": output})())
-    print("ready", flush=True)
-    host.run(over.is_set)
-    host.close()
+    act_until_stdin_ends(host)
 
 
 @contextmanager

@@ -19,9 +19,7 @@ import argparse
 import os
 import secrets
 import subprocess
-import sys
 import tempfile
-import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -30,7 +28,7 @@ from statistics import median
 from typing import NamedTuple
 
 import selfconf as sc
-from benchmarks.live.__main__ import line, program, until
+from benchmarks.live.__main__ import act_until_stdin_ends, line, program, until
 from benchmarks.machine import described, table
 from benchmarks.validate import run
 from selfconf import rendezvous
@@ -65,20 +63,11 @@ class Actor(Component):
 
 def act(path: Path, names: Sequence[str]) -> None:
     """Be some of the components of a file, in one process that ends with its stdin."""
-    host, over = open_host(), threading.Event()
-
-    def end_with_stdin() -> None:
-        sys.stdin.read()
-        over.set()
-        host.code.wake_up()
-
-    threading.Thread(target=end_with_stdin, daemon=True).start()
+    host = open_host()
     for component in sc.read(path).components:
         if component.short in names:
             host.add(type("One", (Actor,), {"advertisement": str(path), "component": component})())
-    print("ready", flush=True)
-    host.run(over.is_set)
-    host.close()
+    act_until_stdin_ends(host)
 
 
 def strangers(number: int) -> list[str]:
@@ -111,7 +100,7 @@ def ecology(folder: Path, crowd: Path | None) -> Iterator[str]:
 
 def ran(name: str, folder: Path) -> tuple[float, float]:
     """Seconds until a task runs, and until it runs again after the process of a component was killed."""
-    began, moments = time.monotonic(), list[float]()
+    moments = list[float]()
     with actors(folder / "honest.ttl", FIRST) as first:
         began = time.monotonic()
         with sc.join(name) as living, living.run(sc.template(folder / "task.ttl")) as running:

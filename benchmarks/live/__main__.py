@@ -38,6 +38,7 @@ from benchmarks.live import world
 from benchmarks.machine import described, table
 from selfconf import rendezvous
 from selfconf.protocol.keys import Keys
+from selfconf.sdk import Host
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "live.md"
 SIZES = ((100, 1), (1_000, 1), (1_000, 5), (1_000, 20), (10_000, 1), (10_000, 5), (10_000, 20))
@@ -84,6 +85,21 @@ def line(process: subprocess.Popen[str]) -> str:
     if not select.select([process.stdout], [], [], PATIENCE)[0]:
         raise SystemExit("the benchmark stalled")
     return process.stdout.readline().strip()
+
+
+def act_until_stdin_ends(host: Host) -> None:
+    """Say that the components of a host are ready, and run their code until nobody writes to stdin any more."""
+    over = threading.Event()
+
+    def end_with_stdin() -> None:
+        sys.stdin.read()
+        over.set()
+        host.code.wake_up()
+
+    threading.Thread(target=end_with_stdin, daemon=True).start()
+    print("ready", flush=True)
+    host.run(over.is_set)
+    host.close()
 
 
 def until(seconds: float, condition: Any) -> None:

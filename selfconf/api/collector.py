@@ -13,7 +13,7 @@ from contextlib import contextmanager
 MANY_VALUES = 10_000
 """From how many new values on it is worth asking what is frozen, which takes longer the more that is."""
 MANY_COMPONENTS = 1_000
-"""And from how many components on."""
+"""From how many components on it is worth asking what is frozen."""
 
 
 @contextmanager

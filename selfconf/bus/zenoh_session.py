@@ -50,7 +50,7 @@ class Security:
     access_control: Mapping[str, Any] | None = None
     """The member `access_control` of a configuration of Zenoh; None: whoever is let in may do everything."""
     at_uplinks: Mapping[str, Any] | None = None
-    """The same member for a session that connects a hub to others; None: as at the hub."""
+    """The member `access_control` for a session that connects a hub to others; None: as at the hub."""
 
 
 def begin_log(what: str = "off") -> None:
