@@ -86,15 +86,14 @@ def violations(
     focus: Sequence[Focus],
     source: str,
     called: str | None = None,
-    detailed: bool = True,
     sizes: Mapping[Focus, int] | None = None,
 ) -> dict[Focus, list[ShapeViolated | NotJudged]]:
     """The nodes of `focus` that do not conform to `shape`, each with its violations, one for each property shape.
 
     Conformance is that of SHACL, section 3.4: a result of any severity counts. So does a value that cannot be compared
     with another (4.3, 4.5.3). A node whose statements take too long to judge, or that pySHACL cannot judge, is
-    `NotJudged`; the others do not suffer from it. Without details the first violation will do. `sizes` bounds how many
-    values a node has of one property, which is counted where it is not given. Raises TemplateError, blaming `source`
+    `NotJudged`; the others do not suffer from it. `sizes` bounds how many values a node has of one property, which is
+    counted where it is not given. Raises TemplateError, blaming `source`
     and the shape as it is `called`, where the shape itself is not well-formed.
     """
     if not focus:
@@ -104,7 +103,7 @@ def violations(
         raise TemplateError(f"{called} is not evaluated: {reason}", file=source)
     try:
         with processor_limit(SHAPE_SECONDS), linear_patterns(), only_ordered(), _silent():
-            judge = _Judge(subjects, shapes, shape, detailed)
+            judge = _Judge(subjects, shapes, shape)
             found: dict[Focus, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
             for size, node in sorted(sized):
@@ -123,19 +122,20 @@ def violations(
 class _Judge:
     """pySHACL, asked about one node after another, so that each answers for its own statements alone."""
 
-    def __init__(self, subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI, detailed: bool) -> None:
+    def __init__(self, subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI) -> None:
         index_constraints()
         dataset = load_from_source(subjects, multigraph=True)
         dataset.default_union = True  # pySHACL looks at all of its graphs
         data = DataGraph.from_rdflib(dataset)
         loaded = load_from_source(aimed(shapes, (shape,), ()), multigraph=True)
-        options = {"max_validation_depth": _DEEPEST, "abort_on_first": not detailed}
-        validator = Validator(data, shacl_graph=loaded, options=options)
+        validator = Validator(data, shacl_graph=loaded, options={"max_validation_depth": _DEEPEST})
         assert validator.shacl_graph.shapes  # looks at all of them: what is ill-formed shows
         self._graph, self._data, self._executor = subjects, data, validator.make_executor()
-        self._shares = _Shares()
         self._shape = validator.shacl_graph.lookup_shape_from_node(rdflib.URIRef(shape))
-        list(self._violations(_NOTHING))  # what is at fault with nothing said is the shape
+        list(self._violations(_NOTHING))  # what is at fault with nothing said is the shape; and queries are read here
+        began = time.process_time()
+        list(self._violations(_NOTHING))
+        self._shares = _Shares(time.process_time() - began)
 
     def size(self, node: Node) -> int:
         """How many values a node has of the property of which it has most: what a query may have to combine."""
@@ -172,8 +172,9 @@ class _Shares:
     as one that took too long. So nodes are judged in the order of their size.
     """
 
-    def __init__(self) -> None:
-        self._left, self._judged, self._taken = EXTRA_SECONDS, 1, USUAL_SECONDS
+    def __init__(self, least: float) -> None:
+        """`least` is the processor time that judging takes where nothing is said, on this machine."""
+        self._left, self._judged, self._taken = EXTRA_SECONDS, 1, max(USUAL_SECONDS, 2 * least)
         self._fine, self._too_large = 0, math.inf
 
     @contextmanager

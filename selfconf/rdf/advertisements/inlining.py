@@ -30,6 +30,8 @@ _DEPTH = 30
 _CELL = [f"<{FIRST}>", f"<{REST}>"]
 _TAKEN: list[str] = []
 """In the place of what is said of a blank node, once that is part of a statement."""
+_TRIPLE = re.compile(rb"(?:<[^<>]*>|_:\S+) <[^<>]*> [^\n]* \.\r?\n")
+"""A line of N-Triples, which is Turtle that takes a quarter less time to parse."""
 _OBJECT = re.compile(r'<[^<>]*>|"(?:[^"\\]|\\.)*"(?:@[A-Za-z0-9-]+|\^\^<[^<>]*>)?|[^\s",<>]+')
 
 
@@ -45,7 +47,9 @@ def inlined(
             subjects = _while_reading(text, base, statements)
         except NotInlinableError:
             subjects = None
-        return _afterwards(text, base, statements) if subjects is None else subjects
+        if subjects is not None:
+            return subjects
+        return _afterwards(ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base), statements)
     except (SyntaxError, MemoryError) as error:
         raise turtle.not_turtle(error, source, text) from None
     except NotInlinableError:
@@ -120,16 +124,19 @@ def labelled(text: bytes, base: str | None, statements: StatementTable) -> dict[
 
     None where a blank node is that of two statements, where one is a component, or where the text is no Turtle.
     """
-    try:
-        return _afterwards(text, base, statements)
-    except (SyntaxError, MemoryError, NotInlinableError):
-        return None
+    for form in (ox.RdfFormat.N_TRIPLES, ox.RdfFormat.TURTLE) if _TRIPLE.match(text) else (ox.RdfFormat.TURTLE,):
+        try:
+            return _afterwards(ox.parse(text, format=form, base_iri=base), statements)
+        except NotInlinableError:
+            return None
+        except (SyntaxError, MemoryError):
+            pass  # it may be Turtle that begins like N-Triples; or else somebody else says where it is wrong
+    return None
 
 
 # complexity: the loop over all statements of documents with labels; calls in it would add a fifth
-def _afterwards(text: bytes, base: str | None, statements: StatementTable) -> dict[str, list[Statement]]:
+def _afterwards(triples: ox.QuadParser, statements: StatementTable) -> dict[str, list[Statement]]:
     """Inline once all is read, with lists, and each blank node of several objects in a statement of its own."""
-    triples = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base)
     lines: dict[str, list[str]] = {}
     get = lines.get
     while segment := ox.serialize(islice(triples, CHUNK_TRIPLES), format=ox.RdfFormat.TURTLE):

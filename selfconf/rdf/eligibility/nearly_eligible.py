@@ -56,8 +56,8 @@ def exclusions(
     }
     passed = [advertisement for advertisement, (_, obstacles) in outside.items() if not obstacles]
     if passed and not role.complete:
-        judged = partitioner.violations(role, passed, list(ecology.values()), {})
-        outside |= {a: (outside[a][0], tuple(judged[a.component])) for a in passed if a.component in judged}
+        judged = partitioner.violations(role, passed, ecology, {})
+        outside |= {a: (outside[a][0], judged[a.component]) for a in passed if a.component in judged}
     return sorted(
         (
             Exclusion(a.component, reasons or (NoCommonValue(),), of_its_class)
@@ -141,13 +141,12 @@ def _judged(
     obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
     focus = _focus(obstacles)
     tests = {a: _failed(partitioner, role, a) for a in focus}
-    everything = list(ecology.values())
-    subjects = partitioner.subjects(role, focus, everything)
+    subjects = partitioner.subjects(role, focus, ecology)
     reasons: dict[Advertisement, dict[Term, list[Obstacle]]] = {a: {} for a in focus}
     parameter = partitioner.mentioned(role)
     for value in _values(partitioner, role, parameter, focus):
         values = {} if parameter is None else {parameter: value}
-        judged = partitioner.violations(role, focus, everything, values, subjects)
+        judged = partitioner.violations(role, focus, ecology, values, subjects)
         for a in focus:
             reasons[a][value] = [*obstacles[a], *_besides(judged.get(a.component, ()), tests[a])]
     for a, by_value in reasons.items():

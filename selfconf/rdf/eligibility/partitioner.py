@@ -7,7 +7,7 @@ says more than the tests, pySHACL judges the components that pass them, all in o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
@@ -32,6 +32,7 @@ from selfconf.rdf.eligibility.advertisement_index import (
     TypeSet,
 )
 from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
+from selfconf.rdf.eligibility.judgements import Judgements, Values, Violations
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
@@ -91,7 +92,7 @@ class Partitioner:
         self._above = ClassClosure(hierarchy)
         self.not_judged: dict[IRI, NotJudged] = {}
         """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""
-        self._given_up: dict[Advertisement, dict[IRI, NotJudged]] = {}
+        self._judgements = Judgements()
         self._acceptance = Acceptance(hierarchy)
         self.suitable = free_values.Suitable(self._parameters, self.document)
 
@@ -104,7 +105,7 @@ class Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
-        other.not_judged, other._given_up, other._acceptance = {}, {}, Acceptance(hierarchy)
+        other.not_judged, other._judgements, other._acceptance = {}, Judgements(), Acceptance(hierarchy)
         return other
 
     def reading(self, document: Document, role: IRI) -> Partitioner:
@@ -112,7 +113,7 @@ class Partitioner:
         other = copy(self)
         other.document = document
         other.roles = (other._compiled(self.task.template.role(role)),)
-        other.not_judged, other._given_up = {}, {}
+        other.not_judged, other._judgements = {}, Judgements()
         return other
 
     def partition(self, advertisements: Advertisements) -> Partition:
@@ -148,9 +149,7 @@ class Partitioner:
         roles: dict[IRI, set[int]] = {}
         for number, tests in self.suppliers.items():
             passed = [advertisement for advertisement, _ in self._passed(tests, ecology)]
-            outside = (
-                {} if tests.complete else self.violations(tests, passed, list(ecology.values()), {}, detailed=False)
-            )
+            outside = {} if tests.complete else self.violations(tests, passed, ecology, {})
             for advertisement in passed:
                 if advertisement.component not in outside:
                     roles.setdefault(advertisement.component, set()).add(number)
@@ -174,8 +173,7 @@ class Partitioner:
     def eligible(self, ecology: AdvertisementIndex) -> list[list[EligibleComponent]]:
         """For each role the components that conform to it, unordered. Raises TemplateError."""
         self.not_judged = {}
-        self._given_up = {a: roles for a, roles in self._given_up.items() if ecology.get(a.component) == a}
-        everything = [] if all(role.complete for role in self.roles) else list(ecology.values())
+        self._judgements.look_at(ecology)
         found: list[list[EligibleComponent]] = []
         by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
         for number, role in enumerate(self.roles):
@@ -188,13 +186,13 @@ class Partitioner:
                 by_value[number] = parameter, survivors
                 found.append([])
             else:
-                outside = self.violations(role, survivors, everything, {}, detailed=False)
+                outside = self.violations(role, survivors, ecology, {})
                 found.append(
                     [EligibleComponent(a.profile, {}, _NOTHING) for a in survivors if a.component not in outside]
                 )
         if not self.free:
             return found
-        return self._suited(found, by_value, everything)
+        return self._suited(found, by_value, ecology)
 
     def _passed(self, role: CompiledRole, ecology: AdvertisementIndex) -> list[tuple[Advertisement, TestOutcome]]:
         """The advertisements that pass all tests of a role, with what the tests say."""
@@ -230,7 +228,7 @@ class Partitioner:
         self,
         found: list[list[EligibleComponent]],
         by_value: Mapping[int, tuple[IRI, list[Advertisement]]],
-        everything: list[Advertisement],
+        ecology: AdvertisementIndex,
     ) -> list[list[EligibleComponent]]:
         """The eligible components that leave values to the free parameters, with the values that suit these."""
         stated: dict[IRI, set[Term]] = {parameter: set() for parameter in self.free}
@@ -238,13 +236,13 @@ class Partitioner:
             for parameter, values in one.allows.items():
                 stated[parameter] |= values
         for number, (parameter, survivors) in by_value.items():
-            shown = self.visible(survivors if self.roles[number].local else everything)
+            shown = self.visible(survivors if self.roles[number].local else ecology.values())
             stated[parameter] |= free_values.seen(self.document, self.roles[number].iri, shown)
             stated[parameter] |= free_values.enumerated(self.document, parameter)
         suitable = {parameter: self.suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
         for number, (parameter, survivors) in by_value.items():
             found[number] = list(
-                self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, everything)
+                self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, ecology)
             )
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
 
@@ -266,14 +264,14 @@ class Partitioner:
         parameter: IRI,
         values: frozenset[Term],
         survivors: Sequence[Advertisement],
-        everything: Sequence[Advertisement],
+        ecology: AdvertisementIndex,
     ) -> Iterator[EligibleComponent]:
         """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
-        subjects = self.subjects(role, survivors, everything)
+        subjects = self.subjects(role, survivors, ecology)
         others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
         for value in (*sorted(values, key=sort_key), *others):
-            outside = self.violations(role, survivors, everything, {parameter: value}, subjects, detailed=False)
+            outside = self.violations(role, survivors, ecology, {parameter: value}, subjects)
             for component in allowed.keys() - outside.keys():
                 allowed[component].add(value)
         for advertisement in survivors:
@@ -287,34 +285,29 @@ class Partitioner:
         self,
         role: CompiledRole,
         focus: Sequence[Advertisement],
-        everything: Sequence[Advertisement],
-        values: Mapping[IRI, Term],
+        ecology: AdvertisementIndex,
+        values: Values,
         subjects: rdflib.Graph | None = None,
-        detailed: bool = True,
-    ) -> dict[IRI, list[ShapeViolated | NotJudged]]:
-        """What pySHACL finds wrong with some components, parameters replaced by their values.
-
-        Without details one violation of each will do. What took too long once is not tried again, as long as it is
-        advertised by the same words.
-        """
-        given_up = {a: self._given_up[a][role.iri] for a in focus if role.iri in self._given_up.get(a, ())}
-        found: dict[IRI, list[ShapeViolated | NotJudged]] = {a.component: [why] for a, why in given_up.items()}
-        found |= self._judged([a for a in focus if a not in given_up], role, everything, values, subjects, detailed)
-        for advertisement in focus:
-            for reason in found.get(advertisement.component, ()):
-                if isinstance(reason, NotJudged):
-                    self.not_judged[advertisement.component] = reason
-                    self._given_up.setdefault(advertisement, {})[role.iri] = reason
+    ) -> dict[IRI, Violations]:
+        """What pySHACL finds wrong with some components of an ecology, parameters replaced by their values."""
+        said = {a: self._judgements.known(role, a, values, ecology) for a in focus}
+        asked = [advertisement for advertisement, violations in said.items() if violations is None]
+        wrong = self._judged(asked, role, ecology, values, subjects)
+        for advertisement in asked:
+            said[advertisement] = violations = tuple(wrong.get(advertisement.component, ()))
+            self._judgements.keep(role, advertisement, values, ecology, violations)
+        found = {advertisement.component: violations for advertisement, violations in said.items() if violations}
+        for component, violations in found.items():
+            self.not_judged.update((component, one) for one in violations if isinstance(one, NotJudged))
         return found
 
     def _judged(
         self,
         focus: Sequence[Advertisement],
         role: CompiledRole,
-        everything: Sequence[Advertisement],
-        values: Mapping[IRI, Term],
+        ecology: AdvertisementIndex,
+        values: Values,
         subjects: rdflib.Graph | None,
-        detailed: bool,
     ) -> dict[IRI, list[ShapeViolated | NotJudged]]:
         if not focus:
             return {}
@@ -323,18 +316,16 @@ class Partitioner:
         from selfconf.rdf.rdflib_terms import to_rdflib
 
         shapes = to_rdflib(bound_shape(self.document, {**self.task.bindings, **values}))
-        seen = self.subjects(role, focus, everything) if subjects is None else subjects
+        seen = self.subjects(role, focus, ecology) if subjects is None else subjects
         sizes = {advertisement.component: advertisement.breadth for advertisement in focus}
-        return violations(seen, shapes, role.iri, list(sizes), self.document.source, detailed=detailed, sizes=sizes)
+        return violations(seen, shapes, role.iri, list(sizes), self.document.source, sizes=sizes)
 
-    def subjects(
-        self, role: CompiledRole, focus: Sequence[Advertisement], everything: Sequence[Advertisement]
-    ) -> rdflib.Graph:
+    def subjects(self, role: CompiledRole, focus: Sequence[Advertisement], ecology: AdvertisementIndex) -> rdflib.Graph:
         """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
         from selfconf.rdf.eligibility.lazy_graph import LazyStore
         from selfconf.rdf.rdflib_terms import rdflib_triple
 
-        shown = focus if role.local else everything
+        shown = focus if role.local else ecology.values()
         components = frozenset(advertisement.component for advertisement in shown)
         named = free_values.looked_at(self.document, role.iri)
 
@@ -351,7 +342,7 @@ class Partitioner:
                     store.graph.add(rdflib_triple(triple))
         return store.graph
 
-    def visible(self, advertisements: Sequence[Advertisement]) -> Iterator[Triple]:
+    def visible(self, advertisements: Collection[Advertisement]) -> Iterator[Triple]:
         """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.
 
         Each speaks for its own component: what it says about another is not seen.

@@ -69,6 +69,20 @@ def test_blank_nodes_with_labels_are_inlined_wherever_they_are_described() -> No
     assert statements("_:n :q 1 . :a :p _:n .", labels=True) == {"<urn:x:a>": ["<urn:x:p> [ <urn:x:q> 1 ]"]}
 
 
+TRIPLES = '<urn:x:a> <urn:x:p> _:b .\n_:b <urn:x:q> "1"^^<http://www.w3.org/2001/XMLSchema#integer> .\n'
+
+
+@pytest.mark.parametrize(
+    "more", ["", "<urn:x:c> <urn:x:p> 2 ; <urn:x:q> 3 .\n", "@prefix : <urn:x:> . :c :p 2 ; :q 3 ."]
+)
+def test_n_triples_are_turtle_and_turtle_may_begin_like_n_triples(more: str) -> None:
+    found = labelled((TRIPLES + more).encode(), None, StatementTable())
+    assert found is not None
+    texts = {subject: [statement.text for statement in said] for subject, said in found.items()}
+    rest = {"<urn:x:c>": ["<urn:x:p> 2", "<urn:x:q> 3"]} if more else {}
+    assert texts == {"<urn:x:a>": ["<urn:x:p> [ <urn:x:q> 1 ]"]} | rest
+
+
 def test_a_label_that_two_statements_lead_to_is_not_inlined() -> None:
     assert statements(":a :p _:n . :b :p _:n . _:n :q 1 .", labels=True) is None
 

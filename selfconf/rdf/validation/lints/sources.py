@@ -95,7 +95,7 @@ def _met(file: LintedFile, shape: Node, outputs: Sequence[Node]) -> bool:
     shapes.add((URIRef(_ASKED), SH.node, shape))
     nodes = [term for term in map(from_rdflib, outputs) if not isinstance(term, TypedLiteral)]
     try:
-        wrong = violations(file.graph, shapes, _ASKED, nodes, "sc:accepts", detailed=False)
+        wrong = violations(file.graph, shapes, _ASKED, nodes, "sc:accepts")
     except AuthorError:
         return True
     return len(wrong) < len(nodes) or any(isinstance(one, NotJudged) for some in wrong.values() for one in some)
