@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from selfconf.discovery import FoundAdvertisement
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.change import Body, EcologyChange
 from selfconf.serve.event_stream import EventStream
@@ -34,6 +35,7 @@ class Board:
         self._components: dict[str, Body] = {}
         self._sites: dict[str, Body] = {}
         self._tasks: dict[str, Body] = {}
+        self._records: dict[str, TaskRecord] = {}
         self._events: deque[Body] = deque(maxlen=REMEMBERED)
 
     def apply(self, change: EcologyChange) -> None:
@@ -49,6 +51,8 @@ class Board:
             (self._tasks, change.tasks),
         ):
             _merge(known, new)
+        self._records |= change.records
+        self._records = {task: record for task, record in self._records.items() if task in self._tasks}
         self._events.extend(change.events)
         self.ready = True
         told = {"components": change.components, "sites": change.sites, "tasks": change.tasks, "events": change.events}
@@ -68,6 +72,15 @@ class Board:
     def knows(self, task: str) -> bool:
         """Whether there is a task of this identity, or was one lately."""
         return task in self._tasks
+
+    def record(self, task: str) -> TaskRecord | None:
+        """The template of a task, and how it is searched for; None where its configurator has not told it."""
+        return self._records.get(task)
+
+    def running(self) -> Sequence[str]:
+        """The tasks that are not over, by priority and age."""
+        living = {task: body for task, body in self._tasks.items() if not body.get("over")}
+        return sorted(living, key=lambda task: (-living[task]["priority"], living[task]["beginning"]))
 
     def lost(self, task: str) -> frozenset[IRI]:
         """The components that a task has lost and that have not come back."""

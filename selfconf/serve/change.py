@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from selfconf.discovery import FoundAdvertisement
 from selfconf.model.term import IRI
+from selfconf.protocol.messages import TaskRecord
 
 Body = dict[str, Any]
 """A JSON object."""
@@ -24,8 +25,10 @@ class EcologyChange:
     events: tuple[Body, ...] = ()
     graphs: Mapping[str, bytes] = field(default_factory=dict)
     """N-Triples by the name of the graph; empty for one that is gone."""
+    records: Mapping[str, TaskRecord] = field(default_factory=dict)
+    """The templates of tasks, with how each is searched for, by the identity of the task."""
 
     @property
     def empty(self) -> bool:
         """Whether nothing is new."""
-        return not (self.advertised or self.components or self.sites or self.tasks or self.events or self.graphs)
+        return not any(getattr(self, one.name) for one in fields(self))

@@ -14,7 +14,6 @@ from typing import Any
 from starlette.requests import Request
 from starlette.responses import Response
 
-from selfconf.bus.port import Bus
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import task_name
@@ -24,7 +23,6 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.serve.apart import judged_apart
 from selfconf.serve.board import Board
 from selfconf.serve.problems import problem
-from selfconf.serve.running_tasks import running_tasks
 
 JUDGING = 15.0
 """Seconds that one task may take to be judged."""
@@ -37,8 +35,8 @@ VERDICTS_KEPT = 500
 class Fits:
     """Judges components by the roles of the tasks that run, one task at a time; used on the thread that serves."""
 
-    def __init__(self, bus: Bus, board: Board) -> None:
-        self._bus, self._board = bus, board
+    def __init__(self, board: Board) -> None:
+        self._board = board
         self._one = asyncio.Semaphore(1)
         self._verdicts: OrderedDict[tuple[bytes, IRI], tuple[Advertisement, Any]] = OrderedDict()
 
@@ -48,10 +46,12 @@ class Fits:
         if found is None:
             return problem(404, "no component of this IRI is advertised; /fit?component=IRI takes one of /things")
         tasks = {}
-        for record in (await running_tasks(self._bus, self._board.keys))[:MOST_JUDGED]:
-            verdict = await self._verdict(record, found.advertisement)
-            body = {"roles": verdict} if isinstance(verdict, list) else verdict
-            tasks[record.task] = {"name": task_name(record.task), **body}
+        for task in self._board.running()[:MOST_JUDGED]:
+            record = self._board.record(task)
+            if record is not None:
+                verdict = await self._verdict(record, found.advertisement)
+                body = {"roles": verdict} if isinstance(verdict, list) else verdict
+                tasks[task] = {"name": task_name(task), **body}
         return Response(json.dumps({"tasks": tasks}, ensure_ascii=False), media_type="application/json")
 
     async def _verdict(self, record: TaskRecord, advertisement: Advertisement) -> Any:

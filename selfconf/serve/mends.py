@@ -1,7 +1,8 @@
 """`/mend`: what would mend a task that has no configuration now, found out on behalf of those who look at its refusal.
 
-The configurator of a task that waits has to listen, and tells why there is no configuration and no more. What nearly
-fits and which change would help takes a search, which is made in a process of its own that has not long.
+The configurator of a task that waits has to listen, and tells why there is no configuration and no more; one that has
+been refused has ended. What nearly fits and which change would help takes a search, which is made in a process of its
+own that has not long.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ import json
 from starlette.requests import Request
 from starlette.responses import Response
 
-from selfconf.bus.port import Bus
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
@@ -21,7 +21,6 @@ from selfconf.serve.board import Board
 from selfconf.serve.change import Body
 from selfconf.serve.checked import checked_refusal
 from selfconf.serve.problems import problem
-from selfconf.serve.running_tasks import running_tasks
 
 MENDING = 20.0
 """Seconds that the search may take."""
@@ -30,8 +29,8 @@ MENDING = 20.0
 class Mends:
     """Finds out what would mend tasks, one at a time; used on the thread that serves."""
 
-    def __init__(self, bus: Bus, board: Board) -> None:
-        self._bus, self._board = bus, board
+    def __init__(self, board: Board) -> None:
+        self._board = board
         self._one = asyncio.Semaphore(1)
 
     async def respond(self, request: Request) -> Response:
@@ -39,18 +38,19 @@ class Mends:
         task = request.query_params.get("task", "")
         if not self._board.knows(task):
             return problem(404, "there is no task of this identity; /mend?task=IDENTITY takes one of /state")
-        record = next((one for one in await running_tasks(self._bus, self._board.keys) if one.task == task), None)
-        body = {"detail": "its configurator does not tell its task"} if record is None else await self._found(record)
+        record = self._board.record(task)
+        told = {"detail": "its configurator has not told its task"}
+        body = told if record is None else await self._found(task, record)
         return Response(json.dumps(body, ensure_ascii=False), media_type="application/json")
 
-    async def _found(self, record: TaskRecord) -> Body | None:
+    async def _found(self, task: str, record: TaskRecord) -> Body | None:
         """The refusal of a task, as the page shows it, or the detail of why there is none."""
         question = {
             "record": encode(record).decode(),
             "advertisements": [
                 turtle.ntriples(found.advertisement.triples).decode() for found in self._board.advertised.values()
             ],
-            "lost": sorted(self._board.lost(record.task)),
+            "lost": sorted(self._board.lost(task)),
         }
         try:
             async with self._one:

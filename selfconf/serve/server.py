@@ -141,7 +141,7 @@ async def _serve(
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
     onlookers = Onlookers(bus, board, may_hear)
-    fits, mends, hosts = Fits(bus, board), Mends(bus, board), LOOPBACK if local else ()
+    fits, mends, hosts = Fits(board), Mends(board), LOOPBACK if local else ()
     app = application(board, metrics, sparql, onlookers, fits, mends, lambda: bool(bus.link), hosts, options.origins)
 
     def take(change: EcologyChange) -> None:

@@ -26,6 +26,8 @@ PATIENCE_WITH_PEERS = 2.0
 """Seconds that a configurator may take to answer."""
 ENDED_TASKS = 12
 """How many tasks that are over are still shown."""
+MOST_TOLD = 100
+"""Of how many tasks it is kept what their configurators have told: with a template, each may be large."""
 MOST_TASKS = 1000
 """How many tasks are followed; what a stranger says of more is passed over."""
 
@@ -40,6 +42,9 @@ class TaskWatcher:
         """By the name of the configurator."""
         self._over: deque[str] = deque()
         self._kept: dict[str, TaskRecord] = {}
+        self._records: dict[str, TaskRecord] = {}
+        """What each configurator has told of its task, by the name of the configurator."""
+        self._new_records: set[str] = set()
         self._graphs: list[dict[str, bytes]] = [{}]
         """What is to be handed on, in its order: one that replaces another before that was handed on comes after it."""
         self._deployed_text: dict[str, bytes] = {}
@@ -69,6 +74,11 @@ class TaskWatcher:
         graphs, self._graphs = self._graphs, [{}]
         return graphs
 
+    def take_records(self) -> dict[str, TaskRecord]:
+        """The tasks of which more is known since the last call, by identity."""
+        new, self._new_records = self._new_records, set()
+        return {self._tasks[name].identity: self._records[name] for name in new if name in self._tasks}
+
     def _put_graph(self, configurator: str, triples: bytes) -> None:
         graph = f"urn:selfconf:{self.keys.configuration(configurator)}"
         if graph in self._graphs[-1]:  # the history is to have also what was replaced within moments
@@ -87,11 +97,14 @@ class TaskWatcher:
         if alive:
             self._task(name).alive = True
             self._ask_all(name)
+            self._ask_task(name)
         elif name in self._tasks:
             self._tasks[name].alive = False
             self._over.append(name)
             while len(self._over) > ENDED_TASKS:
-                self._tasks.pop(self._over.popleft(), None)
+                gone = self._over.popleft()
+                self._tasks.pop(gone, None)
+                self._records.pop(gone, None)
             self._deployed_text.pop(name, None)
             self._put_graph(name, b"")
             self._changed()
@@ -136,12 +149,31 @@ class TaskWatcher:
         """Ask everyone, so that nothing that was lost stays lost."""
         self.bus.later(LOOK_ANEW, self._audit)
         self._ask_all("*")
+        for name in [name for name, task in self._tasks.items() if task.alive and name not in self._records]:
+            self._ask_task(name)
         self._ask(self.keys.kept_tasks(), self._take_kept)
 
     def _ask_all(self, configurator: str) -> None:
         self._ask(self.keys.notices(configurator), self._hear_all)
         self._ask(self.keys.configurator_call(configurator, "status"), self._take_statuses)
         self._ask(self.keys.configuration(configurator), self._deployed)
+
+    def _ask_task(self, configurator: str) -> None:
+        """Ask a configurator for its task at once: one that is refused does not live long."""
+
+        def take(replies: Replies) -> None:
+            for sample in replies.samples:
+                try:
+                    record = decode(sample.payload, TaskRecord)
+                except PeerError:
+                    continue
+                if sample.key == key and configurator in self._tasks and len(self._records) < MOST_TOLD:
+                    self._records[configurator] = record
+                    self._new_records.add(configurator)
+            self._changed()
+
+        key = self.keys.configurator_call(configurator, "task")
+        self._ask(key, take)
 
     def _ask_soon(self, configurator: str) -> None:
         """Ask a configurator how things are, once for a rush of events."""

@@ -154,7 +154,8 @@ class EcologyWatcher:
         *earlier, graphs = self._tasks.take_graphs()
         for before in earlier:
             self._hand_on(EcologyChange(graphs=before))
-        self._hand_on(EcologyChange(components=components, tasks=tasks, events=events, graphs=graphs))
+        records = self._tasks.take_records()
+        self._hand_on(EcologyChange(components=components, tasks=tasks, events=events, graphs=graphs, records=records))
 
     def _hand_on(self, change: EcologyChange) -> None:
         if not change.empty:

@@ -20,6 +20,7 @@ from selfconf.serve.mends import Mends
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
+from selfconf.serve.watcher import EcologyWatcher
 from tests.lab import Lab
 
 Result = TypeVar("Result")
@@ -59,12 +60,18 @@ def served(
         metrics,
         sparql,
         Onlookers(bus, board),
-        Fits(bus, board),
-        Mends(bus, board),
+        Fits(board),
+        Mends(board),
         lambda: linked,
         hosts,
         origins,
     )
+
+
+def watched(lab: Lab, board: Board) -> None:
+    """Have a board follow a simulated ecology, and wait until it knows what there is."""
+    EcologyWatcher(lab.network.node(), "lab", board.apply, lambda: lab.network.time).begin()
+    lab.let_pass(1.0)
 
 
 def ask(

@@ -15,14 +15,15 @@ from selfconf.configurator.state import Policy
 from selfconf.serve import fits
 from selfconf.serve.board import Board
 from tests.lab import NAVIGATE, Lab, iri
-from tests.serve.asgi import asked, meanwhile, served
+from tests.serve.asgi import asked, meanwhile, served, watched
 
 pytestmark = pytest.mark.process
 
 
 def answers(lab: Lab, board: Board, *names: str) -> list[Any]:
     """What is said of some components, one after the other, while the ecology goes on."""
-    app = served(board, bus=lab.network.node())
+    watched(lab, board)
+    app = served(board)
     paths = [f"/fit?component={quote(iri(name), safe='')}" for name in names]
     return [meanwhile(lab, asked(app, path)).json["tasks"] for path in paths]
 

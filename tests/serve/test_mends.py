@@ -1,4 +1,4 @@
-"""What would mend a task that waits: asked of its configurator, found out apart, and bounded in time."""
+"""What would mend a task that waits or was refused, as its configurator told it: found out apart, bounded in time."""
 
 from __future__ import annotations
 
@@ -12,41 +12,60 @@ import selfconf as sc
 from selfconf.api.answer import Method
 from selfconf.api.detached import task_record
 from selfconf.configurator.state import Policy
-from selfconf.protocol.keys import Keys
+from selfconf.deployment.runner import TaskRunner
 from selfconf.serve import mends
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
-from selfconf.serve.running_tasks import running_tasks
 from tests.lab import NAVIGATE, Lab, iri
-from tests.serve.asgi import ask, asked, meanwhile, served
+from tests.serve.asgi import ask, asked, meanwhile, served, watched
 
 pytestmark = pytest.mark.process
 
 
 @pytest.fixture
 def lab(tmp_path: Path) -> Lab:
-    """An ecology with a task that tells what it is."""
+    """An ecology with what the task of the tests needs."""
     lab = Lab(tmp_path)
     lab.navigation()
-    task = sc.template(NAVIGATE).bind(robot=":Astrid", goal="(AT BEDROOM)").complete()
-    assert lab.running(lab.agent(record=task_record(task, Method.of(), Policy.REPAIR)))
     return lab
 
 
+def agent(lab: Lab, robot: str) -> TaskRunner:
+    """A configurator of a robot's task, which tells its task to whoever asks."""
+    wanted = {"robot": robot, "goal": "(AT BEDROOM)"}
+    record = task_record(sc.template(NAVIGATE).bind(**wanted).complete(), Method.of(), Policy.REPAIR)
+    return lab.agent(bound=tuple(wanted.items()), record=record)
+
+
+def mended(lab: Lab, board: Board, task: str) -> Any:
+    """What is answered about a task while the ecology goes on."""
+    return meanwhile(lab, asked(served(board), f"/mend?task={quote(task)}")).json
+
+
 def test_what_would_mend_a_task_is_told_or_why_not(lab: Lab, board: Board, monkeypatch: pytest.MonkeyPatch) -> None:
-    bus = lab.network.node()
-    (record,) = meanwhile(lab, running_tasks(bus, Keys("lab")))
-    board.apply(EcologyChange(tasks={record.task: {"lost": {iri("astrid-drive"): {}}}, "old": {}}))
-
-    def answer(task: str) -> Any:
-        return meanwhile(lab, asked(served(board, bus=bus), f"/mend?task={quote(task)}")).json
-
-    told = answer(record.task)
+    assert lab.running(agent(lab, ":Astrid"))
+    watched(lab, board)
+    (task,) = board.running()
+    board.apply(EcologyChange(tasks={task: {"lost": {iri("astrid-drive"): {}}}, "old": {}}))
+    told = mended(lab, board, task)
     assert [one["role"] for one in told["reasons"]] == [iri("drive")]
     assert any("let pippi-drive play drive" in one["message"] for one in told["repairs"])
-    assert answer("old") == {"detail": "its configurator does not tell its task"}
+    assert mended(lab, board, "old") == {"detail": "its configurator has not told its task"}
     monkeypatch.setattr(mends, "MENDING", 0.01)
-    assert answer(record.task) == {"detail": "what would mend it was not found in 0.01 s"}
+    assert mended(lab, board, task) == {"detail": "what would mend it was not found in 0.01 s"}
+
+
+def test_what_would_have_mended_a_task_that_was_refused_at_once_is_told(lab: Lab, board: Board) -> None:
+    watched(lab, board)
+    agent(lab, ":Emil")
+    lab.let_pass(2.0)
+    assert lab.ended
+    assert board.running() == []
+    ((task, body),) = board.state()["tasks"].items()
+    assert (body["phase"], body["over"]) == ("refused", True)
+    told = mended(lab, board, task)
+    assert iri("drive") in {one["role"] for one in told["reasons"]}
+    assert iri("astrid-drive") in {one["component"] for one in told["near_misses"]}
 
 
 def test_a_task_that_nobody_knows_is_none(board: Board) -> None:

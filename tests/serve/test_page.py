@@ -260,8 +260,11 @@ def refused_task() -> Body:
     }
 
 
-def test_a_refusal_is_one_screen_with_what_would_mend_it(board: Board, shown: Callable[[Board], Shown]) -> None:
-    board.apply(EcologyChange(tasks={"navigate~1": refused_task()}))
+@pytest.mark.parametrize("ended", [{}, {"phase": "refused", "over": True}], ids=["waits", "has ended"])
+def test_a_refusal_is_one_screen_with_what_would_mend_it(
+    board: Board, shown: Callable[[Board], Shown], ended: Body
+) -> None:
+    board.apply(EcologyChange(tasks={"navigate~1": refused_task() | ended}))
     page, change = shown(board)
     held = {"act": "lost", "cause": "refused", "component": iri("drive"), "detail": "another task holds it"}
     again = [{**one, "task": "navigate~1", "time": 1.0} for one in (held, {"act": "waiting"})]

@@ -1,4 +1,4 @@
-// What would mend a task that waits, as the server finds out while its refusal is looked at.
+// What would mend a task that waits or was refused, as the server finds out while its refusal is looked at.
 
 export class Mends {
   #asked = "";
@@ -9,7 +9,7 @@ export class Mends {
   /** The refusal of a task with all that is known of it; asks the server once for each refusal. */
   refusal(id, task, live) {
     const body = task?.refusal;
-    if (!body || task.over || !live) return body;
+    if (!body || !live) return body;
     const about = JSON.stringify([id, body, Object.keys(task.lost)]);
     if (about !== this.#asked) {
       this.#asked = about;
