@@ -26,7 +26,7 @@ PATIENCE_WITH_PEERS = 2.0
 """Seconds that a configurator may take to answer."""
 ENDED_TASKS = 12
 """How many tasks that are over are still shown."""
-MOST_TOLD = 100
+TOLD_TASKS = 100
 """Of how many tasks it is kept what their configurators have told: with a template, each may be large."""
 MOST_TASKS = 1000
 """How many tasks are followed; what a stranger says of more is passed over."""
@@ -167,7 +167,7 @@ class TaskWatcher:
                     record = decode(sample.payload, TaskRecord)
                 except PeerError:
                     continue
-                if sample.key == key and configurator in self._tasks and len(self._records) < MOST_TOLD:
+                if sample.key == key and configurator in self._tasks and len(self._records) < TOLD_TASKS:
                     self._records[configurator] = record
                     self._new_records.add(configurator)
             self._changed()
