@@ -1,6 +1,7 @@
 """Further families, on which the search was not tuned at first: constraint problems as their users would wire them.
 
-`CHOOSING` are for choosing how to search, `REPORTING` for reporting how that does. Two roles that must not be played
+`CHOOSING` are for choosing how to search, `REPORTING` for reporting how that does, and `UNSEEN` were made after the
+search had been changed, to see whether it is any different on these. Two roles that must not be played
 by certain pairs are wired through a named input: a candidate of the one issues a signal for each candidate of the other
 that it goes with, which is all that a template can say of pairs.
 """
@@ -109,7 +110,7 @@ def tiles(side: int, candidates: int, signals: int, seed: int) -> Problem:
 def pigeonholes(pigeons: int, holes: int, seed: int = 0, share: float = 1.0) -> Problem:
     """A role for each pigeon, a candidate for each hole that it takes to; no two of a hole go together."""
     rng = random.Random(seed)
-    domains = [[h for h in range(holes) if rng.random() < share] or [0] for _ in range(pigeons)]
+    domains = [[h for h in rng.sample(range(holes), holes) if rng.random() < share] or [0] for _ in range(pigeons)]
     return in_pairs(domains, dict.fromkeys(combinations(range(pigeons), 2), _differ))
 
 
@@ -262,9 +263,10 @@ def crew(roles: int, people: int, signals: int, share: float, seed: int) -> Prob
     return made(parts, edges)
 
 
-def langford(pairs: int) -> Problem:
+def langford(pairs: int, seed: int) -> Problem:
     """Langford's problem: the two of number k stand k apart; a role for each number, a candidate for each place."""
-    domains = [list(range(2 * pairs - k - 1)) for k in range(1, pairs + 1)]
+    rng = random.Random(seed)
+    domains = [rng.sample(range(places), places) for places in (2 * pairs - k - 1 for k in range(1, pairs + 1))]
 
     def apart(first: int, second: int) -> Goes:
         def goes(a: int, b: int) -> bool:
@@ -282,34 +284,69 @@ CHOOSING: dict[str, Family] = {
     "grid": (
         ("8 x 8, 20 candidates, 12 signals", lambda seed: grid(8, 20, 12, seed)),
         ("8 x 8, 50 candidates, 12 signals", lambda seed: grid(8, 50, 12, seed, 3)),
+        ("8 x 8, 100 candidates, 12 signals", lambda seed: grid(8, 100, 12, seed, 3)),
     ),
     "pigeonholes": (
         ("10 in 9", lambda seed: pigeonholes(10, 9, seed)),
+        ("11 in 10", lambda seed: pigeonholes(11, 10, seed)),
         ("20 in 20", lambda seed: pigeonholes(20, 20, seed)),
         ("16 in 16, each takes to half", lambda seed: pigeonholes(16, 16, seed, 0.4)),
     ),
     "ring": (
+        ("20 roles of 2", lambda seed: ring(20, 2, 12, 6, seed)),
         ("40 roles of 2", lambda seed: ring(40, 2, 12, 6, seed)),
         ("100 roles of 3", lambda seed: ring(100, 3, 12, 8, seed)),
     ),
     "Latin square": (
+        ("8, 42 % open", lambda seed: latin(8, 0.42, seed)),
         ("12, 42 % open", lambda seed: latin(12, 0.42, seed)),
         ("15, 42 % open", lambda seed: latin(15, 0.42, seed)),
     ),
     "colouring": (("60 nodes, 4 colours", lambda seed: colouring(60, 4, 8.4, seed)),),
     "tour": (("16 places", lambda seed: tour(16, 4.0, seed)), ("24 places", lambda seed: tour(24, 4.0, seed))),
 }
+"""What ideas and thresholds are chosen on."""
 
 REPORTING: dict[str, Family] = {
-    "tiles": (("10 x 10, 12 candidates, 3 signals", lambda seed: tiles(10, 12, 3, seed)),),
+    "tiles": (
+        ("10 x 10, 12 candidates, 3 signals", lambda seed: tiles(10, 12, 3, seed)),
+        ("18 x 18, 14 candidates, 4 signals", lambda seed: tiles(18, 14, 4, seed)),
+    ),
     "queens": (("16", lambda seed: queens(16, seed, 4)), ("24", lambda seed: queens(24, seed, 6))),
-    "dumbbell": (("30 roles twice", lambda seed: dumbbell(30, 10, 4, 6, seed)),),
-    "pairs": (("25 roles of 8", lambda seed: binary(25, 8, 100, 0.35, seed)),),
-    "cover": (("9 of 40 stations", lambda seed: cover(60, 40, 9, 0.2, seed)),),
-    "parity": (("24 checks", lambda seed: parity(24, 4, seed)),),
-    "crew": (("25 roles, 27 people", lambda seed: crew(25, 27, 9, 0.4, seed)),),
-    "Langford": (("8", lambda _: langford(8)), ("10", lambda _: langford(10))),
+    "dumbbell": (
+        ("30 roles twice", lambda seed: dumbbell(30, 10, 4, 6, seed)),
+        ("40 roles twice", lambda seed: dumbbell(40, 14, 3, 10, seed)),
+    ),
+    "pairs": (
+        ("25 roles of 8", lambda seed: binary(25, 8, 100, 0.35, seed)),
+        ("40 roles of 8", lambda seed: binary(40, 8, 200, 0.32, seed)),
+    ),
+    "cover": (
+        ("9 of 40 stations", lambda seed: cover(60, 40, 9, 0.2, seed)),
+        ("12 of 60 stations", lambda seed: cover(100, 60, 12, 0.2, seed)),
+    ),
+    "parity": (
+        ("24 checks", lambda seed: parity(24, 4, seed)),
+        ("80 checks", lambda seed: parity(80, 4, seed)),
+    ),
+    "crew": (
+        ("25 roles, 27 people", lambda seed: crew(25, 27, 9, 0.4, seed)),
+        ("40 roles, 43 people", lambda seed: crew(40, 43, 12, 0.4, seed)),
+    ),
+    "Langford": (("8", lambda seed: langford(8, seed)), ("11", lambda seed: langford(11, seed))),
 }
+"""What is only measured."""
+
+UNSEEN: dict[str, Family] = {}
+"""What is measured once the search is finished."""
+
+SMALL: dict[str, Family] = {
+    "grid": (("3 x 3", lambda seed: grid(3, 4, 4, seed)),),
+    "pigeonholes": (("4 in 3", lambda seed: pigeonholes(4, 3, seed)),),
+    "Latin square": (("4, half open", lambda seed: latin(4, 0.5, seed)),),
+    "ring": (("5 roles of 2", lambda seed: ring(5, 2, 5, 3, seed)),),
+}
+"""One small size of some, to see that everything runs."""
 
 
 def instances(families: Mapping[str, Family], seeds: Iterable[int]) -> Iterator[Instance]:

@@ -80,7 +80,7 @@ def table(rows: Sequence[Row]) -> str:
 def _cell(found: Measured | None) -> str:
     if found is None:
         return ""
-    return f"> {found.seconds:g} s" if found.answer is None else f"{found.seconds * 1000:.1f} ms"
+    return f"> {found.seconds:.3g} s" if found.answer is None else f"{found.seconds * 1000:.1f} ms"
 
 
 def exponents(rows: Sequence[Row]) -> str:
