@@ -144,6 +144,7 @@ def _classified(
 ) -> tuple[list[Option], list[InterchangeabilityClass]]:
     """Return the first candidates of each class, as many as asked for, as options; and the classes."""
     many = len(numbers) > most
+    apart = not distinguished and _differ_at_once([candidates[number].profile.ports for number in numbers])
     kinds: dict[Hashable, InterchangeabilityClass] = {}
     met: dict[InterchangeabilityClass, int] = {}
     found: list[Option] = []
@@ -151,7 +152,7 @@ def _classified(
         candidate = candidates[number]
         component = candidate.profile.component
         signed = signature(candidate)
-        key = (signed, component) if component in distinguished else signed
+        key: Hashable = number if apart else (signed, component) if component in distinguished else signed
         kind = kinds.get(key)
         if kind is None:
             kind = kinds[key] = InterchangeabilityClass(role, (), (), signed[1], number, (signed,))
@@ -161,6 +162,11 @@ def _classified(
                 continue
         found.append(Option(number, component, kind))
     return found, list(kinds.values())
+
+
+def _differ_at_once(ports: Sequence[Ports]) -> bool:
+    """Return whether all differ in their first ports already, which is quicker to see than to look at every port."""
+    return len({(inputs[:1], outputs[:1]) for inputs, outputs in ports}) == len(ports)
 
 
 def _first(candidates: Sequence[Candidate], numbers: Sequence[int], most: int) -> Sequence[int]:

@@ -9,12 +9,14 @@ of an output and an input is ever compared.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import chain
 from typing import NamedTuple
 
 from selfconf.model.profile import Condition, Input, Output, WantedSignal
 from selfconf.model.term import IRI
-from selfconf.search.problem import Problem, Sources
+from selfconf.search.problem import Feeder, Problem, Sources
+
+_Numbers = dict[tuple[tuple[IRI, ...], Condition | None], int]
+"""The numbers of needs by signals and condition."""
 
 
 class Need(NamedTuple):
@@ -53,25 +55,27 @@ class Wiring:
 
     def needed(self, role: int, inputs: Sequence[tuple[Input, ...]]) -> list[tuple[int, ...]]:
         """Return for the inputs of each class of a role the numbers of the needs that they are."""
-        if self._names_inputs[role]:
-            numbered = self._numbered(role, dict.fromkeys(chain.from_iterable(inputs)))
-            return [tuple(dict.fromkeys([numbered[one] for one in some if one in numbered])) for some in inputs]
-        sources, known = self.problem.feeding(role, None), dict[tuple[tuple[IRI, ...], Condition | None], int]()
-        spared = self.problem.spared[role]
-        if self._fed_later(sources):
-            return [()] * len(inputs)
+        named, spared = self._names_inputs[role], self.problem.spared[role]
+        fed_alike: dict[Sources, _Numbers] = {}
+        by_name: dict[str | None, tuple[Sources, _Numbers | None]] = {}
         found: list[tuple[int, ...]] = []
         for some in inputs:
             numbers: list[int] = []
-            for _, signals, _, optional, condition in some:
+            for name, signals, _, optional, condition in some:
                 if optional:
                     continue
+                called = name if named else None
+                if called not in by_name:
+                    sources = self.problem.feeding(role, called)
+                    later = self._fed_later(sources)
+                    by_name[called] = sources, None if later else fed_alike.setdefault(sources, {})
+                sources, known = by_name[called]
                 wanted = signals, condition
-                if spared and wanted in spared:
+                if known is None or (spared and wanted in spared):
                     continue
                 number = known.get(wanted)
                 if number is None:
-                    number = known[wanted] = self._new(Need(role, WantedSignal(*wanted), sources))
+                    number = known[wanted] = self._new(Need(role, WantedSignal(*wanted), sources, called))
                 numbers.append(number)
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
         return found
@@ -83,64 +87,55 @@ class Wiring:
         signals, condition = need.wanted
         if condition is not None:
             self._conditions[number] = condition
-        any_output = {source for source, output, _ in need.sources if output is None}
         for source, output, by_name in need.sources:
-            if output is not None and by_name:
+            if output is None:
+                fed = self._fed[source]
+                for signal in signals:
+                    fed.setdefault(signal, []).append(number)
+                continue
+            if by_name:
                 self._untyped[source].setdefault((not signals, output), []).append(number)
-            for signal in signals:
-                if output is None:
-                    self._fed[source].setdefault(signal, []).append(number)
-                elif source not in any_output:
+            if Feeder(source) not in need.sources:  # any output of that role feeds it
+                for signal in signals:
                     self._fed_by_name[source].setdefault((signal, output), []).append(number)
         return number
 
     def _fed_later(self, sources: Sources) -> bool:
         return self._roles < len(self.problem.roles) and any(source.role >= self._roles for source in sources)
 
-    def _numbered(self, role: int, inputs: Iterable[Input]) -> dict[Input, int]:
-        """Return the need that each required input of a role is: one for all that only differ in their names."""
-        same: dict[tuple[WantedSignal, Sources], int] = {}
-        found: dict[Input, int] = {}
-        feeding: dict[str, Sources | None] = {}
-        for wanted in inputs:
-            name, signals, _, optional, condition = wanted
-            if optional:
-                continue
-            if name not in feeding:
-                of_name = self.problem.feeding(role, name)
-                feeding[name] = None if self._fed_later(of_name) else of_name
-            sources = feeding[name]
-            if sources is None:
-                continue
-            signal = WantedSignal(signals, condition)
-            if signal in self.problem.spared[role]:
-                continue
-            number = same.get((signal, sources))
-            if number is None:
-                number = same[signal, sources] = self._new(Need(role, signal, sources, name))
-            found[wanted] = number
-        return found
-
     def supported(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
         """Return for the outputs of each class of a role the needs that they support."""
+        by_signal = not (self._fed_by_name[role] or self._untyped[role] or self._conditions)
+        fits = self._of_signals if by_signal else self._of_outputs
+        found = (fits(role, some) for some in outputs)
+        return [tuple(sorted(set(numbers))) if len(numbers) > 1 else tuple(numbers) for numbers in found]
+
+    def _of_signals(self, role: int, outputs: tuple[Output, ...]) -> list[int]:
+        """Return the needs that outputs support, where their signals alone decide that."""
+        fed, hierarchy = self._fed[role], self.problem.hierarchy
+        # One loop without a call: an ecology may have a million outputs.
+        if hierarchy.flat:
+            return [need for output in outputs for signal in output[1] for need in fed.get(signal, ())]
+        served = hierarchy.served
+        return [need for output in outputs for signal in served(output[1]) for need in fed.get(signal, ())]
+
+    def _of_outputs(self, role: int, outputs: tuple[Output, ...]) -> list[int]:
+        """Return the needs that outputs support, by their signals, their names and what conditions ask of them."""
         served = self.problem.hierarchy.served
         fed, by_name, untyped = self._fed[role], self._fed_by_name[role], self._untyped[role]
-        found: list[tuple[int, ...]] = []
-        for some in outputs:
-            numbers: list[int] = []
-            for output in some:
-                name, offered = output[:2]
-                fits: list[int] = []
-                for signal in served(offered):
-                    fits += fed.get(signal, ())
-                    if by_name:
-                        fits += by_name.get((signal, name), ())
-                if untyped:
-                    fits += untyped.get((True, name), ())
-                    fits += () if offered else untyped.get((False, name), ())
-                numbers += self._met(fits, output) if self._conditions else fits
-            found.append(tuple(sorted(set(numbers))) if len(numbers) > 1 else tuple(numbers))
-        return found
+        numbers: list[int] = []
+        for output in outputs:
+            name, offered = output[:2]
+            fits: list[int] = []
+            for signal in served(offered):
+                fits += fed.get(signal, ())
+                if by_name:
+                    fits += by_name.get((signal, name), ())
+            if untyped:
+                fits += untyped.get((True, name), ())
+                fits += () if offered else untyped.get((False, name), ())
+            numbers += self._met(fits, output) if self._conditions else fits
+        return numbers
 
     def _met(self, needs: Iterable[int], output: Output) -> list[int]:
         """Return those of some needs whose conditions an output meets."""
