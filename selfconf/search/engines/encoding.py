@@ -49,6 +49,8 @@ class Encoding:
         self.bounds: list[AtMost] = []
         self.guards: dict[Constraint, int] = {}
         self._guarded = guarded
+        self._sums: dict[tuple[int, ...], int] = {}
+        """The literals that hold iff one of others does, by these."""
         self._asked = Counter(reduced.slots)
         self.plays: tuple[tuple[int, ...], ...] = tuple(
             self._literals(role, len(options)) for role, options in enumerate(reduced.options)
@@ -120,28 +122,45 @@ class Encoding:
 
     def _needs(self, stated: frozenset[int]) -> None:
         """Write the needs that are not stated otherwise."""
-        supporting: list[list[int]] = [[] for _ in self.reduced.needs]
+        supporting: list[list[list[int]]] = [[] for _ in self.reduced.needs]
         needing: list[list[int]] = [[] for _ in self.reduced.needs]
         for options, literals in zip(self.reduced.options, self.plays, strict=True):
+            of_role: dict[int, list[int]] = {}
             for option, literal in zip(options, literals, strict=True):
                 kind = option.kind
                 for need in kind.supports:
-                    supporting[need].append(literal)
+                    of_role.setdefault(need, []).append(literal)
                 for need in kind.needs:
                     needing[need].append(literal)
+            for need, some in of_role.items():
+                supporting[need].append(some)
         add = self.clauses.append
         for need, having in enumerate(needing):
             if not having or need in stated:
                 continue
             force = self._in_force(Fed(need))
+            by_role = supporting[need]
+            supports = by_role[0] if len(by_role) == 1 else [self._any_of(some) for some in by_role]
             if len(having) == 1:
-                add([*force, -having[0], *supporting[need]])
+                add([*force, -having[0], *supports])
                 continue
             # One literal between both sides: a sum of clauses instead of a product.
             fed = self.literal()
-            add([*force, -fed, *supporting[need]])
+            add([*force, -fed, *supports])
             for literal in having:
                 add([-literal, fed])
+
+    def _any_of(self, literals: list[int]) -> int:
+        """Return a literal that holds iff one of some does."""
+        if len(literals) == 1:
+            return literals[0]
+        known = tuple(literals)
+        found = self._sums.get(known)
+        if found is None:
+            found = self._sums[known] = self.literal()
+            self.clauses.append([-found, *literals])
+            self.clauses += [[-literal, found] for literal in literals]
+        return found
 
     def _values(self) -> None:
         for variable, open_values in enumerate(self.reduced.values):

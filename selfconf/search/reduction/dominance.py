@@ -40,6 +40,9 @@ from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, O
 _PORTS: Callable[[Candidate], Ports] = attrgetter("profile.ports")
 _ADMITS: Callable[[Candidate], tuple[int, ...]] = attrgetter("admits")
 
+MANY_PORTS = 8
+"""From how many ports of a candidate on it is quicker to compare the first ones before all of them."""
+
 
 class LazyReduction:
     """A problem that is reduced when its reduction is first asked for: many are solved before."""
@@ -144,7 +147,7 @@ def _classified(
 ) -> tuple[list[Option], list[InterchangeabilityClass]]:
     """Return the first candidates of each class, as many as asked for, as options; and the classes."""
     many = len(numbers) > most
-    apart = not distinguished and _differ_at_once([candidates[number].profile.ports for number in numbers])
+    apart = not distinguished and _differ_at_once(candidates, numbers)
     kinds: dict[Hashable, InterchangeabilityClass] = {}
     met: dict[InterchangeabilityClass, int] = {}
     found: list[Option] = []
@@ -164,8 +167,11 @@ def _classified(
     return found, list(kinds.values())
 
 
-def _differ_at_once(ports: Sequence[Ports]) -> bool:
-    """Return whether all differ in their first ports already, which is quicker to see than to look at every port."""
+def _differ_at_once(candidates: Sequence[Candidate], numbers: Sequence[int]) -> bool:
+    """Return whether candidates with many ports all differ in the first of these, so that no other has to be read."""
+    if not numbers or sum(map(len, candidates[numbers[0]].profile.ports)) < MANY_PORTS:
+        return False
+    ports = [candidates[number].profile.ports for number in numbers]
     return len({(inputs[:1], outputs[:1]) for inputs, outputs in ports}) == len(ports)
 
 
