@@ -28,8 +28,11 @@ SECOND_SOLVER = "Cadical195"
 """The solver that joins in, which gets cardinalities as clauses."""
 PAIRED = 6
 """At most one of so many literals is written pair by pair, for a solver that cannot count."""
-CONFLICTS_PER_CALL = 5_000
-"""Conflicts for one call of the solver, a fraction of a second."""
+CONFLICTS_PER_CALL = 1_000
+"""Conflicts for the first call of the solver about a question, hundredths of a second; the next has twice as many."""
+LONGEST_CALL = 32_000
+"""Conflicts for a call at most. What a solver can do within few is not what it can do within many, as it starts to
+restart ever more rarely, and to keep ever more of what it has learned, with each call anew."""
 
 
 def solver_available() -> bool:
@@ -62,6 +65,8 @@ class ClauseSolver:
         self.reduced = reduced
         self._solver = getattr(solvers, solver or SOLVER)()
         self._model: list[int] = []
+        self._patience = CONFLICTS_PER_CALL
+        """How many conflicts the next call has."""
         self._counters = counters
         """Whether numbers beyond one are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
@@ -116,10 +121,12 @@ class ClauseSolver:
     def ask(self, assumed: Sequence[int], budget: Budget, most: int | None = None) -> bool | None:
         """Return whether the clauses can hold under assumptions; None if that takes more conflicts than a call may."""
         # The solver handles no signal inside a call, so that calls have to end for a time limit to be kept. Were no
-        # interrupt expected, it would catch Ctrl-C itself, and raise an error of its own.
+        # interrupt expected, it would catch Ctrl-C itself, and raise an error of its own. As calls about a question
+        # double, a limit is kept late by no more than the time that the question has taken already.
         before = self.conflicts()
-        self._solver.conf_budget(min(some for some in (CONFLICTS_PER_CALL, most, budget.steps) if some is not None))
+        self._solver.conf_budget(min(some for some in (self._patience, most, budget.steps) if some is not None))
         found: bool | None = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
+        self._patience = min(2 * self._patience, LONGEST_CALL) if found is None else CONFLICTS_PER_CALL
         budget.spend(1 + self.conflicts() - before)
         if found:
             self._model = self._solver.get_model()

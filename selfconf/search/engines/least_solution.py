@@ -27,8 +27,6 @@ UNCOUNTED = 1_000
 """Conflicts of the first solver before it gets numbers beyond one as clauses."""
 ALONE = 10_000
 """Conflicts of the first solver after that before another one joins in, some tenths of a second."""
-BESIDE = 1_000
-"""Conflicts for a call while another engine works beside."""
 
 
 def any_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
@@ -173,9 +171,8 @@ class _Descent:
     def _ask(self, turn: _Turn, conflicts: int | None) -> None:
         """Ask a solver the next question, and draw the consequences."""
         clauses = turn.clauses
-        most = BESIDE if self.rival is not None else conflicts
         if not turn.modelled:
-            found = clauses.ask((), self.budget, most)
+            found = clauses.ask((), self.budget, conflicts)
             if found is not None:
                 self.possible = turn.modelled = found
                 if found and not self.least:
@@ -185,7 +182,7 @@ class _Descent:
         if clauses.holds(literals[turn.rejected]):
             self._settle(turn.rejected)
             return
-        found = clauses.ask((literals[turn.rejected],), self.budget, most)
+        found = clauses.ask((literals[turn.rejected],), self.budget, conflicts)
         if found is True:
             self._settle(turn.rejected)
         elif found is False:

@@ -32,6 +32,9 @@ PROBLEMS = {
         domain=("kitchen", "hall"),
     ),
     "more roles than components": TWINS,
+    "a need that several of two roles support": problem(
+        {"eye": [*EYES, component("deaf")], "lens": [BOTH, component("dark")], "mind": [MIND]}, "eye>mind lens>mind"
+    ),
 }
 
 

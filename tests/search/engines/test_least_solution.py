@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from benchmarks.search.further_families import cover, queens
 from selfconf.search.budget import Budget
-from selfconf.search.engines import least_solution
+from selfconf.search.engines import clause_learning, least_solution
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses
 from selfconf.search.engines.rival import Rival
 from selfconf.search.problem import Problem
@@ -51,7 +51,7 @@ def test_what_both_settle_by_turns_is_the_same_as_alone(monkeypatch: pytest.Monk
     for problem in (queens(14, 1, 3), cover(30, 24, 6, 0.25, 1)):
         alone = numbers(least_by_clauses(pruned(reduced(problem)), Budget()))
         monkeypatch.setattr(least_solution, "ALONE", 1)
-        monkeypatch.setattr(least_solution, "BESIDE", 20)
+        monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20)
         assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == alone
         assert any_by_clauses(pruned(reduced(problem)), Budget()) is not None
 
@@ -67,7 +67,7 @@ import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background ignores it
 from benchmarks.search.families import satisfiability
 from selfconf.search.budget import Budget
-from selfconf.search.engines import least_solution, rival
+from selfconf.search.engines import clause_learning, least_solution, rival
 from selfconf.search.reduction import reduced
 least_solution.ALONE = 1
 popen = rival.subprocess.Popen
