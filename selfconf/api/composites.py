@@ -7,7 +7,8 @@ becomes a task with the rank of the one that holds it, and it acts once that tas
 inside, and only a refusal is a FAIL of the composite, with the reason. When it is released its inside comes to rest.
 
 Its operational parameters are parameters of the template, known by their names: the values that they are set to are
-bound when the composite is activated. Other values than before have the inside begin anew.
+bound when the composite is activated. Other values than before have the inside begin anew. Where an optional input of
+the composite gets a source, or loses its last one, the inside is configured again beside what runs.
 
 Neither signals nor calls pass here. The inputs inside that are those of the composite follow what feeds it, and a
 configurator that asks the composite to act is told which outputs stand behind its own, and which components inside call
@@ -21,7 +22,7 @@ from __future__ import annotations
 
 import logging
 import secrets
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
 from functools import partial
 
@@ -58,17 +59,19 @@ class _CompositeCode(Component):
         raise Refused(f"{operation!r} of a composite is answered by a component inside of it")
 
 
+RequestWith = Callable[[Mapping[str, Term], Callable[[], Set[str]]], RunRequest]
+"""Gives the request for the inside of a composite, with values for the parameters of the composite by name.
+
+And with what tells the inputs of the composite that are fed. It raises SelfconfError for values with which there is no
+inside.
+"""
+
+
 class InsideOfComposite:
     """What does as the calls of a configurator say to a composite: it runs the inside as a task."""
 
-    def __init__(
-        self, bus: Bus, ecology: str, profile: Profile, request_with: Callable[[Mapping[str, Term]], RunRequest]
-    ) -> None:
-        """`request_with` gives the request for the inside, with values for the parameters of the composite by name.
-
-        It raises SelfconfError for values with which there is none. What the inside reports and who ranks it is said
-        here.
-        """
+    def __init__(self, bus: Bus, ecology: str, profile: Profile, request_with: RequestWith) -> None:
+        """What the inside reports and who ranks it is said here, the rest by `request_with`."""
         self._bus, self._ecology, self.profile, self._request_with = bus, ecology, profile, request_with
         self._wires: Mapping[str, tuple[Wire, ...]] = {}
         """By which outputs each input of the composite is fed."""
@@ -102,19 +105,22 @@ class InsideOfComposite:
         """Begin with the inside, or tell it what it is connected to now; begin anew where values have changed."""
         called_by = {port.name: tuple(sorted(self.runtime.callers(port.name))) for port in self.profile.operations}
         changed = (self._wires, self._called_by) != (message.inputs, called_by)
+        other_inputs = self._wires.keys() != message.inputs.keys()
         self._wires, self._called_by = dict(message.inputs), called_by
         if self.runner is None:
             self._begin(message)
         elif self._again is not None or message.values != self._values:
             self._again, self.settled = message, False  # the newest call counts, also while the last inside ends
             self.runner.stop()
+        elif other_inputs:
+            self.runner.reconsider()
         elif changed:
             self.runner.rewire()
 
     def _begin(self, message: Apply) -> None:
         self._values = dict(message.values)
         try:
-            request = self._request_with(self._values)
+            request = self._request_with(self._values, lambda: self._wires.keys())
         except SelfconfError as error:
             self.runtime.fail(str(error))
             self._settle(False)
@@ -243,10 +249,11 @@ class Composites:
             self._unable(why)
         self._told = dict(why)
 
-    def _request(self, inside: Inside, values: Mapping[str, Term]) -> RunRequest:
+    def _request(self, inside: Inside, values: Mapping[str, Term], fed: Callable[[], Set[str]]) -> RunRequest:
         component, composer = inside.composite, inside.composer_with(values)
 
         def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+            composer.leave_unfed(inside.optional - fed())
             local = {one: a for one, a in found.items() if one in self._advertisements and one != component}
             return composer.compose(local, lost, running)
 

@@ -6,7 +6,7 @@ a failure only the lost components leave it and the search alone runs again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
 from selfconf import certificate
@@ -76,11 +76,17 @@ class Composer:
         self.searches = Searches(strategy, steps)
         self.partitioner = Partitioner(task, hierarchy)
         self.outside = outside
+        self._unfed: Set[str] = frozenset()
         self._task = task.task if outside is None else with_outside(task.task, outside)
         """The task as it is searched for: with what is outside, if it is the inside of a composite."""
         self._given: Mapping[IRI, Advertisement] | None = None
         self._ecology = AdvertisementIndex({})
         self._partition = Partition(())
+
+    def leave_unfed(self, inputs: Set[str]) -> None:
+        """Compose the inside of a composite, from now on, with some inputs of the composite fed by nobody."""
+        if inputs != self._unfed:
+            self._unfed, self._given = inputs, None
 
     def partition(self, ecology: Mapping[IRI, Advertisement]) -> Partition:
         """F1 ... Fn of an ecology."""
@@ -94,7 +100,9 @@ class Composer:
             self._given = ecology if self._ecology is ecology else dict(ecology)
             self._partition = self.partitioner.partition(self._ecology)
             if self.outside is not None:
-                self._partition = with_outside_candidate(self._partition, self._task, self.outside, self.hierarchy)
+                self._partition = with_outside_candidate(
+                    self._partition, self._task, self.outside, self.hierarchy, self._unfed
+                )
         return self._ecology
 
     def compose(

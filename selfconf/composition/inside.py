@@ -2,7 +2,8 @@
 
 The inside of a composite is a task; its template is read from the document that advertises the composite, and its ports
 and some of its parameters are those of the composite. It is configured from the components of one site, the composite
-itself left out. Composites that could be inside of each other in a circle have no end, and are refused.
+itself left out. What feeds it from outside is known once a task holds it: until then its optional inputs are taken to
+be fed. Composites that could be inside of each other in a circle have no end, and are refused.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from selfconf.composition.composer import Composer
 from selfconf.errors import AuthorError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.profile import Input, Output, Profile
+from selfconf.model.profile import Input, Output, Profile, port_in_words
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.rdf import tasks
@@ -34,9 +35,11 @@ class Inside:
     task: TaskDocument
     later: frozenset[str]
     """The names of these parameters: they get their values when the composite is activated."""
+    optional: frozenset[str]
+    """The names of the inputs of the composite that may stay unfed."""
     hierarchy: Hierarchy
     composer: Composer
-    """Composes the inside as it is before that, with these parameters left free."""
+    """Composes the inside as it is before that, with these parameters left free and all inputs fed."""
 
     @classmethod
     def of(cls, profile: Profile, document: Document, hierarchy: Hierarchy) -> Inside:
@@ -45,13 +48,15 @@ class Inside:
         _check_ports(profile, task)
         later = frozenset(parameter.name for parameter in profile.parameters)
         _check_parameters(later, task)
+        optional = frozenset(port.name for port in profile.inputs if port.optional)
         composer = Composer(tasks.complete(task, later), hierarchy, outside=profile.component)
-        return cls(profile.component, task, later, hierarchy, composer)
+        return cls(profile.component, task, later, optional, hierarchy, composer)
 
     def composer_with(self, values: Mapping[str, Term]) -> Composer:
-        """What composes the inside with values for the parameters of the composite. Raises SelfconfError."""
-        if not self.later:
-            return self.composer
+        """What composes the inside with values for the parameters of the composite, all of its inputs being fed.
+
+        Raises SelfconfError.
+        """
         template = self.task.task.template
         for parameter in template.parameters:
             lacks = parameter.name in self.later and parameter.name not in values and parameter.default is None
@@ -66,11 +71,18 @@ class Inside:
     def configured(self, ecology: Mapping[IRI, Advertisement], holder: Configuration) -> Configuration | str:
         """The inside in an ecology, with the values that a configuration sets it to; or why there is none."""
         values = {one.name: one.value for one in holder.settings if one.component == self.composite}
+        unfed = self.optional - {one.input for one in holder.connections if one.sink == self.composite}
         try:
-            outcome = self.composer_with(values).compose(ecology, frozenset(), None)
+            composer = self.composer_with(values)
+            composer.leave_unfed(unfed)
+            outcome = composer.compose(ecology, frozenset(), None)
         except SelfconfError as error:
             return str(error)
-        return outcome if isinstance(outcome, Configuration) else f"its inside is refused: {why_none(outcome)}"
+        if isinstance(outcome, Configuration):
+            return outcome
+        unfed_ones = ", ".join(port_in_words(name).removeprefix("the ") for name in sorted(unfed))
+        alone = f"; nobody feeds its optional {unfed_ones}" if unfed else ""
+        return f"its inside cannot be configured now: {why_none(outcome)}{alone}"
 
 
 def insides(

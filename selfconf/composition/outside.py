@@ -2,6 +2,7 @@
 
 Seen from inside, a composite is a component with its ports turned round: what the template receives it issues, and what
 the template gives it needs; an operation that the template offers it calls, and one that the template needs it answers.
+An optional input of the composite that nobody feeds it does not issue.
 It plays a role of its own, by its own IRI, which feeds the roles of the input ports and is
 fed by those of the output ports. So the search, its certificate and its refusals know of ports what they know of roles;
 only the deployment leaves it out, and takes its connections for the ports.
@@ -9,6 +10,7 @@ only the deployment leaves it out, and takes its connections for the ports.
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import replace
 
 from selfconf.model.configuration import Assignment, Configuration
@@ -43,15 +45,22 @@ def with_outside(task: Task, composite: IRI) -> Task:
 
 
 def with_outside_candidate(
-    partition: Partition, task: Task, composite: IRI, hierarchy: Hierarchy = NOTHING_ABOVE
+    partition: Partition,
+    task: Task,
+    composite: IRI,
+    hierarchy: Hierarchy = NOTHING_ABOVE,
+    unfed: Set[str] = frozenset(),
 ) -> Partition:
-    """The partition of a task that is the inside of a composite, with the only candidate for what is outside."""
+    """The partition of a task that is the inside of a composite, with the only candidate for what is outside.
+
+    `unfed` are the names of the inputs of the composite that nobody feeds.
+    """
     ports = [one.port for one in task.template.ports]
     profile = Profile(
         composite,
         ports=Ports(
             tuple(_wanted(port) for port in ports if isinstance(port, Output)),
-            tuple(_offered(port) for port in ports if isinstance(port, Input)),
+            tuple(_offered(port) for port in ports if isinstance(port, Input) and port.name not in unfed),
         ),
     )
     outside = Candidate(profile, (ANY_VALUE,) * len(partition.variables))

@@ -121,7 +121,7 @@ class Improvable:
 
 @dataclass(frozen=True, slots=True)
 class Reconnected:
-    """This node was cut off from the ecology and is not any more: all that is known of it may be outdated."""
+    """This node was cut off from the ecology, or the task from what feeds it: all that is known may be outdated."""
 
 
 @dataclass(frozen=True, slots=True)

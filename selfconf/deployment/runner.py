@@ -41,6 +41,7 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
+    Reconnected,
     Rewired,
     Stopped,
     WaitedLong,
@@ -185,6 +186,10 @@ class TaskRunner:
         """Tell those inside that are connected to what is outside that it has changed."""
         if self.request.outside is not None:
             self._step(Rewired(self.request.outside.composite))
+
+    def reconsider(self) -> None:
+        """Search again beside what runs, as other inputs than before are fed from outside."""
+        self._step(Reconnected())
 
     def issued_outside(self) -> dict[str, tuple[Wire, ...]]:
         """Which outputs stand behind those of the composite of which the task is the inside."""

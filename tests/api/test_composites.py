@@ -167,6 +167,37 @@ def test_when_the_inside_is_refused_the_composite_fails_with_the_reason() -> Non
     assert house.acting() == set()
 
 
+OPTIONAL_HINT = SERVICE.replace(":Hint ] ; sc:hasOutput", ":Hint ; sc:optional true ] ; sc:hasOutput", 1)
+WITHOUT_HINT = TRACKER.replace(', [ sc:name "hint" ; sc:signalType :Hint ]', "")
+
+
+def test_the_inside_is_configured_again_when_an_optional_input_gets_a_source_or_loses_it() -> None:
+    # Of the trackers the first needs hints; the other one does without, and comes later by its IRI.
+    house = House(trackers="t1", hinters="h1")
+    house.by_name["u1"] = house.ecology.add(Tracker("u1"), WITHOUT_HINT.replace("NAME", "u1"))
+    house.ecology.advertise(OPTIONAL_HINT)
+    house.ecology.advance(2.0)
+    run = house.ecology.run(template(TASK.replace(":hints a", ":hints sc:minCount 0 ; sc:maxCount 1 ; a"))).started()
+    house.ecology.advance(1.0)
+    assert (house.navigator.pose, house.acting()) == (["t1", "c1", "h1"], {"c1", "t1", "h1"})
+    house.crash("h1")
+    assert (house.navigator.pose, house.acting()) == (["u1", "c1", ""], {"c1", "u1"})
+    assert lost(run) == [IRI("urn:c:h1")]
+    assert run.running
+
+
+def test_a_composite_fails_whose_inside_cannot_do_without_an_optional_input_that_nobody_feeds() -> None:
+    house = House(hinters="")
+    house.ecology.advertise(OPTIONAL_HINT)
+    house.ecology.advance(2.0)
+    run = house.ecology.run(template(TASK.replace(":hints a", ":hints sc:minCount 0 ; sc:maxCount 1 ; a")))
+    assert house.ecology.until(lambda: run.ended)
+    house.ecology.advance(REPORT_LAG)
+    (event,) = [event for event in run.events if isinstance(event, ComponentLost)]
+    assert event.component == SERVED
+    assert event.detail.startswith("its inside is refused: the input 'hint' (Hint) of")
+
+
 def test_another_component_takes_the_place_of_a_composite_that_has_failed() -> None:
     house = House(cameras="c1")
     house.by_name["plain"] = house.ecology.add(

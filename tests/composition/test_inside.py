@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from selfconf.composition import Inside, configurable, insides, why_none
-from selfconf.model.configuration import Assignment, Configuration, ParameterSetting
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.advertisements import Advertisement, read_advertisements
@@ -115,6 +117,36 @@ def test_what_a_composite_and_its_template_say_of_each_other_differs(before: str
     found, why = judged(text.replace(before, after, 1))
     assert found == {}
     assert sentence in why[WHOLE]
+
+
+HINTED = """
+:whole a sc:Component, :Whole ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ;
+    sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ; sc:optional true ] ; sc:grounding [ sc:template :localise ] .
+:localise a sc:Template ; sc:roles ( :tracker ) ;
+    sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ; sc:of :tracker ] ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker ] .
+:tracker a sc:Role ; sh:class :Tracker .
+:a a sc:Component, :Tracker ; sc:hasInput [ sc:name "h" ; sc:signalType :Hint ] ;
+    sc:hasOutput [ sc:name "where" ; sc:signalType :Pose ] .
+"""
+WITHOUT = ':b a sc:Component, :Tracker ; sc:hasOutput [ sc:name "where" ; sc:signalType :Pose ] .'
+
+
+@pytest.mark.parametrize(("fed", "others", "player"), [(True, WITHOUT, "a"), (False, WITHOUT, "b"), (False, "", None)])
+def test_an_optional_input_that_nobody_feeds_is_fed_to_nobody_inside(
+    fed: bool, others: str, player: str | None
+) -> None:
+    text = HINTED + others
+    hint = Connection(iri("hinter"), "hint", WHOLE, "hint")
+    holder = replace(holding(), connections=(hint,) if fed else ())
+    ((_, inside),) = insides(known(text), lambda one: document(text), holder)
+    if player is None:
+        assert isinstance(inside, str)
+        assert inside.startswith("its inside cannot be configured now: the input 'h' (Hint) of a cannot be fed")
+        assert inside.endswith("; nobody feeds its optional input 'hint'")
+    else:
+        assert isinstance(inside, Configuration)
+        assert inside.components == (iri(player),)
 
 
 def test_why_there_is_no_configuration_is_said_in_words() -> None:
