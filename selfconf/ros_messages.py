@@ -5,19 +5,34 @@ of which type it is, so that it goes from node to node as it is, and is read onl
 Which types there are is known by `rosbags`, the extra `ros2`, for the distributions jazzy, kilted and lyrical; a type
 is the one that is meant if its hash is (REP 2011). So it is with services, of which `ros_services` knows some: what
 travels is a request or a response, and the hash is that of the service, which says that of both. An action is two
-services and a message.
+services and a message. Other types, services and actions are known by their definitions (`ros_definitions`), in folders
+that a program is given (`learn`) or that SELFCONF_ROS_DEFINITIONS names, separated by colons: so that every component
+that is started beside the program reads them too.
 """
 
 from __future__ import annotations
 
 import importlib.util
+import keyword
+import os
 import re
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, lru_cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from selfconf import ros_services
+from selfconf.errors import AuthorError
+from selfconf.ros_definitions import (
+    REQUEST,
+    RESPONSE,
+    InterfaceDefinition,
+    TypesByName,
+    complete_types,
+    defined_types,
+    read_definitions,
+)
 
 MEDIA = "application/cdr"
 HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
@@ -26,8 +41,8 @@ _MEDIA = re.compile(rf'{re.escape(MEDIA)}; type="(?P<name>[^"]*)"; hash=(?P<hash
 _STORES = ("ROS2_JAZZY", "ROS2_KILTED", "ROS2_LYRICAL")
 _NO_FIELDS = frozenset(("__msgtype__", "structure_needs_at_least_one_member"))
 """What the class of a message has besides its fields; the second stands in messages that have none."""
-_EVENT_INFO = "service_msgs/msg/ServiceEventInfo"
-"""What every service has in its hash, besides its parts."""
+DEFINITIONS = "SELFCONF_ROS_DEFINITIONS"
+"""The variable of the environment that names folders with definitions, separated as those of PATH are."""
 _DTYPES = {"octet": "uint8", "byte": "uint8", "char": "uint8"}
 """The elements of arrays that NumPy calls otherwise."""
 
@@ -120,10 +135,40 @@ class ServiceParts(NamedTuple):
 def service_parts(kind: MessageType) -> ServiceParts | None:
     """The types of the parts of a service; None if it is not known."""
     store = _store(kind)
-    if store is None or kind.name not in ros_services.SERVICES:
+    if store is None or kind.name + REQUEST not in store.fielddefs:
         return None
-    names = (kind.name + ros_services.REQUEST, kind.name + ros_services.RESPONSE)
+    names = (kind.name + REQUEST, kind.name + RESPONSE)
     return ServiceParts(*(MessageType(name, store.hash_rihs01(name)) for name in names))
+
+
+def named_folders() -> list[Path]:
+    """The folders with definitions that the environment names."""
+    return [Path(folder) for folder in os.environ.get(DEFINITIONS, "").split(os.pathsep) if folder]
+
+
+def learn(folders: Sequence[Path]) -> list[AuthorError]:
+    """Know the types too that are defined below some folders, and no more what was learned before.
+
+    What is left out of them, and why, is returned. It is for the beginning of a program, before others ask for types.
+    Raises AuthorError where a folder is not there or has no definition.
+    """
+    left_out: list[AuthorError] = []
+    types: TypesByName = {}
+    files: dict[str, str | None] = {}
+    for definition in read_definitions(folders, left_out):
+        try:
+            found = defined_types(definition)
+        except AuthorError as error:
+            left_out.append(error)
+        else:
+            types.update(found)
+            files.update(dict.fromkeys(found, definition.file))
+    for cached in (_stores, _store, service_parts):
+        cached.cache_clear()
+    stores, missing = _stores_with({**_known_types(), **types}) if types else ((), {})
+    _learned[:] = stores
+    first = {files[name]: name for name in reversed(missing)}  # what depends on it in the same file is left out as well
+    return left_out + [AuthorError(f"left out, as {name} {missing[name]}", file=file) for file, name in first.items()]
 
 
 def _read(payload: bytes, kind: MessageType) -> Any:
@@ -150,41 +195,42 @@ def _store(kind: MessageType) -> Any:
     return None
 
 
+_learned: list[Any] = []
+"""The types of each distribution together with those that were learned, where there are such."""
+
+
 @cache
 def _stores() -> tuple[Any, ...]:
+    """The types of each distribution, the oldest first, and then those with what was learned."""
     if importlib.util.find_spec("rosbags") is None:
         return ()
+    if not _learned:
+        learn(named_folders())
+    return (*_stores_with(_known_types())[0], *_learned)
+
+
+@cache
+def _known_types() -> TypesByName:
+    """The types that are known besides those of a distribution, by their definitions."""
+    known = (InterfaceDefinition(*each) for each in ros_services.KNOWN_DEFINITIONS.items())
+    return {name: fields for each in known for name, fields in defined_types(each).items()}
+
+
+def _stores_with(types: TypesByName) -> tuple[tuple[Any, ...], dict[str, str]]:
+    """The types of each distribution, with others that go before its own; why each is left out that none can have."""
     from rosbags.typesys import Stores, get_typestore
 
-    stores = tuple(get_typestore(Stores[name]) for name in _STORES)
-    for store in stores:
-        _add_services(store)
-    return stores
-
-
-def _add_services(store: Any) -> None:
-    """Make services and actions known to the types of a distribution: parts, and what their hashes are computed of."""
-    from rosbags.interfaces import Nodetype
-    from rosbags.typesys import get_types_from_msg
-
-    octet = (Nodetype.BASE, ("uint8", 0))
-    constants, fields = store.fielddefs[_EVENT_INFO]
-    # A `char` is an uint8 in ROS 2, and is hashed as one; rosbags takes it for the one of IDL.
-    fields = [(name, (Nodetype.ARRAY, (octet, 16)) if name == "client_gid" else kind) for name, kind in fields]
-    store.fielddefs[_EVENT_INFO] = constants, fields
-    found: dict[str, Any] = {}
-    for action in ros_services.KNOWN_ACTIONS:
-        for name, text in ros_services.action_messages(action).items():
-            (found[name],) = get_types_from_msg(text, "_/msg/_").values()
-    for name in ros_services.SERVICES:
-        ends = (ros_services.REQUEST, ros_services.RESPONSE)
-        for end, text in zip(ends, ros_services.parts(name), strict=True):
-            (found[name + end],) = get_types_from_msg(text, "_/msg/_").values()
-        once = [(end[1:].lower(), (Nodetype.SEQUENCE, ((Nodetype.NAME, name + end), 1))) for end in ends]
-        found[name + ros_services.EVENT] = [], [("info", (Nodetype.NAME, _EVENT_INFO)), *once]
-        members = [(f"{end[1:].lower()}_message", (Nodetype.NAME, name + end)) for end in (*ends, ros_services.EVENT)]
-        found[name] = [], members
-    store.register(found)
+    stores, left_out = [], dict[str, str]()
+    for index, name in enumerate(_STORES):
+        store = get_typestore(Stores[name])
+        found, missing = complete_types(types, store.fielddefs.keys() - types.keys())
+        for each in found:
+            store.fielddefs.pop(each, None)
+            store.types.pop(each, None)
+        store.register(found)
+        stores.append(store)
+        left_out = {name: why for name, why in missing.items() if not index or name in left_out}
+    return tuple(stores), left_out
 
 
 def usual_type(name: str) -> MessageType | None:
@@ -196,7 +242,8 @@ def usual_type(name: str) -> MessageType | None:
 def _plain(value: Any) -> Any:
     """A message as an object, with those that it holds."""
     if hasattr(value, "__msgtype__"):
-        return {name: _plain(getattr(value, name)) for name in value.__dataclass_fields__ if name not in _NO_FIELDS}
+        names = (name for name in value.__dataclass_fields__ if name not in _NO_FIELDS)
+        return {name[:-1] if keyword.iskeyword(name[:-1]) else name: _plain(getattr(value, name)) for name in names}
     return [_plain(each) for each in value] if isinstance(value, list) else value
 
 
@@ -208,9 +255,8 @@ def _built(store: Any, name: str, fields: Any) -> Any:
     unknown = sorted(map(str, fields.keys() - definitions.keys()))
     if unknown:
         raise MessageError(f"has {', '.join(unknown[:5])}, which {name} has not")
-    return store.types[name](
-        **{field: _value(store, definition, fields.get(field)) for field, definition in definitions.items()}
-    )
+    values = {field: _value(store, definition, fields.get(field)) for field, definition in definitions.items()}
+    return store.types[name](**{f"{field}_" if keyword.iskeyword(field) else field: values[field] for field in values})
 
 
 def _definitions(store: Any, name: str) -> Iterator[tuple[str, Any]]:

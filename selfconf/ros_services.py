@@ -4,25 +4,16 @@ Each is defined as its interface definition (`.srv`, `.action`) says: the parts,
 services are those of `std_srvs`, of the examples, of every node's parameters, of lifecycle nodes, of maps and of
 cameras, and the one by which goals of actions are cancelled, as jazzy, kilted and lyrical have them. A service is the
 one that is meant if its hash is (REP 2011), so that a definition which changes is not taken for another. Those of other
-services are relayed, but not read.
-
-An action is two services more, which send a goal and ask for its result, and a topic of feedback; all of them name the
-goal by a UUID (the design "Actions" of ROS 2).
+services and actions are relayed, but read only where the user gives their definitions (`ros_definitions`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-REQUEST, RESPONSE, EVENT = "_Request", "_Response", "_Event"
-"""What the names of the parts of a service end in."""
-GOAL, RESULT, FEEDBACK = "_Goal", "_Result", "_Feedback"
-"""What the names of the parts of an action end in."""
-SEND_GOAL, GET_RESULT, FEEDBACK_MESSAGE = "_SendGoal", "_GetResult", "_FeedbackMessage"
-"""What the names of the services and of the messages end in that an action is made of."""
 CANCEL_GOAL = "action_msgs/srv/CancelGoal"
 """The service by which the goals of every action are cancelled."""
-_GOAL_ID = "unique_identifier_msgs/UUID goal_id"
+
+EVENT_INFO = "service_msgs/msg/ServiceEventInfo"
+"""What every service has in its hash, besides its parts."""
 
 KNOWN_ACTIONS = {
     "example_interfaces/action/Fibonacci": "int32 order\n---\nint32[] sequence\n---\nint32[] sequence",
@@ -37,26 +28,6 @@ KNOWN_ACTIONS = {
     ),
 }
 """The definitions of goal, result and feedback, by the name of the action."""
-
-
-def action_messages(name: str) -> Mapping[str, str]:
-    """The definitions of the messages of an action that is known, by their names."""
-    goal, result, feedback = (part.strip() for part in KNOWN_ACTIONS[name].split("---"))
-    return {
-        name + GOAL: goal,
-        name + RESULT: result,
-        name + FEEDBACK: feedback,
-        name + FEEDBACK_MESSAGE: f"{_GOAL_ID}\n{name}{FEEDBACK} feedback",
-    }
-
-
-def _services_of(name: str) -> dict[str, str]:
-    """The definitions of the services of an action, by their names."""
-    return {
-        name + SEND_GOAL: f"{_GOAL_ID}\n{name}{GOAL} goal\n---\nbool accepted\nbuiltin_interfaces/Time stamp",
-        name + GET_RESULT: f"{_GOAL_ID}\n---\nint8 status\n{name}{RESULT} result",
-    }
-
 
 SERVICES = {
     "std_srvs/srv/Empty": "---",
@@ -90,12 +61,13 @@ SERVICES = {
         "nav_msgs/OccupancyGrid map\ngeometry_msgs/PoseWithCovarianceStamped initial_pose\n---\nbool success"
     ),
     "sensor_msgs/srv/SetCameraInfo": "sensor_msgs/CameraInfo camera_info\n---\nbool success\nstring status_message",
-    **{service: definition for name in KNOWN_ACTIONS for service, definition in _services_of(name).items()},
 }
-"""The definitions of services, those of actions included, by their names."""
+"""The definitions of request and response, by the name of the service."""
 
-
-def parts(name: str) -> tuple[str, str]:
-    """The definitions of the request and of the response of a service that is known."""
-    asked, _, answered = SERVICES[name].partition("---")
-    return asked, answered
+KNOWN_DEFINITIONS = {
+    # That of rosbags has a `char` of IDL in it, which is another one than that of ROS 2.
+    EVENT_INFO: "uint8 event_type\nbuiltin_interfaces/Time stamp\nchar[16] client_gid\nint64 sequence_number",
+    **SERVICES,
+    **KNOWN_ACTIONS,
+}
+"""All that is defined here, by its name."""

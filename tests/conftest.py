@@ -50,7 +50,7 @@ def runtime_folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest
     """No test sees the sites that happen to run on this machine, and none is seen by them."""
     folder = tmp_path_factory.mktemp("runtime")
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(folder))
-    for name in ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT", "SELFCONF_PARENT"):
+    for name in ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT", "SELFCONF_PARENT", "SELFCONF_ROS_DEFINITIONS"):
         monkeypatch.delenv(name, raising=False)
     return folder
 

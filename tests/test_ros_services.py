@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from selfconf import ros_messages
+from selfconf.ros_definitions import FEEDBACK_MESSAGE, GET_RESULT, SEND_GOAL
 from selfconf.ros_messages import MessageType, ServiceParts
-from selfconf.ros_services import FEEDBACK_MESSAGE, KNOWN_ACTIONS, SERVICES, parts
+from selfconf.ros_services import KNOWN_ACTIONS, SERVICES
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 # Of AddTwoInts as the design of rmw_zenoh says it, of actions as the type descriptions of jazzy and lyrical have them,
@@ -46,7 +47,7 @@ def test_a_service_has_the_hash_that_others_compute(name: str) -> None:
 
 @pytest.mark.parametrize("name", SERVICES)
 def test_the_parts_of_a_service_are_written_and_read(name: str) -> None:
-    for kind, text in zip(found(name), parts(name), strict=True):
+    for kind, text in zip(found(name), SERVICES[name].split("---"), strict=True):
         fields = ros_messages.message_fields(ros_messages.message({}, kind), kind)
         assert list(fields) == [line.split()[1] for line in text.split("\n") if line]
 
@@ -61,6 +62,18 @@ def test_the_feedback_of_an_action_is_written_and_read(name: str) -> None:
 def test_the_feedback_of_an_action_has_the_hash_that_others_compute() -> None:
     name, number = "example_interfaces/action/Fibonacci_FeedbackMessage", "c1de71afd52e49a89c53d8262366884185bc0a02f78c"
     assert ros_messages.usual_type(name) == MessageType(name, f"RIHS01_{number}e051c4e46b0a7fe59bb2")
+
+
+@pytest.mark.parametrize("name", KNOWN_ACTIONS)
+def test_the_services_of_an_action_are_known(name: str) -> None:
+    assert next(iter(ros_messages.message_fields(*sent(name + SEND_GOAL)))) == "goal_id"
+    assert list(ros_messages.message_fields(*sent(name + GET_RESULT))) == ["goal_id"]
+
+
+def sent(name: str) -> tuple[bytes, MessageType]:
+    """A request of a service, and its type."""
+    kind = found(name).request
+    return ros_messages.message({}, kind), kind
 
 
 def test_a_request_without_fields_has_an_octet() -> None:

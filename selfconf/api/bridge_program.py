@@ -63,9 +63,18 @@ def serve_things(
     serve_bridge(ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts))), site, complain)
 
 
-def serve_nodes(endpoint: str, domain: int, site: BridgeSite, complain: Callable[[str], None]) -> None:
-    """Bridge the nodes of a ROS 2 domain, whose router listens at an endpoint. Raises AuthorError and NetworkError."""
+def serve_nodes(
+    endpoint: str, domain: int, definitions: Sequence[Path], site: BridgeSite, complain: Callable[[str], None]
+) -> None:
+    """Bridge the nodes of a ROS 2 domain, whose router listens at an endpoint. Raises AuthorError and NetworkError.
+
+    `definitions` are folders with definitions of interfaces, in addition to the types that are known; without them
+    those are that the environment names.
+    """
+    from selfconf import ros_messages
     from selfconf.bridging.ros2 import RosWorld
     from selfconf.bus.zenoh_bus import client
 
+    for left_out in ros_messages.learn(definitions or ros_messages.named_folders()):
+        complain(str(left_out))
     serve_bridge(RosWorld(lambda: client([endpoint]), domain), site, complain)

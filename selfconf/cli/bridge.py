@@ -12,7 +12,8 @@ from selfconf.errors import InstallationError
 
 WOT_EXAMPLE = """  selfconf bridge wot examples/imports/lamp.td.json --ecology home
   selfconf bridge wot http://192.0.2.7/things --rate 5 --credentials things.json --ecology home"""
-ROS2_EXAMPLE = """  selfconf bridge ros2 --connect tcp/127.0.0.1:7447 --domain 0 --ecology home"""
+ROS2_EXAMPLE = """  selfconf bridge ros2 --connect tcp/127.0.0.1:7447 --domain 0 --ecology home
+  selfconf bridge ros2 --definitions /opt/ros/jazzy/share --definitions ~/ws/install/lab_msgs/share --ecology home"""
 EXAMPLE = f"{WOT_EXAMPLE}\n{ROS2_EXAMPLE}"
 MOST_HERTZ = 100.0
 
@@ -73,6 +74,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ros2.add_argument(
         "--domain", metavar="N", type=domain, default=0, help="the ROS_DOMAIN_ID of the nodes (default: %(default)s)"
     )
+    ros2.add_argument(
+        "--definitions",
+        metavar="FOLDER",
+        type=Path,
+        action="append",
+        default=[],
+        help="a folder with PACKAGE/msg/*.msg, PACKAGE/srv/*.srv and PACKAGE/action/*.action below it, whose fields are"
+        " known then, so that services and actions of these types can be called; repeatable (default:"
+        " $SELFCONF_ROS_DEFINITIONS, separated by colons, which components read too)",
+    )
     _add_site_arguments(ros2)
 
 
@@ -107,7 +118,7 @@ def run(given: argparse.Namespace) -> int:
 
     site = BridgeSite(given.ecology, given.name, given.listen, given.sites, given.keys, given.insecure)
     if given.world == "ros2":
-        serve_nodes(given.connect, given.domain, site, complain)
+        serve_nodes(given.connect, given.domain, given.definitions, site, complain)
     else:
         serve_things(given.sources, given.rate, given.credentials, given.host, site, complain)
     return 0

@@ -85,6 +85,12 @@ def test_a_domain_without_a_router_is_one_sentence(capsys: pytest.CaptureFixture
     assert list(home.runtime.iterdir()) == []
 
 
+@ros2
+def test_definitions_that_are_not_there_are_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    given = run(capsys, "bridge", "ros2", "--definitions", str(tmp_path), "--ecology", "lab")
+    given.is_one_sentence(f"there is no definition of ROS 2 below {tmp_path}, such as lab_msgs/msg/Mood.msg")
+
+
 @pytest.mark.parametrize("domain", ["-1", "233", "x", ""])
 def test_a_domain_is_a_number(domain: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:

@@ -10,23 +10,23 @@ from selfconf.ros_messages import MessageType
 
 ACTION = "example_interfaces/action/Fibonacci"
 PARTS = {
-    "send_goal": ("SS", f"{ACTION}_SendGoal"),
-    "get_result": ("SS", f"{ACTION}_GetResult"),
+    "send_goal": ("SS", "{}_SendGoal"),
+    "get_result": ("SS", "{}_GetResult"),
     "cancel_goal": ("SS", "action_msgs/srv/CancelGoal"),
-    "feedback": ("MP", f"{ACTION}_FeedbackMessage"),
+    "feedback": ("MP", "{}_FeedbackMessage"),
     "status": ("MP", "action_msgs/msg/GoalStatusArray"),
 }
 
 
-def parts_of(action: str) -> list[RosEndpoint]:
-    """The endpoints of the server of an action, with hashes that nobody knows."""
+def parts_of(action: str, kind: str = ACTION) -> list[RosEndpoint]:
+    """The endpoints of the server of an action of a type, with hashes that nobody knows."""
     return [
-        RosEndpoint(number, kind, f"{action}/_action/{part}", MessageType(name, "RIHS01_" + "0" * 64))
-        for number, (part, (kind, name)) in enumerate(PARTS.items())
+        RosEndpoint(number, end, f"{action}/_action/{part}", MessageType(name.format(kind), "RIHS01_" + "0" * 64))
+        for number, (part, (end, name)) in enumerate(PARTS.items())
     ]
 
 
-def known_parts_of(action: str) -> list[RosEndpoint]:
-    """The endpoints of the server of an action, with the hashes that their types have."""
-    kinds = {each.entity: ros_messages.usual_type(each.type.name) for each in parts_of(action)}
-    return [replace(each, type=kinds[each.entity] or each.type) for each in parts_of(action)]
+def known_parts_of(action: str, kind: str = ACTION) -> list[RosEndpoint]:
+    """The endpoints of the server of an action of a type, with the hashes that its parts have."""
+    kinds = {each.entity: ros_messages.usual_type(each.type.name) for each in parts_of(action, kind)}
+    return [replace(each, type=kinds[each.entity] or each.type) for each in parts_of(action, kind)]

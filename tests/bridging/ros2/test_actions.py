@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -69,6 +69,14 @@ class SimulatedServer:
         request.reply(request.key, ros_messages.message({"accepted": True}, parts.response))
         request.finish()
 
+    def end(self, fields: Mapping[str, Any]) -> None:
+        """Answer what was asked for as the result."""
+        parts = ros_messages.service_parts(self._action.get_result.type)
+        assert parts is not None
+        (request,) = self.results
+        request.reply(request.key, ros_messages.message(fields, parts.response))
+        request.finish()
+
     def until(self, happened: Callable[[], object], seconds: float = 5.0) -> bool:
         """Whether something happens within some simulated seconds."""
         return self._network.run(lambda: bool(happened()), seconds)
@@ -78,8 +86,33 @@ def test_a_goal_whose_fields_are_not_known_is_refused() -> None:
     server = SimulatedServer(parts_of("/count"))
     answer = server.called({"order": 5})
     assert server.until(answer.done)
-    assert str(answer.exception()) == f"the fields of {ACTION} are not known"
+    assert str(answer.exception()) == f"the fields of {ACTION} are not known; give its definition, by --definitions"
     assert not server.sent
+
+
+def test_an_action_is_called_whose_definition_was_given(tmp_path: Path) -> None:
+    """One like those of Nav2, with messages of a distribution in it and one of its own package."""
+    package = tmp_path / "lab_msgs"
+    for name, text in {
+        "msg/Behavior.msg": "string name\n",
+        "action/Drive.action": "geometry_msgs/PoseStamped pose\nBehavior tree\n---\nuint16 NONE=0\nuint16 error\n---\n",
+    }.items():
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_text(text)
+    try:
+        assert ros_messages.learn([tmp_path]) == []
+        server = SimulatedServer(known_parts_of("/drive", "lab_msgs/action/Drive"))
+        answer = server.called({"pose": {"header": {"frame_id": "map"}}, "tree": {"name": "spin"}})
+        assert server.until(lambda: server.sent)
+        assert b"map\0" in server.sent[0].payload
+        assert server.sent[0].payload.endswith(b"spin\0")
+        server.accept()
+        assert server.until(lambda: server.results)
+        server.end({"status": 4, "result": {"error": 7}})
+        assert server.until(answer.done)
+        assert answer.result() == {"error": 7}
+    finally:
+        ros_messages.learn([])
 
 
 def test_a_goal_that_nobody_waits_for_when_it_is_accepted_is_cancelled() -> None:
