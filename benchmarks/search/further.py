@@ -153,8 +153,8 @@ def verdict(everything: Sequence[Asked]) -> Iterator[str]:
             met = statistics.median(some) <= MEDIAN and max(some) <= WORST and not undecided(least)
             yield (
                 f"* {half}, the first configuration or the proof that there is none: {statistics.median(some):.2f}"
-                f" times the best other engine in the median, {max(some):.2f} at worst, {undecided(least)} undecided that"
-                f" another engine decides ({len(some)} instances). The goal of {MEDIAN:g}, {WORST:g} and none is"
+                f" times the best other engine in the median, {max(some):.2f} at worst, {undecided(least)} undecided"
+                f" that another engine decides ({len(some)} instances). The goal of {MEDIAN:g}, {WORST:g} and none is"
                 f" {'met' if met else 'missed'}; {sum(one > WORST for one in some)} instances take more than"
                 f" {WORST:g} times the best."
             )
