@@ -11,7 +11,7 @@ import re
 import time
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
@@ -44,10 +44,12 @@ from selfconf.rdf.turtle import Node
 Focus = TypeVar("Focus", bound=Node)
 SHAPE_SECONDS = 120.0
 """Processor time that judging by one shape may take."""
-EXTRA_SECONDS = 0.2
-"""Processor time that components may take in all beyond what is usual for the shape: what they say is untrusted."""
-USUAL_SECONDS = 0.002
-"""Processor time that is usual for a component, as long as none has been judged."""
+FAILURE_SECONDS = 0.2
+"""Processor time that may be lost with components that are given up: what they say is untrusted."""
+SLOW_SECONDS = 1.0
+"""Processor time that components may take in all beyond the share of each."""
+SHARE_SECONDS, MOST_SHARE_SECONDS = 0.004, 0.04
+"""Processor time that each component may take, as long as none conforms, and at most."""
 LEAST_SECONDS = 0.05
 """Processor time for one more try; clocks of processor time go by milliseconds."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
@@ -147,8 +149,7 @@ class _Judge:
     def wrong(self, node: Node, size: int) -> list[ShapeViolated | NotJudged]:
         """What keeps a node of some size from conforming; nothing if it conforms."""
         try:
-            with self._shares.limit(size):
-                return list(self._violations(node))
+            return list(self._shares.judged(size, lambda: list(self._violations(node))))
         except MatchTooCostly as error:
             return [NotJudged(str(error))]
         except ProcessorTimeUp:
@@ -166,33 +167,42 @@ class _Judge:
 
 
 class _Shares:
-    """How much processor time each node may take: twice what is usual, and some may take more, but not for long.
+    """How much processor time each node may take: a share of its own, and some may take more, but not for long.
 
-    Once the time beyond the usual is used up, a node is not tried if it says more than any that was judged, and as much
-    as one that took too long. So nodes are judged in the order of their size.
+    The share is twice what the slowest node takes that conforms: what cannot play is not to hold up what can. Once the
+    time beyond the shares is used up, a node is not tried if it says more than any that kept to its share, and as much
+    as one that took too long. So nodes are judged in the order of their size, and who says little is judged whatever
+    others say.
     """
 
     def __init__(self, least: float) -> None:
         """`least` is the processor time that judging takes where nothing is said, on this machine."""
-        self._left, self._judged, self._taken = EXTRA_SECONDS, 1, max(USUAL_SECONDS, 2 * least)
+        self._share = max(SHARE_SECONDS, 4 * least)
+        self._failures, self._slow = FAILURE_SECONDS, SLOW_SECONDS
         self._fine, self._too_large = 0, math.inf
 
-    @contextmanager
-    def limit(self, size: int) -> Iterator[None]:
-        """The share of a node of some size."""
-        if self._left < LEAST_SECONDS and size > self._fine and size >= self._too_large:
+    def judged(self, size: int, judge: Callable[[], Collection[ShapeViolated]]) -> Collection[ShapeViolated]:
+        """What is wrong with a node of some size. Raises ProcessorTimeUp where that takes too long."""
+        spent = self._failures < LEAST_SECONDS or not self._slow
+        if spent and size > self._fine and size >= self._too_large:
             raise ProcessorTimeUp
         began = time.process_time()
         try:
-            with processor_limit(2 * self._taken / self._judged + self._left / 2):
-                yield
+            with processor_limit(self._share + min(self._failures, self._slow) / 2):
+                wrong = judge()
         except ProcessorTimeUp:
-            self._left = max(self._left - (time.process_time() - began), 0.0)
+            self._failures = max(self._failures - (time.process_time() - began), 0.0)
             self._too_large = min(self._too_large, size)
             raise
-        self._judged += 1
-        self._taken += time.process_time() - began
-        self._fine = max(self._fine, size)
+        taken = time.process_time() - began
+        if not wrong:
+            self._share = max(self._share, min(2 * taken, MOST_SHARE_SECONDS))
+        if taken <= self._share:
+            self._fine = max(self._fine, size)
+        else:
+            self._slow = max(self._slow - (taken - self._share), 0.0)
+            self._too_large = self._too_large if self._slow else min(self._too_large, size)
+        return wrong
 
 
 @contextmanager

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import SimpleNamespace
+
 import pyshacl
 import pytest
 import rdflib
@@ -10,9 +14,11 @@ from hypothesis import strategies as st
 from pyshacl.constraints import constraint_component
 
 from selfconf.errors import TemplateError
+from selfconf.model.obstacle import ShapeViolated
 from selfconf.model.term import IRI
-from selfconf.rdf import rdflib_terms
+from selfconf.rdf import conformance, rdflib_terms
 from selfconf.rdf.conformance import violations
+from selfconf.rdf.deadline import ProcessorTimeUp
 from selfconf.rdf.turtle import document as turtle
 
 HEAD = "@prefix : <urn:x:> . @prefix sh: <http://www.w3.org/ns/shacl#> .\n"
@@ -59,6 +65,54 @@ def test_the_targets_of_the_shape_itself_do_not_matter() -> None:
 def test_a_query_that_would_leave_is_not_evaluated() -> None:
     with pytest.raises(TemplateError, match="leave out SERVICE"):
         outside(":shape sh:sparql [ sh:select 'SELECT $this { SERVICE <http://127.0.0.1:1/> { ?s ?p ?o } }' ] .")
+
+
+class Paced:
+    """Judges nodes that take so many seconds each, by a clock that goes on with that alone."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = self.limit = 0.0
+        monkeypatch.setattr(conformance, "time", SimpleNamespace(process_time=lambda: self.now))
+        monkeypatch.setattr(conformance, "processor_limit", self.limited)
+        self.shares = conformance._Shares(0.0)
+
+    @contextmanager
+    def limited(self, seconds: float) -> Iterator[None]:
+        """Note the limit of what is judged."""
+        self.limit = seconds
+        yield
+
+    def judge(self, size: int, seconds: float, conforms: bool) -> bool:
+        """Judge a node; whether it was judged in time."""
+
+        def judged() -> list[ShapeViolated]:
+            self.now += min(seconds, self.limit)
+            if seconds > self.limit:
+                raise ProcessorTimeUp
+            return [] if conforms else [ShapeViolated("no")]
+
+        try:
+            return bool(self.shares.judged(size, judged)) is not conforms
+        except ProcessorTimeUp:
+            return False
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.5, 1.0, 2.0, 4.0])
+@pytest.mark.parametrize("first", [0.003, 0.02, 0.09])
+def test_what_does_not_conform_takes_little_however_its_times_are_chosen(
+    monkeypatch: pytest.MonkeyPatch, growth: float, first: float
+) -> None:
+    pace = Paced(monkeypatch)
+    assert all(pace.judge(1, 0.001, True) for _ in range(5))
+    for number in range(1000):
+        pace.judge(2 + number // 10, first * (1 + number / 10) ** growth, False)
+    assert pace.now < 1000 * conformance.SHARE_SECONDS + conformance.SLOW_SECONDS + 2 * conformance.FAILURE_SECONDS
+    assert pace.judge(1, 0.001, True)
+
+
+def test_a_shape_that_is_slow_to_judge_is_judged_of_all_that_conform(monkeypatch: pytest.MonkeyPatch) -> None:
+    pace = Paced(monkeypatch)
+    assert all(pace.judge(1 + number % 7, 0.03, number % 3 == 0) for number in range(1000))
 
 
 def asking(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
