@@ -12,8 +12,9 @@ the composite gets a source, or loses its last one, the inside is configured aga
 
 Neither signals nor calls pass here. The inputs inside that are those of the composite follow what feeds it, and a
 configurator that asks the composite to act is told which outputs stand behind its own, and which components inside call
-what it needs (`CallAnswer`, and `Moved` when they change). Those outside that may call an operation of the composite
-may call the one that stands behind it.
+what it needs (`CallAnswer`, and `Moved` when they change). Where what stood behind an output is lost and not replaced
+within `REPLACING`, nothing does: who follows it is not to take a component that rests for one that has nothing to say.
+Those outside that may call an operation of the composite may call the one that stands behind it.
 
 Composites that could be inside of each other in a circle never live.
 """
@@ -27,7 +28,7 @@ from dataclasses import replace
 from functools import partial
 
 from selfconf.api.detached import Aside
-from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.composition import DocumentOf, Inside, configurable, why_none
 from selfconf.deployment import Outside, RunRequest, TaskRunner
 from selfconf.discovery import Beliefs
@@ -36,7 +37,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.profile import Profile
 from selfconf.model.refusal import Outcome, Refusal, Undecided
-from selfconf.model.run_event import RunEvent, TaskRunning
+from selfconf.model.run_event import ComponentLost, RunEvent, TaskRunning
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys, safe_name
@@ -49,6 +50,8 @@ log = logging.getLogger(__name__)
 
 STARTING_INSIDE = 25.0
 """Seconds that the inside of a composite may take to run: each site may take 15 to start what is dormant."""
+REPLACING = 0.5
+"""Seconds after which those outside are told that nothing stands behind an output: most repairs take less."""
 
 
 class _CompositeCode(Component):
@@ -87,6 +90,10 @@ class InsideOfComposite:
         """What waits for the inside to run."""
         self.issued: Mapping[str, tuple[Wire, ...]] = {}
         self.callers: Mapping[str, tuple[IRI, ...]] = {}
+        self._undo_silence: Undo = lambda: None
+        """Undoes the plan to tell that nothing stands behind some outputs."""
+        self._silent: frozenset[str] = frozenset()
+        """The outputs behind which nothing stands since a component inside was lost."""
         self.settled = False
         self.ending = False
         self.dropped = 0
@@ -157,20 +164,46 @@ class InsideOfComposite:
 
     def _report(self, event: RunEvent) -> None:
         log.info("%s: %s", self.profile.component.short, event.act)
-        if not isinstance(event, TaskRunning) or self.runner is None or self.ending or self._again is not None:
+        if self.runner is None or self.ending or self._again is not None:
             return
+        if isinstance(event, ComponentLost):
+            self._silent |= self._issued_by(event.component)
+            self._undo_silence()
+            self._undo_silence = self._bus.later(REPLACING, self._tell_silence)
+        if not isinstance(event, TaskRunning):
+            return
+        self._forget_silence()
         before, self.issued = self.issued, self.runner.issued_outside()
         called_by, self.callers = self.callers, self.runner.calling_outside()
         if not self.settled:
             self._settle(True)
         elif (self.issued, self.callers) != (before, called_by):
-            moved = self._bus.publisher(self.runtime.keys.moved(self.profile.component), Urgency.EVENT)
-            moved.put(encode(Moved(self.profile.component, self.runtime.life, self.issued, self.callers)))
-            moved.undeclare()
+            self._tell_moved()
+
+    def _issued_by(self, component: IRI) -> frozenset[str]:
+        """The outputs of the composite behind which a component stands that is inside."""
+        configuration, whole = None if self.runner is None else self.runner.configuration, self.profile.component
+        connections = () if configuration is None else configuration.connections
+        return frozenset(one.input for one in connections if (one.source, one.sink) == (component, whole))
+
+    def _tell_silence(self) -> None:
+        self.issued = {**self.issued, **dict.fromkeys(self._silent & self.issued.keys(), ())}
+        if self.settled:
+            self._tell_moved()
+
+    def _forget_silence(self) -> None:
+        self._undo_silence()
+        self._silent = frozenset()
+
+    def _tell_moved(self) -> None:
+        moved = self._bus.publisher(self.runtime.keys.moved(self.profile.component), Urgency.EVENT)
+        moved.put(encode(Moved(self.profile.component, self.runtime.life, self.issued, self.callers)))
+        moved.undeclare()
 
     def _ended(self, refusal: Refusal | Undecided | None) -> None:
         trouble = None if self.runner is None else self.runner.trouble
         self.runner, self.issued, self.callers = None, {}, {}
+        self._forget_silence()
         ending, self.ending = self.ending, False
         again, self._again = self._again, None
         if again is not None:

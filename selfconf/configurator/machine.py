@@ -421,7 +421,9 @@ def _rewired(state: State, component: IRI) -> Reaction:
     """Tell those that are connected to a component what stands behind it now, once all are told whom they are for."""
     if state.phase is Phase.RUNNING:
         return deploying.rewire(state, frozenset((component,)))
-    return (replace(state, rewired=state.rewired | {component}), ()) if state.phase in DEPLOYING else (state, ())
+    if component not in state.held:
+        return state, ()
+    return replace(state, rewired=state.rewired | {component}), ()  # also while another configuration is looked for
 
 
 def _reconnected(state: State) -> Reaction:

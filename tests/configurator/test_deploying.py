@@ -247,6 +247,14 @@ def test_what_moves_while_a_configuration_is_deployed_is_told_at_its_end() -> No
     assert effects == [Running(navigation()), ReleaseFrom(ODOMETRY, history.state.epoch), Unwatch(ODOMETRY)]
 
 
+def test_what_moves_while_another_configuration_is_looked_for_is_told_once_that_is_deployed() -> None:
+    history = History(TASK).running(with_arm(navigation()))
+    history.hear(Failed(ARM, "1", Cause.FAIL))
+    assert history.hear(Rewired(TRACKER)) == []
+    assert applied(history.composed(navigation())) == [CONTROL]
+    assert history.answer(CONTROL, Call.APPLY)[0] == Running(navigation())
+
+
 def test_what_gets_another_input_waits_for_its_source() -> None:
     first = navigation()
     more = replace(first, connections=(*first.connections, Connection(ODOMETRY, "pose", CONTROL, "hint")))

@@ -45,7 +45,10 @@ SPOKEN = 1.0
 ASKED = "asked"
 """What a component writes down when it calls an operation at the end of a history."""
 LOOKED_AGAIN = 1.0
-"""Seconds that a task which waits may take to look again, as it does from time to time: it is undecided meanwhile."""
+"""Seconds that a task which waits may take to look again, as it does from time to time: it is undecided meanwhile.
+
+Components with slow code have it take longer: they start and are stopped once more.
+"""
 
 
 def startable(advertisement: str) -> str:
@@ -134,7 +137,8 @@ class History:
         self.lab.let_pass(SPOKEN)
         self._ask_all()
         self.lab.let_pass(SPOKEN)
-        self.lab.until(self.watch.all_decided, LOOKED_AGAIN)
+        slowest = max((life.recorder.slow for life in self.lives), default=0.0)
+        self.lab.until(self.watch.all_decided, LOOKED_AGAIN + 2 * slowest)
         self.watch.end()
 
     def _speak(self) -> None:

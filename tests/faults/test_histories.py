@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.effort import NIGHTLY, examples
-from tests.faults.ecologies import COMPOSED, PAPER
+from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import History
 from tests.faults.invariants import ENDS, STEPS
 from tests.faults.replay import account, played, shrink
@@ -36,6 +36,19 @@ def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
         history = played(write(seed, NOT_YET, ecology), folder / ecology.name)
         replay = f"python -m tests.faults.replay {seed} --ecology {ecology.name} --shrink"
         assert not history.broken, f"{replay}\n{account(history)}"
+
+
+@pytest.mark.parametrize(
+    ("seed", "ecology"),
+    [
+        pytest.param(102905, COMPOSED, id="what stood behind an output rests, and is replaced late"),
+        pytest.param(103267, COMPOSED, id="who calls from inside is told while the task outside looks anew"),
+        pytest.param(104138, PAPER, id="a task that waits looks again at the end, with slow components"),
+    ],
+)
+def test_a_history_that_was_broken_once_is_not_any_more(seed: int, ecology: FaultyEcology, folder: Path) -> None:
+    history = played(write(seed, ecology=ecology), folder / ecology.name)
+    assert not history.broken, account(history)
 
 
 def test_a_history_is_replayed_by_its_seed(folder: Path) -> None:
