@@ -15,7 +15,8 @@ from selfconf.protocol.keys import Keys
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.component_bodies import KNOWN_NAMES, label_of
 
-TD_CONTEXT = "https://www.w3.org/2022/wot/td/v1.1"
+TD_CONTEXTS = ["https://www.w3.org/2019/wot/td/v1", "https://www.w3.org/2022/wot/td/v1.1"]
+"""Those of both versions, in this order: so TD 1.1 (section 5.3.1.1) wants it where consumers may know 1.0 alone."""
 TD = "application/td+json"
 """The media type of one Thing Description."""
 _SECURITY = {"securityDefinitions": {"nosec_sc": {"scheme": "nosec"}}, "security": ["nosec_sc"]}
@@ -26,7 +27,7 @@ def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
     title = profile.component.short or str(profile.component)
     label = label_of(profile)
     description: dict[str, Any] = {
-        "@context": [TD_CONTEXT, {prefix: QUERY_PREFIXES[prefix] for prefix in ("sc", "rob", "home")}],
+        "@context": [*TD_CONTEXTS, {prefix: QUERY_PREFIXES[prefix] for prefix in ("sc", "rob", "home")}],
         "@type": sorted(KNOWN_NAMES(kind).strip("<>") for kind in profile.types),
         "id": str(profile.component),
         "title": title,
@@ -84,17 +85,17 @@ def _form(key: str, operations: list[str]) -> Mapping[str, Any]:
 def directory_description(base: str) -> dict[str, Any]:
     """The Thing Description of the directory itself, for the introduction at `/.well-known/wot`."""
 
-    def event(name: str) -> dict[str, Any]:
-        form = {"href": f"/events/{name}", "op": "subscribeevent", "subprotocol": "sse"}
+    def event(kind: str) -> dict[str, Any]:
+        form = {"href": f"/events/{kind}{{?diff}}", "op": "subscribeevent", "subprotocol": "sse"}
         return {
             "data": {"type": "object", "properties": {"id": {"type": "string"}}},
             "uriVariables": {"diff": {"type": "boolean"}},
-            "forms": [{**form, "contentType": "text/event-stream"}],
+            "forms": [{**form, "response": {"contentType": "text/event-stream"}}],
         }
 
     query = {"query": {"title": "A valid SPARQL 1.1 query", "type": "string"}}
     return {
-        "@context": [TD_CONTEXT, "https://www.w3.org/2022/wot/discovery"],
+        "@context": [*TD_CONTEXTS, "https://www.w3.org/2022/wot/discovery"],
         "@type": "ThingDirectory",
         "title": "Components of a selfconf ecology",
         "id": "urn:selfconf:directory",
@@ -135,5 +136,9 @@ def directory_description(base: str) -> dict[str, Any]:
                 "forms": [{"href": "/search/sparql{?query}", "htv:methodName": "GET"}],
             },
         },
-        "events": {name: event(name) for name in ("thing_created", "thing_updated", "thing_deleted")},
+        "events": {
+            "thingCreated": event("thing_created"),
+            "thingUpdated": event("thing_updated"),
+            "thingDeleted": event("thing_deleted"),
+        },
     }

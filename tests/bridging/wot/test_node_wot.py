@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import socket
 import subprocess
 from collections.abc import Callable, Iterator
@@ -15,26 +13,25 @@ import pytest
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from tests.bridging.wot.bridged import active, bridging, button
+from tests.effort import at_night
+from tests.foreign import node_command, npm_packages
 from tests.sdk.living import LivingStage, until
 
-FOLDER = os.environ.get("NODE_WOT", "")
-pytestmark = [
-    pytest.mark.process,
-    pytest.mark.skipif(shutil.which("node") is None, reason="node, which node-wot needs, is not installed"),
-    pytest.mark.skipif(
-        not Path(FOLDER, "node_modules", "@node-wot").is_dir() or not FOLDER,
-        reason="type `npm install @node-wot/core@0.9.2 @node-wot/binding-http@0.9.2` in a folder, and say by NODE_WOT"
-        " which one it is",
-    ),
-]
+pytestmark = [at_night, pytest.mark.process]
 LAMP = Path(__file__).parent / "lamp.js"
 
 
+@pytest.fixture(scope="session")
+def packages() -> Path:
+    """The packages of node-wot."""
+    return npm_packages("@node-wot/core@0.9.2", "@node-wot/binding-http@0.9.2")
+
+
 @contextmanager
-def lamp(port: int) -> Iterator[Callable[[], None]]:
+def lamp(packages: Path, port: int) -> Iterator[Callable[[], None]]:
     """A lamp that is exposed; the value kills it."""
-    environment = {**os.environ, "NODE_PATH": str(Path(FOLDER).absolute() / "node_modules")}
-    process = subprocess.Popen(["node", str(LAMP), str(port)], env=environment, stdout=subprocess.PIPE)
+    command, environment = node_command(packages, LAMP, str(port))
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE)
 
     def kill() -> None:
         process.kill()
@@ -50,11 +47,11 @@ def lamp(port: int) -> Iterator[Callable[[], None]]:
             process.stdout.close()
 
 
-def test_a_lamp_by_node_wot_plays(living: LivingStage, tmp_path: Path) -> None:
+def test_a_lamp_by_node_wot_plays(living: LivingStage, tmp_path: Path, packages: Path) -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
-    with lamp(port) as kill, bridging(living, tmp_path / "ads", f"http://127.0.0.1:{port}/lamp") as found:
+    with lamp(packages, port) as kill, bridging(living, tmp_path / "ads", f"http://127.0.0.1:{port}/lamp") as found:
         source = button(living)
         wire = (Wire(IRI("urn:c:button"), "on"),)
         names = ("on", "turns", "blinks", "flicker")
@@ -66,7 +63,7 @@ def test_a_lamp_by_node_wot_plays(living: LivingStage, tmp_path: Path) -> None:
         assert found.causes() == []
         kill()
         assert until(lambda: found.causes() and not found.lives("lamp"))
-        with lamp(port):
+        with lamp(packages, port):
             assert until(lambda: found.lives("lamp"))
             before = len(turns)
             active(found)
