@@ -128,7 +128,7 @@ class Occupied(Component):
 
     def started(self) -> None:
         self.busy.set()
-        self.go_on.wait(5.0)
+        self.go_on.wait()  # for as long as the test takes: else what waits for this thread goes on too early
 
 
 def test_what_is_advertised_anew_before_it_lives_lives_by_the_new_code_alone(
@@ -142,17 +142,19 @@ def test_what_is_advertised_anew_before_it_lives_lives_by_the_new_code_alone(
         bridge.advertise(other, ImportedDocument("", "other", (component.described(),), {}))
         assert bridge.begin_life(other, occupied).result() is None
         answers = living.apply(other)
-        assert until(occupied.busy.is_set)
-        before, after, never = list[str](), list[str](), list[str]()
-        bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
-        begun = bridge.begin_life(LAMP, Lamp(before))
-        cancelled = bridge.begin_life(LAMP, Lamp(never))
-        assert cancelled.cancel()
-        bridge.advertise(LAMP, document(IRI("urn:c:Lantern")))
-        begun_anew = bridge.begin_life(LAMP, Lamp(after))
-        occupied.go_on.set()
+        try:
+            assert until(occupied.busy.is_set)
+            before, after, never = list[str](), list[str](), list[str]()
+            bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
+            begun = bridge.begin_life(LAMP, Lamp(before))
+            cancelled = bridge.begin_life(LAMP, Lamp(never))
+            assert cancelled.cancel()
+            bridge.advertise(LAMP, document(IRI("urn:c:Lantern")))
+            begun_anew = bridge.begin_life(LAMP, Lamp(after))
+        finally:
+            occupied.go_on.set()
         assert (begun.result(), begun_anew.result()) == (None, None)
         assert until(lambda: answers)
         answers = living.apply(LAMP)
-        assert until(lambda: answers and after == ["on"])
+        assert until(lambda: answers and after == ["on"]), answers
         assert (before, never) == ([], [])
