@@ -17,6 +17,7 @@ from selfconf.importing.units import unit_of
 from selfconf.importing.wot.contexts import TermMeanings
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
+from selfconf.rdf.vocabulary import XSD
 
 W3C = "https://www.w3.org/2019/wot/"
 """What the W3C's own classes begin with: they say what kind of affordance it is, not what kind of signal."""
@@ -53,9 +54,8 @@ class AffordanceReader:
             iri = self.meanings.expanded(term)
             if iri is None:
                 self._leave_out(self.meanings.family(term), self.meanings.unknown())
-            elif iri.startswith(W3C) and what == "port":
-                reason = "they say what kind of affordance it is, not what kind of signal"
-                self._leave_out("types of the W3C's vocabulary", reason)
+            elif what == "port" and (other := _other_kind(iri)) is not None:
+                self._leave_out(*other)
             else:
                 found[iri] = None
         return tuple(found)
@@ -131,6 +131,15 @@ class AffordanceReader:
 
     def _leave_out(self, what: str, reason: str, number: int = 1) -> None:
         self.ledger.leave_out(what, reason, self.source, number)
+
+
+def _other_kind(iri: IRI) -> tuple[str, str] | None:
+    """What a type of a port is that is no kind of signal, and why it is left out; None if it may be one."""
+    if iri.startswith(W3C):
+        return "types of the W3C's vocabulary", "they say what kind of affordance it is, not what kind of signal"
+    if iri in XSD:
+        return "datatypes as types", "they say how a value is written; by them a current would feed a voltage"
+    return None
 
 
 def _operations(affordance: dict[str, Any]) -> tuple[bool, bool]:

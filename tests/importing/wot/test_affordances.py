@@ -78,7 +78,9 @@ def test_an_action_is_an_operation_asked_for_by_its_input_or_its_own_type() -> N
 
 def test_what_is_unknown_is_left_out_and_the_port_is_kept() -> None:
     reading = Reading(
-        properties={"t": {"@type": ["y:A", "A", 5, "PropertyAffordance"], "unit": "furlong", "readOnly": True}}
+        properties={
+            "t": {"@type": ["y:A", "A", 5, "PropertyAffordance", "xsd:float"], "unit": "furlong", "readOnly": True}
+        }
     )
     assert reading.ports == [("output", ImportedPort("t"))]
     assert reading.left_out == {
@@ -86,6 +88,7 @@ def test_what_is_unknown_is_left_out_and_the_port_is_kept() -> None:
         "terms without a prefix": 1,
         "types that are no strings": 1,
         "types of the W3C's vocabulary": 1,
+        "datatypes as types": 1,
         "the unit 'furlong'": 1,
     }
 
