@@ -33,7 +33,9 @@ async fn talk(context: &ZContext, name: &str) -> Result<()> {
     let node = context.create_node(name).build()?;
     let publisher = node.create_pub::<Text>(&format!("/{name}/one")).build()?;
     for number in 0.. {
-        publisher.async_publish(&text(format!("judge {number}"))).await?;
+        publisher
+            .async_publish(&text(format!("judge {number}")))
+            .await?;
         sleep(PAUSE).await;
     }
     Ok(())
@@ -42,7 +44,10 @@ async fn talk(context: &ZContext, name: &str) -> Result<()> {
 /// Publishes one text on `/map`, once and for those that are subscribed later as well.
 async fn map(context: &ZContext) -> Result<()> {
     let node = context.create_node("mapper").build()?;
-    let kept = QosProfile { durability: QosDurability::TransientLocal, ..Default::default() };
+    let kept = QosProfile {
+        durability: QosDurability::TransientLocal,
+        ..Default::default()
+    };
     let publisher = node.create_pub::<Text>("/map").with_qos(kept).build()?;
     publisher.async_publish(&text("the map")).await?;
     pending().await
@@ -74,7 +79,10 @@ async fn ask(context: &ZContext) -> Result<()> {
     let client = node.create_client::<AddTwoInts>("/four").build()?;
     let request = AddTwoIntsRequest { a: 40, b: 2 };
     loop {
-        if let Ok(answer) = client.call_with_timeout(&request, Duration::from_secs(2)).await {
+        if let Ok(answer) = client
+            .call_with_timeout(&request, Duration::from_secs(2))
+            .await
+        {
             println!("answered {}", answer.sum);
         }
         sleep(PAUSE).await;
@@ -121,7 +129,9 @@ async fn count(goal: GoalHandle<Fibonacci, Executing>) -> Result<()> {
         if order < ENDLESS {
             sequence.push(sequence[sequence.len() - 2] + sequence[sequence.len() - 1]);
         }
-        goal.publish_feedback(FibonacciFeedback { partial_sequence: sequence.clone() })?;
+        goal.publish_feedback(FibonacciFeedback {
+            partial_sequence: sequence.clone(),
+        })?;
         sleep(PAUSE).await;
     }
     goal.succeed(FibonacciResult { sequence })
@@ -147,9 +157,18 @@ async fn look(context: &ZContext) -> Result<()> {
     let mut told = BTreeSet::new();
     loop {
         for (name, namespace) in graph.get_node_names() {
-            let namespace = if namespace == "/" { String::new() } else { namespace };
-            for (kind, verb) in [(EndpointKind::Publisher, "publishes"), (EndpointKind::Service, "serves")] {
-                for (what, _) in graph.get_names_and_types_by_node((namespace.clone(), name.clone()), kind) {
+            let namespace = if namespace == "/" {
+                String::new()
+            } else {
+                namespace
+            };
+            for (kind, verb) in [
+                (EndpointKind::Publisher, "publishes"),
+                (EndpointKind::Service, "serves"),
+            ] {
+                for (what, _) in
+                    graph.get_names_and_types_by_node((namespace.clone(), name.clone()), kind)
+                {
                     if told.insert((name.clone(), verb, what.clone())) {
                         println!("{name} {verb} {what}");
                     }
