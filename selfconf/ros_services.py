@@ -65,7 +65,8 @@ SERVICES = {
 """The definitions of request and response, by the name of the service."""
 
 KNOWN_DEFINITIONS = {
-    # That of rosbags has a `char` of IDL in it, which is another one than that of ROS 2.
+    # Those of rosbags have a `char` of IDL in them, which is another one than that of ROS 2.
+    "std_msgs/msg/Char": "char data",
     EVENT_INFO: "uint8 event_type\nbuiltin_interfaces/Time stamp\nchar[16] client_gid\nint64 sequence_number",
     **SERVICES,
     **KNOWN_ACTIONS,

@@ -76,6 +76,14 @@ def sent(name: str) -> tuple[bytes, MessageType]:
     return ros_messages.message({}, kind), kind
 
 
+def test_a_character_has_the_hash_that_others_compute() -> None:
+    """As hiroz 0.2.1 has it: an octet."""
+    number = "3ad2d04dd29ba19d04b16659afa3ccaedd691914b02a64e82e252f2fa6a586a9"
+    kind = MessageType("std_msgs/msg/Char", f"RIHS01_{number}")
+    assert ros_messages.usual_type(kind.name) == kind
+    assert ros_messages.message_fields(ros_messages.message({"data": 65}, kind), kind) == {"data": 65}
+
+
 def test_a_request_without_fields_has_an_octet() -> None:
     assert ros_messages.message({}, found("std_srvs/srv/Trigger").request) == b"\x00\x01\x00\x00\x00"
 
