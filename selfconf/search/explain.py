@@ -110,11 +110,15 @@ class FeasibilityOracle:
         """Return whether constraints can hold together, all others being dropped."""
         wanted = set(constraints)
         distinct = Distinct() in wanted
+        # Paid before the subproblem is made: that alone may take longer than the answer, and is in vain without budget.
+        self.budget.spend(len(wanted))
+        if self.budget.steps == 0:
+            return Undecided(0)
         part = subproblem(self.given, wanted)
         if part.wiped_out() is not None or (distinct and self._hall_set(part, wanted)):
             return False
         aided = solver_available()
-        self.budget.spend(len(wanted) + sum(map(len, part.options)))
+        self.budget.spend(sum(map(len, part.options)))
         if self.budget.steps == 0:
             return Undecided(0)
         found = first_solution(part, self.budget.part(QUESTION_STEPS) if aided else self.budget, distinct)

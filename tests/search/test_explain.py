@@ -5,9 +5,13 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from selfconf.model.refusal import Refusal
+from benchmarks.search.further_families import pigeonholes
+from selfconf.model.refusal import Refusal, Undecided
+from selfconf.search import explain
+from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
+from selfconf.search.reduction import LazyReduction, all_of
 from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.possibility import possible
@@ -120,3 +124,18 @@ def test_a_source_with_a_minimum_of_zero_is_not_said_to_issue_nothing() -> None:
     (reason,) = first.search(given_).reasons
     cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for nobody (sc:minCount 0)"
     assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"
+
+
+def test_without_budget_a_question_stays_open_even_where_no_search_would_be_needed() -> None:
+    deaf = problem({"eye": [component("deaf")], "mind": [component("mind", "i:Image")]}, "eye>mind")
+    given_ = LazyReduction(deaf).reduced
+    assert explain.FeasibilityOracle(given_, Budget()).feasible(all_of(given_)) is False
+    oracle = explain.FeasibilityOracle(given_, Budget(2))
+    assert isinstance(oracle.feasible(all_of(given_)), Undecided)
+
+
+def test_explaining_that_ends_before_all_is_asked_says_so() -> None:
+    crowded = LazyReduction(pigeonholes(12, 11, seed=1))
+    stopped = explain.refusal(crowded, steps=3_000)
+    assert (stopped.irreducible, stopped.minimality) == (False, "unproved")
+    assert stopped.reasons
