@@ -8,6 +8,7 @@ that it goes with, which is all that a template can say of pairs.
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
@@ -277,6 +278,69 @@ def langford(pairs: int, seed: int) -> Problem:
     return in_pairs(domains, {(a, b): apart(a + 1, b + 1) for a, b in combinations(range(pairs), 2)})
 
 
+def frequencies(radios: int, channels: int, reach: float, seed: int) -> Problem:
+    """Radios on a square: two near each other use channels apart, and further apart the nearer they are."""
+    rng = random.Random(seed)
+    places = [(rng.random(), rng.random()) for _ in range(radios)]
+    pairs: dict[tuple[int, int], Goes] = {}
+    for a, b in combinations(range(radios), 2):
+        distance = math.dist(places[a], places[b])
+        if distance < reach:
+            pairs[a, b] = partial(_apart, 1 + (distance < 0.7 * reach) + (distance < 0.4 * reach))
+    return in_pairs([rng.sample(range(channels), channels - 2) for _ in range(radios)], pairs)
+
+
+def _apart(least: int, one: int, other: int) -> bool:
+    return abs(one - other) >= least
+
+
+def plant(layers: int, width: int, asked: int, candidates: int, signals: int, seed: int) -> Problem:
+    """Layers of roles for several machines each; a machine wants two products of the layer above, and makes two."""
+    rng = random.Random(seed)
+    parts, edges = [], []
+    for layer in range(layers):
+        for place in range(width):
+            role = layer * width + place
+            edges += [(role - width - place + above, role) for above in rng.sample(range(width), 2) if layer]
+            parts.append(
+                [
+                    Candidate(
+                        profile(
+                            f"m{role:03}.{k:03}",
+                            [f"p{layer}.{s}" for s in rng.sample(range(signals), 2)] if layer else [],
+                            [f"p{layer + 1}.{s}" for s in rng.sample(range(signals), 2)],
+                        )
+                    )
+                    for k in range(candidates)
+                ]
+            )
+    return counted(parts, [asked] * len(parts), edges)
+
+
+def agreements(roles: int, candidates: int, parameters: int, values: int, share: float, seed: int) -> Problem:
+    """Roles whose candidates admit some values of a few of many free parameters, which all have to agree on."""
+    rng = random.Random(seed)
+    variables = tuple(
+        Variable(iri(f"parameter{p}"), tuple(iri(f"value{p}.{v:02}") for v in range(values))) for p in range(parameters)
+    )
+    parts = []
+    for role in range(roles):
+        about = rng.sample(range(parameters), 3)
+        parts.append(
+            [
+                Candidate(
+                    profile(f"c{role:03}.{k:03}"),
+                    tuple(
+                        sum(1 << v for v in range(values) if rng.random() < share) if p in about else ANY_VALUE
+                        for p in range(parameters)
+                    ),
+                )
+                for k in range(candidates)
+            ]
+        )
+    return counted(parts, [1] * roles, (), variables)
+
+
 Family = tuple[tuple[str, Callable[[int], Problem]], ...]
 """What each size is called, and how an instance is made from a seed."""
 
@@ -337,7 +401,20 @@ REPORTING: dict[str, Family] = {
 }
 """What is only measured."""
 
-UNSEEN: dict[str, Family] = {}
+UNSEEN: dict[str, Family] = {
+    "frequencies": (
+        ("40 radios, 10 channels", lambda seed: frequencies(40, 10, 0.3, seed)),
+        ("80 radios, 14 channels", lambda seed: frequencies(80, 14, 0.25, seed)),
+    ),
+    "plant": (
+        ("5 layers of 4 roles of 2", lambda seed: plant(5, 4, 2, 12, 7, seed)),
+        ("10 layers of 6 roles of 2", lambda seed: plant(10, 6, 2, 16, 8, seed)),
+    ),
+    "agreements": (
+        ("30 roles, 8 parameters", lambda seed: agreements(30, 8, 8, 8, 0.4, seed)),
+        ("60 roles, 12 parameters", lambda seed: agreements(60, 8, 12, 10, 0.4, seed)),
+    ),
+}
 """What is measured once the search is finished."""
 
 SMALL: dict[str, Family] = {
