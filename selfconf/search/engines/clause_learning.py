@@ -65,6 +65,8 @@ class ClauseSolver:
         self.reduced = reduced
         self._solver = getattr(solvers, solver or SOLVER)()
         self._model: list[int] = []
+        self.conflicts = 0
+        """How many conflicts the solver has met."""
         self._patience = CONFLICTS_PER_CALL
         """How many conflicts the next call has."""
         self._counters = counters
@@ -116,18 +118,19 @@ class ClauseSolver:
         found: bool | None = None
         while found is None and budget.steps != 0:
             found = self.ask(assumed, budget)
-        return Undecided(self.conflicts()) if found is None else found
+        return Undecided(self.conflicts) if found is None else found
 
     def ask(self, assumed: Sequence[int], budget: Budget, most: int | None = None) -> bool | None:
         """Return whether the clauses can hold under assumptions; None if that takes more conflicts than a call may."""
         # The solver handles no signal inside a call, so that calls have to end for a time limit to be kept. Were no
         # interrupt expected, it would catch Ctrl-C itself, and raise an error of its own. As calls about a question
         # double, a limit is kept late by no more than the time that the question has taken already.
-        before = self.conflicts()
+        before = self.conflicts
         self._solver.conf_budget(min(some for some in (self._patience, most, budget.steps) if some is not None))
         found: bool | None = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
         self._patience = min(2 * self._patience, LONGEST_CALL) if found is None else CONFLICTS_PER_CALL
-        budget.spend(1 + self.conflicts() - before)
+        self.conflicts = int(self._solver.accum_stats()["conflicts"])
+        budget.spend(1 + self.conflicts - before)
         if found:
             self._model = self._solver.get_model()
         return found
@@ -175,10 +178,6 @@ class ClauseSolver:
             for clause in counter.cnf.clauses[-counter.nof_new :] if counter.nof_new else ():
                 self.add(clause)
         return int(counter.rhs[number - 1])
-
-    def conflicts(self) -> int:
-        """Return how many conflicts the solver has met."""
-        return int(self._solver.accum_stats()["conflicts"])
 
     def holds(self, literal: int) -> bool:
         """Return whether a literal holds in the last model."""

@@ -132,10 +132,10 @@ class _Descent:
             self._inform(turn)
             if self.finished:
                 return
-            before = turn.clauses.conflicts()
+            before = turn.clauses.conflicts
             self._ask(turn, left)
             if left is not None:
-                left -= 1 + turn.clauses.conflicts() - before
+                left -= 1 + turn.clauses.conflicts - before
 
     def _heard(self) -> None:
         """Take over what the engine beside has found."""
