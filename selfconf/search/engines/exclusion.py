@@ -77,7 +77,7 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
     found = _Counting(graph, groups)
     found.run()
     return ExclusiveGroups(
-        [list(_bits(group)) for group in groups],
+        groups,
         frozenset(graph.stated),
         [list(_bits(group)) for group in found.played],
         frozenset(_bits(found.excluded)),
@@ -159,8 +159,8 @@ class _Conflicts:
                 for number in _bits(mask):
                     self.across[number] |= mask & ~(1 << number)
 
-    def groups(self) -> Iterator[int]:
-        """Yield groups until each conflict across roles is in one; components that are shared come first."""
+    def groups(self) -> Iterator[list[int]]:
+        """Yield groups, in ascending order of their options, until each conflict across roles is in one; components that are shared come first."""
         left = list(self.across)
         whole = [
             mask | (self.of_role[role] if self.asked[role] == 1 else 0) & ~(1 << number)
@@ -168,34 +168,40 @@ class _Conflicts:
         ]
         for number in range(len(left)):
             while left[number]:
-                group = self._grown(number, left[number], whole)
-                for member in _bits(group):
-                    left[member] &= ~group
-                yield group
+                members = self._grown(number, left[number], whole)
+                others = ~_mask(members)
+                for member in members:
+                    left[member] &= others
+                yield members
 
-    def _grown(self, start: int, uncovered: int, whole: Sequence[int]) -> int:
+    def _grown(self, start: int, uncovered: int, whole: Sequence[int]) -> list[int]:
         """Return a group with an option: of conflicts not covered yet first, then of any."""
-        group, common = 1 << start, whole[start]
+        group, common = [start], whole[start]
         for wanted in (uncovered, -1):
-            while common & wanted:
-                lowest = common & wanted & -(common & wanted)
-                group |= lowest
-                common &= whole[lowest.bit_length() - 1]
-        return group
+            while fitting := common & wanted:
+                group.append((fitting & -fitting).bit_length() - 1)
+                common &= whole[group[-1]]
+        return sorted(group)
 
 
 class _Counting:
     """Looks for roles whose slots have no more groups than they need."""
 
-    def __init__(self, graph: _Conflicts, groups: Sequence[int]) -> None:
+    def __init__(self, graph: _Conflicts, groups: Sequence[Sequence[int]]) -> None:
         self.graph = graph
-        self.groups = [group for group in groups if len(set(self._roles(group))) > 2]
-        self.roles = [frozenset(self._roles(group)) for group in self.groups]
+        self.groups: list[int] = []
+        """The groups of more than two roles, as masks."""
+        self.roles: list[frozenset[int]] = []
+        """The roles of each of these."""
         self.having: list[list[int]] = [[] for _ in graph.options]
         """For each option the groups that have it."""
-        for number, group in enumerate(self.groups):
-            for option in _bits(group):
-                self.having[option].append(number)
+        for members in groups:
+            roles = frozenset([graph.role[option] for option in members])
+            if len(roles) > 2:
+                for option in members:
+                    self.having[option].append(len(self.groups))
+                self.groups.append(_mask(members))
+                self.roles.append(roles)
         self.left = SHARES_PER_OPTION * len(graph.options)
         """How many groups may still be put together."""
         self.played: list[int] = []
