@@ -160,7 +160,7 @@ class _Conflicts:
                     self.across[number] |= mask & ~(1 << number)
 
     def groups(self) -> Iterator[list[int]]:
-        """Yield groups, in ascending order of their options, until each conflict across roles is in one; components that are shared come first."""
+        """Yield groups, their options in order, until each conflict across roles is in one; shared components first."""
         left = list(self.across)
         whole = [
             mask | (self.of_role[role] if self.asked[role] == 1 else 0) & ~(1 << number)
