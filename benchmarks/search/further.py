@@ -93,7 +93,7 @@ def _timed(
         best = min((one.seconds for one in found.values() if one.answer is not None), default=math.inf)
         # Ours is never stopped for being slow: how slow it is is what is asked.
         patience = limit if engine == "selfconf" else min(limit, 1.0 + PATIENCE * best)
-        found[engine] = measure(engine, problem, patience, times, how)
+        found[engine] = measure(engine, problem, patience, times, how, traced=False)
     return found
 
 

@@ -12,7 +12,8 @@ import resource
 import time
 import tracemalloc
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 
 from benchmarks.search import families as f
@@ -38,38 +39,47 @@ class Measured:
 
 
 def measure(
-    engine: str, problem: Problem, limit: float, times: int = 3, engines: Mapping[str, Engine] = ENGINES
+    engine: str,
+    problem: Problem,
+    limit: float,
+    times: int = 3,
+    engines: Mapping[str, Engine] = ENGINES,
+    traced: bool = True,
 ) -> Measured:
-    """The time from the problem to the answer, building a model of it included, importing a library not."""
-    found = _once(engine, problem, limit, engines)
+    """The time from the problem to the answer, building a model of it included, importing a library not.
+
+    What selfconf allocates is counted in a second run of it, if that is `traced`, as long again as the limit at most.
+    """
+    traced = traced and engine == "selfconf"  # what it needs may fit into what making the problem has left free
+    found = _once(engine, problem, limit, engines, traced)
     for _ in range(times - 1):
         if found.answer is not None and found.seconds < QUICK:
-            again = _once(engine, problem, limit, engines)
+            again = _once(engine, problem, limit, engines, traced)
             found = min(found, again, key=lambda one: (one.answer is None, one.seconds))
     return found
 
 
-def _once(engine: str, problem: Problem, limit: float, engines: Mapping[str, Engine]) -> Measured:
+def _once(engine: str, problem: Problem, limit: float, engines: Mapping[str, Engine], traced: bool) -> Measured:
     context = multiprocessing.get_context("fork")
     receiving, sending = context.Pipe(duplex=False)
     gc.collect()
     gc.freeze()  # so that the child does not copy the pages of the problem as it counts references to nothing
-    process = context.Process(target=_child, args=(engine, engines[engine], problem, sending))
+    process = context.Process(target=_child, args=(engine, engines[engine], problem, sending, traced))
     process.start()
     sending.close()
     found = Measured(limit, None)
-    try:
+    with suppress(EOFError):
         if receiving.poll(60) and receiving.recv() and receiving.poll(limit):
             found = receiving.recv()
-    except EOFError:
-        found = Measured(limit, None)
+            if traced and receiving.poll(limit):
+                found = replace(found, memory=max(found.memory, receiving.recv()))
     process.kill()
     process.join()
     gc.unfreeze()
     return found
 
 
-def _child(engine: str, solved: Engine, problem: Problem, sending: Connection) -> None:
+def _child(engine: str, solved: Engine, problem: Problem, sending: Connection, traced: bool) -> None:
     _own(problem)
     for small in WARMING[:2] if engine in SMALL else WARMING:
         solved(small)
@@ -79,11 +89,11 @@ def _child(engine: str, solved: Engine, problem: Problem, sending: Connection) -
     answer = solved(problem)
     seconds = time.perf_counter() - start
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
-    if engine == "selfconf":  # what it needs may fit into what making the problem has left free
+    sending.send(Measured(seconds, answer, grown))
+    if traced:
         tracemalloc.start()
         solved(problem)
-        grown = max(grown, tracemalloc.get_traced_memory()[1] / 1024**2)
-    sending.send(Measured(seconds, answer, grown))
+        sending.send(tracemalloc.get_traced_memory()[1] / 1024**2)
     sending.close()
 
 
