@@ -37,7 +37,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.profile import Profile
 from selfconf.model.refusal import Outcome, Refusal, Undecided
-from selfconf.model.run_event import ComponentLost, RunEvent, TaskRunning
+from selfconf.model.run_event import ComponentLost, ComponentReleased, RunEvent, TaskRunning
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys, safe_name
@@ -90,10 +90,12 @@ class InsideOfComposite:
         """What waits for the inside to run."""
         self.issued: Mapping[str, tuple[Wire, ...]] = {}
         self.callers: Mapping[str, tuple[IRI, ...]] = {}
+        self._standing: Mapping[IRI, frozenset[str]] = {}
+        """The components inside that issue outputs of the composite, with these outputs."""
         self._undo_silence: Undo = lambda: None
         """Undoes the plan to tell that nothing stands behind some outputs."""
         self._silent: frozenset[str] = frozenset()
-        """The outputs behind which nothing stands since a component inside was lost."""
+        """The outputs behind which nothing stands since a component inside was lost, or came to rest."""
         self.settled = False
         self.ending = False
         self.dropped = 0
@@ -166,13 +168,14 @@ class InsideOfComposite:
         log.info("%s: %s", self.profile.component.short, event.act)
         if self.runner is None or self.ending or self._again is not None:
             return
-        if isinstance(event, ComponentLost):
-            self._silent |= self._issued_by(event.component)
+        if isinstance(event, ComponentLost | ComponentReleased) and event.component in self._standing:
+            self._silent |= self._standing[event.component]
             self._undo_silence()
             self._undo_silence = self._bus.later(REPLACING, self._tell_silence)
         if not isinstance(event, TaskRunning):
             return
         self._forget_silence()
+        self._standing = self._issuing()
         before, self.issued = self.issued, self.runner.issued_outside()
         called_by, self.callers = self.callers, self.runner.calling_outside()
         if not self.settled:
@@ -180,11 +183,14 @@ class InsideOfComposite:
         elif (self.issued, self.callers) != (before, called_by):
             self._tell_moved()
 
-    def _issued_by(self, component: IRI) -> frozenset[str]:
-        """The outputs of the composite behind which a component stands that is inside."""
+    def _issuing(self) -> dict[IRI, frozenset[str]]:
+        """The components inside that issue outputs of the composite, with these outputs."""
         configuration, whole = None if self.runner is None else self.runner.configuration, self.profile.component
-        connections = () if configuration is None else configuration.connections
-        return frozenset(one.input for one in connections if (one.source, one.sink) == (component, whole))
+        found: dict[IRI, frozenset[str]] = {}
+        for one in () if configuration is None else configuration.connections:
+            if one.sink == whole:
+                found[one.source] = found.get(one.source, frozenset()) | {one.input}
+        return found
 
     def _tell_silence(self) -> None:
         self.issued = {**self.issued, **dict.fromkeys(self._silent & self.issued.keys(), ())}
@@ -202,7 +208,7 @@ class InsideOfComposite:
 
     def _ended(self, refusal: Refusal | Undecided | None) -> None:
         trouble = None if self.runner is None else self.runner.trouble
-        self.runner, self.issued, self.callers = None, {}, {}
+        self.runner, self.issued, self.callers, self._standing = None, {}, {}, {}
         self._forget_silence()
         ending, self.ending = self.ending, False
         again, self._again = self._again, None

@@ -42,6 +42,7 @@ def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
     ("seed", "ecology"),
     [
         pytest.param(102905, COMPOSED, id="what stood behind an output rests, and is replaced late"),
+        pytest.param(106261, COMPOSED, id="what stood behind an output is released, as the inside begins anew"),
         pytest.param(103267, COMPOSED, id="who calls from inside is told while the task outside looks anew"),
         pytest.param(104138, PAPER, id="a task that waits looks again at the end, with slow components"),
     ],
