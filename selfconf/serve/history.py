@@ -71,6 +71,8 @@ class History:
         quads = list(ox.parse(triples, format=ox.RdfFormat.N_TRIPLES))
         kind, wanted = ox.NamedNode(TYPE), ox.NamedNode(SC.Configuration)
         name = next((q.subject.value for q in quads if (q.predicate, q.object) == (kind, wanted)), None)
+        if name is not None and self._has_ended(name):
+            return {}  # told late: another has taken its place already
         before = self._current.pop(graph, None)
         over: dict[str, bytes] = {}
         if before is not None and before != name:

@@ -35,6 +35,14 @@ def test_a_configuration_ends_when_another_takes_its_place_or_its_configurator_g
     assert set(kept.past()) == {"urn:c:1", "urn:c:2"}
 
 
+def test_a_configuration_that_is_told_after_its_end_has_ended_once(tmp_path: Path) -> None:
+    kept = History(tmp_path)
+    for number in (1, 2, 1, 3):
+        kept.note({GRAPH: told(number)})
+    ends = {name: triples.count(b"invalidatedAtTime") for name, triples in kept.past().items()}
+    assert ends == {"urn:c:1": 1, "urn:c:2": 1, "urn:c:3": 0}
+
+
 def test_it_is_there_for_the_next_server(tmp_path: Path) -> None:
     first = History(tmp_path)
     for number in (1, 2, 3):
