@@ -64,6 +64,9 @@ from selfconf.search.reduction import (
 
 EXPLANATION_STEPS = 50_000
 """Steps spent at most on making reasons irreducible, a second or two; a question costs one for each option at least."""
+READINGS = 4_000_000
+"""Needs and supports of classes that are read at most, a second or two: each question that arc consistency or matching
+answers reads all of them, and has no other cost."""
 SMALLEST_STEPS = 20_000
 """Steps spent at most on looking for a smaller reason."""
 SMALLEST_OPTIONS = 5_000
@@ -103,6 +106,9 @@ class FeasibilityOracle:
 
     def __init__(self, given: ReducedProblem, budget: Budget) -> None:
         self.given, self.budget = given, budget
+        self.readings = Budget(READINGS)
+        """How many needs and supports may still be read to prepare questions, which takes no steps of the other one."""
+        self._size = sum(len(kind.needs) + len(kind.supports) for kind in given.kinds())
         self.complete = True
         """False once a question was left open: then what remains may be reducible."""
 
@@ -110,15 +116,14 @@ class FeasibilityOracle:
         """Return whether constraints can hold together, all others being dropped."""
         wanted = set(constraints)
         distinct = Distinct() in wanted
-        # Paid before the subproblem is made: that alone may take longer than the answer, and is in vain without budget.
-        self.budget.spend(len(wanted))
-        if self.budget.steps == 0:
+        if self.readings.steps == 0:
             return Undecided(0)
+        self.readings.spend(self._size)
         part = subproblem(self.given, wanted)
         if part.wiped_out() is not None or (distinct and self._hall_set(part, wanted)):
             return False
         aided = solver_available()
-        self.budget.spend(sum(map(len, part.options)))
+        self.budget.spend(len(wanted) + sum(map(len, part.options)))
         if self.budget.steps == 0:
             return Undecided(0)
         found = first_solution(part, self.budget.part(QUESTION_STEPS) if aided else self.budget, distinct)

@@ -6,6 +6,10 @@ it, by way of a literal for the need where several options have it.
 A literal for each value of a variable, at most one of which holds: an option that constrains the variable implies one
 of the values that it admits, or none of those that it does not admit.
 
+Where several roles may feed a need, the options of each that support it have a literal which holds iff one of them
+plays, one for all needs that the same options support: what clause learning then learns is about the signals that roles
+issue, and not about candidates one by one.
+
 *Groups.* Where options exclude each other (`exclusion`), one bound for each group says so, in place of the needs from
 which that follows; and what counting the groups has proved is added.
 
