@@ -32,7 +32,7 @@ from selfconf.search.problem import Problem
 SEED = 94_211
 SEEDS = 10
 LIMIT = 60.0
-PATIENCE = 5.0
+PATIENCE = 3.0
 """An engine that has taken so many times as long as the best, and a second, is not waited for."""
 MEDIAN, WORST, ANY = 0.7, 2.0, 2.0
 """The goals: the first configuration in so many times the best in the median and at worst; any one in the median."""
