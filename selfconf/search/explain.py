@@ -1,18 +1,20 @@
 """Why there is no configuration: a derivation of irreducible reasons, cheapest first.
 
 1. Roles that contradict themselves or have too few candidates, each a reason by itself. They are reason enough.
-2. Arc consistency leaves a role without candidates (a domain wipe-out). The constraints that its derivation used, from
-   that role back to the needs that nothing supports, cannot hold together.
+2. Arc consistency leaves a role without candidates (a domain wipe-out). If each of them has a need that nothing
+   supports, a minimal hitting set of such needs is the reason; irreducible by itself, and found in linear time, which
+   matters where a thousand candidates have as many needs. Else the constraints that the derivation used, from that role
+   back to the needs that nothing supports, cannot hold together.
 3. Matching fails: Hall's set of roles.
 4. Groups of options that exclude each other are fewer than the slots that draw on them: these roles, and the needs from
    which the groups follow.
 5. Otherwise the clause-learning engine names assumptions that cannot hold together (an unsatisfiable core), again and
    again with one of them left out, until each is needed.
 
-What 2 to 4 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component only:
-then the rest is possible without any one of its roles. So is the set of all constraints where there is no such engine:
-a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains of n. Each is
-decided on a subproblem with only these constraints in force, which is small when they are few.
+What else 2 to 4 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component
+only: then the rest is possible without any one of its roles. So is the set of all constraints where there is no such
+engine: a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains of n.
+Each is decided on a subproblem with only these constraints in force, which is small when they are few.
 Irreducible (a minimal unsatisfiable subset) does not mean smallest. The smallest is looked for afterwards, with a
 budget of its own (`smallest_core`); a refusal says which of both its reason is proved to be. Where the budget for
 making it irreducible ends, the reason is the smallest set that was met until then.
@@ -20,6 +22,7 @@ making it irreducible ends, the reason is the smallest set that was met until th
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from selfconf.model import requirement as model
@@ -174,14 +177,18 @@ def _preference(constraint: Constraint) -> int:
 def core(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
     """Return an irreducible set of constraints that cannot hold together."""
     given = oracle.given
-    role = pruned(given).wiped_out()
-    if role is not None:
-        return oracle.irreducible(derivation(given, role))
+    consistent_part = pruned(given)
+    wiped_out = [role for role, slots in Counter(given.slots).items() if len(consistent_part.options[role]) < slots]
+    for role in wiped_out:
+        if unmet := never_met(given, role):
+            return unmet
+    if wiped_out:
+        return oracle.irreducible(derivation(given, wiped_out[0]))
     lack = hall_set(given.slots, given.components())
     if lack is not None:
         together: tuple[Constraint, ...] = (*map(Played, lack.roles), Distinct())
         return together if lack.wanted == lack.found + 1 else oracle.irreducible(together)
-    crowded = exclusive_groups(pruned(given)).crowded
+    crowded = exclusive_groups(consistent_part).crowded
     if crowded:
         together = _among(given, crowded)
         # What arc consistency removed before may have needed an input that a role outside feeds.
@@ -268,6 +275,37 @@ def _core_by_deletion(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
                 oracle.complete &= answer is True
         remaining = set(left)
         return tuple(one for one in constraints if clauses.guards.get(one) in remaining)
+
+
+def never_met(given: ReducedProblem, role: int) -> tuple[Constraint, ...]:
+    """Return that a role is played, and needs that nothing supports of which each of its candidates has one.
+
+    Without any one of them the others can hold: each is the only one of them that some class has, and this class could
+    play alone. Nothing where a candidate has no such need, or where the role asks for several players.
+    """
+    supported = {need for kind in given.kinds() for need in kind.supports}
+    hopeless = [set(kind.needs) - supported for kind in {option.kind for option in given.options[role]}]
+    if given.slots.count(role) != 1 or not all(hopeless):
+        return ()
+    having: dict[int, list[int]] = {}
+    for place, needs in enumerate(hopeless):
+        for need in needs:
+            having.setdefault(need, []).append(place)
+    times = [0] * len(hopeless)
+    # Those of most candidates first, and where as many have two, the one that arc consistency comes to first.
+    chosen = dict.fromkeys(sorted(having, key=lambda need: (-len(having[need]), -need)))
+    for need in [*chosen]:
+        if any(not times[place] for place in having[need]):
+            for place in having[need]:
+                times[place] += 1
+        else:
+            del chosen[need]
+    for need in reversed([*chosen]):
+        if all(times[place] > 1 for place in having[need]):
+            del chosen[need]
+            for place in having[need]:
+                times[place] -= 1
+    return (Played(role), *map(Fed, sorted(chosen)))
 
 
 def derivation(given: ReducedProblem, role: int) -> tuple[Constraint, ...]:
