@@ -2,7 +2,7 @@
 
     python -m benchmarks.recruiting [--seed 1] [--services 158 558 ...] [--smoke] [--write]
 
-The sizes are those of the contest WSC 2008, then 10,000 and 100,000 services, in two families (`services.py`).
+The sizes are those of the contest WSC 2008, then 10,000 and 100,000 services, in three families (`services.py`).
 selfconf gets advertisements in Turtle and reports the time to load them apart from the time for partition and search;
 the general solvers (`engines.py`) get numbers, and report the time for model and search, up to a limit. Each engine has
 a process of its own, one after another. All are asked for the fewest services; each answer is checked by forward

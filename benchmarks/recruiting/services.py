@@ -6,13 +6,15 @@ that of the input or lies below it. Only the concepts of the instances matter to
 here. What is given is issued by one component without inputs; the request is the only role, a component whose inputs
 are the wanted concepts.
 
-There are two families:
+There are three families:
 
 * `contest`, as the sets of the contest are built: a few solutions, each a row of steps of which one needs all that the
   step before issues, each step offered by several services that ask for less or issue more; the other services take and
   give what is drawn at random, and can mostly not be fed.
 * `decoys`: layers of services, each of which needs what the layer before issues, or something below that in the
   taxonomy; the other services resemble them, so that most can be fed, and many are detours.
+* `markets`: few kinds of services, each offered by many with equal ports, that ask for what is general and issue what
+  is specific, in a taxonomy that is much deeper; one kind follows from another in a long row, and most can be fed.
 """
 
 from __future__ import annotations
@@ -91,10 +93,11 @@ class Taxonomy:
     children: dict[int, list[int]]
 
     @classmethod
-    def of(cls, number: int, rng: random.Random) -> Taxonomy:
-        """A tree for a number of services."""
+    def of(cls, number: int, rng: random.Random, deep: bool = False) -> Taxonomy:
+        """A tree for a number of services; 6,000 concepts lie 15 deep in the mean, or 35 in a deep one."""
         concepts = CONCEPTS.get(number) or min(MOST_CONCEPTS, 2 * number)
-        parent = {low: rng.randrange(max(0, low // 3 - 2), low) for low in range(1, concepts)}
+        first = (2 * low // 3 if deep else max(0, low // 3 - 2) for low in range(1, concepts))
+        parent = {low: rng.randrange(least, low) for low, least in enumerate(first, 1)}
         children: dict[int, list[int]] = {}
         for low, high in parent.items():
             children.setdefault(high, []).append(low)
@@ -192,6 +195,34 @@ def _solution(
     return services
 
 
+def markets(number: int, seed: int) -> Services:
+    """An instance of a number of services, many of which are equal to others."""
+    rng = random.Random(f"markets/{number}/{seed}")
+    tree = Taxonomy.of(number, rng, deep=True)
+    leaves = [concept for concept in range(len(tree)) if concept not in tree.children]
+
+    def general(concept: int, most: int) -> int:
+        for _ in range(rng.randint(0, most)):
+            concept = tree.parent[concept] if tree.parent.get(concept, 0) > len(tree) // 50 else concept
+        return concept
+
+    layer = rng.sample(leaves, 4)
+    services = {"given": (list[int](), layer)}
+    steps = STEPS.get(number, 20)
+    for place in range(steps):
+        issued = rng.sample(leaves, rng.randint(1, 3))
+        services[f"planted{place}"] = [general(rng.choice(layer), 2) for _ in range(rng.randint(1, 3))], issued
+        layer = issued
+    kinds = [*services.values()][1:]
+    for _ in range(number // 10):
+        inputs = [general(rng.choice(leaves), 6) for _ in range(rng.randint(1, 4))]
+        kinds.append((inputs, rng.sample(leaves, rng.randint(1, 4))))
+    while len(services) < number:
+        # A few kinds are offered by very many, most by a few.
+        services[f"service{len(services)}"] = kinds[int(len(kinds) * rng.random() ** 2)]
+    return _shuffled(rng, tree, services, [general(concept, 1) for concept in layer], steps + 1)
+
+
 def _shuffled(
     rng: random.Random,
     tree: Taxonomy,
@@ -204,4 +235,4 @@ def _shuffled(
     return Services(tree.parent, {name: services[name] for name in order}, wanted, planted)
 
 
-FAMILIES = {"contest": contest, "decoys": decoys}
+FAMILIES = {"contest": contest, "decoys": decoys, "markets": markets}

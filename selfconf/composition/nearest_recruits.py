@@ -115,10 +115,9 @@ def _feeder(problem: Problem, wanting: Input) -> Profile | None:
 def _unfed(problem: Problem, profile: Profile) -> Input | None:
     """The first input of a component that neither players nor recruits that are fed themselves could feed."""
     outputs = {output for some in problem.candidates for c in some for output in c.profile.outputs}
-    available = problem.supply.available(problem.supply.usable(outputs))
-    for output in outputs:
-        available.add(output)
-    return next((port for port in profile.required if not available.serves(port.wanted)), None)
+    issued = problem.supply.issued(problem.supply.usable(outputs))
+    issued.add(-1, outputs)  # of players, which have no number as recruits
+    return next((port for port in profile.required if not issued.serves(port.wanted)), None)
 
 
 def recruiting_instead(

@@ -13,6 +13,8 @@ MOST_RECRUITS_LOOKED_AT = 250_000
 """How many recruits are looked at, at most, to exchange one after the other: a part of a second."""
 LONG_CHAIN = 4_000
 """From how many recruits on a look takes longer: a chain has a bit for each."""
+LITERAL_STEPS = 50_000_000
+"""Steps of the solver times the suppliers of all needs, at most: a conflict takes the longer the more there are."""
 WithoutSpare = Callable[[Sequence[int]], list[int]]
 """Recruits that are enough, by number, without those that can be spared."""
 
@@ -23,6 +25,8 @@ def fewest(choice: RecruitChoice, budget: Budget) -> tuple[list[int], bool]:
     if not met or not solver_available():
         return met, not met
     reduced, wanted = choice.reduced()
+    suppliers = sum(len(option.kind.supports) for option in reduced.options[-1])
+    budget = budget.part(LITERAL_STEPS // max(1, suppliers))
     with FoundedSolver(reduced, wanted) as clauses:
         order = [option.number for option in reduced.options[-1]]
         return fewest_of(clauses, order, met, choice.without_spare, budget)

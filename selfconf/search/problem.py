@@ -119,9 +119,9 @@ class Problem:
             outputs = {output for some in self.candidates for c in some for output in c.profile.outputs}
             usable = self.supply.usable(outputs)
             for role in recruiting:
-                available = self.supply.available(usable, role)
+                issued = self.supply.issued(usable, role)
                 wanted = {port.wanted for c in self.candidates[role] for port in c.profile.required}
-                found[role] = frozenset(filter(available.serves, wanted))
+                found[role] = frozenset(filter(issued.serves, wanted))
         return tuple(found)
 
     def _open(self, variable: Variable) -> int:

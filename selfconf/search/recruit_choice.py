@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from heapq import heapify, heappop, heappush
+from itertools import chain
 from operator import or_
 
 from selfconf.model.configuration import Configuration, Connection, ordered_connections
@@ -19,6 +20,10 @@ UNSAID = WantedSignal((), None)
 """What a choice of suppliers is wanted for, where its number says all."""
 Suppliers = tuple[int, ...]
 """The numbers of the recruits that could feed an input."""
+
+
+UNIT = Output._fields.index("unit")
+"""From which field of an output on an input may ask for what it says, besides the signal types."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +44,8 @@ class RecruitChoice:
         self.players = dict(players_of(problem, configuration))
         self.recruits: Sequence[Recruit] = problem.supply.recruits
         outputs = [output for _, profile in self.players.values() for output in profile.outputs]
-        self.usable = problem.supply.usable(outputs, without=self.players.keys())
-        self._by_signal = self._suppliers_by_signal()
+        usable = problem.supply.usable(outputs, without=self.players.keys())
+        self._issued = problem.supply.issued(self._undominated(self.ordered(usable)))
         self._known: dict[tuple[WantedSignal, int | None], Suppliers] = {}
         self.wanted = list(self._wanted())
         self.needs = dict(self._needs_of_recruits())
@@ -57,36 +62,40 @@ class RecruitChoice:
         """Whether each need of the players has a usable supplier; then each need of these has one, too."""
         return all(need.suppliers for need in self.wanted)
 
-    def _suppliers_by_signal(self) -> Mapping[IRI, list[tuple[int, Output]]]:
-        found: dict[IRI, list[tuple[int, Output]]] = {}
-        for number in sorted(self.usable):
-            for output in self.recruits[number].profile.outputs:
-                for signal in self.problem.hierarchy.served(output.signals):
-                    found.setdefault(signal, []).append((number, output))
-        return found
+    def _undominated(self, ordered: Iterable[int]) -> Iterator[int]:
+        """Yield of recruits in their order the first of those that need the same and issue the same for the same roles.
+
+        In any solution it can take the place of another of them; both of them are one too many.
+        """
+        known: set[tuple[object, ...]] = set()
+        for number in ordered:
+            recruit = self.recruits[number]
+            needed = frozenset([port.wanted for port in recruit.profile.required])
+            issued = frozenset([(output.signals, output[UNIT:]) for output in recruit.profile.outputs])
+            key = needed, issued, recruit.roles
+            if key not in known:
+                known.add(key)
+                yield number
 
     def _suppliers(self, port: Input, role: int | None = None) -> tuple[int, ...]:
         """The usable recruits that could feed an input, of a player of a role or of a recruit; one tuple for equals."""
         key = port.wanted, role
         if key not in self._known:
-            pairs = (pair for signal in port.signals for pair in self._by_signal.get(signal, ()))
-            found = {
-                number
-                for number, output in pairs
-                if (port.condition is None or port.condition.met_by(output))
-                and (role is None or role in self.recruits[number].roles)
-            }
-            self._known[key] = tuple(sorted(found))
+            found = set(self._issued.serving(port.wanted))
+            self._known[key] = tuple(sorted(one for one in found if role is None or role in self.recruits[one].roles))
         return self._known[key]
 
     def _needs_by_supplier(self) -> dict[int, list[Suppliers]]:
         """For each recruit the choices of suppliers that it is among."""
         found: dict[int, list[Suppliers]] = {}
-        every = (need.suppliers for need in (*self.wanted, *(one for needs in self.needs.values() for one in needs)))
-        for suppliers in {id(some): some for some in every}.values():
+        for suppliers in {id(need.suppliers): need.suppliers for need in self._every_need()}.values():
             for number in suppliers:
                 found.setdefault(number, []).append(suppliers)
         return found
+
+    def _every_need(self) -> Iterator[UnfedInput]:
+        """The needs of players, then those of recruits."""
+        return chain(self.wanted, *self.needs.values())
 
     def _wanted(self) -> Iterator[UnfedInput]:
         """The required inputs of players that no role feeds."""
@@ -100,15 +109,18 @@ class RecruitChoice:
         """The recruits from which a chain of suppliers leads to a player, each with what it needs of others."""
         waiting = [number for need in self.wanted for number in need.suppliers]
         seen = set(waiting)
+        looked_at = {id(need.suppliers) for need in self.wanted}
         while waiting:
             number = waiting.pop()
             profile = self.recruits[number].profile
             ports = [port for port in profile.required if self._source_among_players(port) is None]
             needs = [UnfedInput(profile.component, port, self._suppliers(port)) for port in ports]
             yield number, needs
-            for supplier in {one for need in needs for one in need.suppliers} - seen:
-                seen.add(supplier)
-                waiting.append(supplier)
+            for suppliers in (need.suppliers for need in needs if id(need.suppliers) not in looked_at):
+                looked_at.add(id(suppliers))
+                more = [one for one in suppliers if one not in seen]
+                seen.update(more)
+                waiting += more
 
     def _source_among_players(self, port: Input) -> tuple[IRI, Output] | None:
         """The first output of a player that could feed an input."""
@@ -212,8 +224,8 @@ class RecruitChoice:
 
         The needs are the choices of suppliers, by number.
         """
-        every = (*self.wanted, *(need for needs in self.needs.values() for need in needs))
-        number = {key: place for place, key in enumerate(dict.fromkeys(id(need.suppliers) for need in every))}
+        choices = dict.fromkeys(id(need.suppliers) for need in self._every_need())
+        number = {key: place for place, key in enumerate(choices)}
         options = [
             Option(
                 one,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
+from itertools import chain
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.partition import Recruit
@@ -17,25 +18,32 @@ from selfconf.model.term import IRI
 
 
 @dataclass(slots=True)
-class Available:
-    """Outputs by each signal that they serve."""
+class Issued:
+    """The outputs of recruits by each signal that they serve, found once for all outputs of equal types."""
 
     hierarchy: Hierarchy
-    by_signal: dict[IRI, list[Output]] = field(default_factory=dict)
+    _by_types: dict[tuple[IRI, ...], list[tuple[int, Output]]] = field(default_factory=dict)
+    _by_signal: dict[IRI, list[list[tuple[int, Output]]]] = field(default_factory=dict)
 
-    def add(self, output: Output) -> None:
-        """Note an output."""
-        for signal in self.hierarchy.served(output.signals):
-            self.by_signal.setdefault(signal, []).append(output)
+    def add(self, number: int, outputs: Iterable[Output]) -> None:
+        """Note outputs of a recruit, given by its number."""
+        for output in outputs:
+            known = self._by_types.get(output.signals)
+            if known is None:
+                known = self._by_types[output.signals] = []
+                for signal in self.hierarchy.served(output.signals):
+                    self._by_signal.setdefault(signal, []).append(known)
+            known.append((number, output))
+
+    def serving(self, wanted: WantedSignal) -> Iterator[int]:
+        """Yield the numbers of the recruits with an output that serves an input which wants this, perhaps again."""
+        signals, condition = wanted
+        for some in chain.from_iterable(self._by_signal.get(signal, ()) for signal in signals):
+            yield from (number for number, output in some if condition is None or condition.met_by(output))
 
     def serves(self, wanted: WantedSignal) -> bool:
-        """Whether some output serves an input that wants this."""
-        signals, condition = wanted
-        return any(
-            condition is None or condition.met_by(output)
-            for signal in signals
-            for output in self.by_signal.get(signal, ())
-        )
+        """Return whether some output serves an input that wants this."""
+        return any(True for _ in self.serving(wanted))
 
 
 class Supply:
@@ -43,8 +51,11 @@ class Supply:
 
     def __init__(self, recruits: Sequence[Recruit], hierarchy: Hierarchy) -> None:
         self.recruits, self.hierarchy = recruits, hierarchy
-        self._served: dict[tuple[IRI, ...], Sequence[IRI]] = {}
-        """For the types of an output, once that is known, the signals that it serves."""
+        self._served: dict[tuple[IRI, ...], tuple[Sequence[IRI], Sequence[IRI]]] = {}
+        """For the types of an output, once that is known, the signals that it serves and that inputs wait for.
+
+        First those for which inputs wait that take any output.
+        """
         self._lacking = [len(recruit.profile.required) for recruit in recruits]
         self._waiting: dict[IRI, list[tuple[int, int]]] = {}
         """For each signal the inputs that wait for it: the number of the recruit, and that of the required input."""
@@ -79,24 +90,36 @@ class Supply:
         return found
 
     def _fed_by(self, output: Output, issued: set[IRI]) -> Iterator[tuple[int, int]]:
-        """Yield the inputs that an output feeds, but for those that take any output; these once for each signal."""
-        if output.signals not in self._served:
+        """Yield the inputs that an output feeds, but for those that take any output; these once for each signal.
+
+        `issued` are the signals for which that has been done, with all that lie above each.
+        """
+        types = output.signals
+        if types not in self._served:
             # In the order of their names, so that the answer does not depend on the order of a set.
-            self._served[output.signals] = sorted(self.hierarchy.served(output.signals))
-        for signal in self._served[output.signals]:
-            if signal not in issued:
-                issued.add(signal)
-                yield from self._waiting.get(signal, ())
-            for number, place in self._asking.get(signal, ()):
+            served = sorted(self.hierarchy.served(types))
+            self._served[types] = (
+                [signal for signal in served if signal in self._waiting],
+                [signal for signal in served if signal in self._asking],
+            )
+        any_output, asking = self._served[types]
+        if not issued.issuperset(types):
+            for signal in any_output:
+                if signal not in issued:
+                    issued.add(signal)
+                    yield from self._waiting[signal]
+            issued.update(types)
+        for signal in asking:
+            for number, place in self._asking[signal]:
                 condition = self.recruits[number].profile.required[place].condition
                 if condition is None or condition.met_by(output):
                     yield number, place
 
-    def available(self, numbers: Iterable[int], role: int | None = None) -> Available:
+    def issued(self, numbers: Iterable[int], role: int | None = None) -> Issued:
         """Return what some recruits issue; with a role, those that may supply it."""
-        found = Available(self.hierarchy)
-        for recruit in (self.recruits[number] for number in numbers):
+        found = Issued(self.hierarchy)
+        for number in numbers:
+            recruit = self.recruits[number]
             if role is None or role in recruit.roles:
-                for output in recruit.profile.outputs:
-                    found.add(output)
+                found.add(number, recruit.profile.outputs)
         return found

@@ -46,6 +46,12 @@ def test_a_supplier_of_two_needs_is_counted_once() -> None:
 
 
 def test_one_is_exchanged_for_what_the_others_feed() -> None:
-    given = choice(component("a", "t:T", "s:S"), component("b", "", "t:T"), component("c", "t:T", "s:S"))
+    given = choice(component("a", "t:T", "s:S"), component("b", "", "t:T"), component("c", "t:T", "s:S u:U"))
     assert given.exchanged([0, 1], 0) == [1, 2]
     assert given.exchanged([0, 1], 1) is None
+
+
+def test_of_recruits_that_need_and_issue_the_same_the_first_is_looked_at() -> None:
+    twins = component("b", "", "t:T"), component("c", "", "other:T"), component("d", "", "t:T u:U")
+    given = choice(component("a", "t:T", "s:S"), *twins)
+    assert sorted(given.needs) == [0, 1, 3]

@@ -56,8 +56,8 @@ def test_a_second_output_of_a_signal_is_asked_by_those_with_a_condition() -> Non
 def test_a_signal_serves_every_class_above_it() -> None:
     above = Hierarchy([(iri("S"), iri("A"))])
     found = supply(component("a", "", "s:S"), hierarchy=above)
-    assert found.available([0], role=0).serves(WantedSignal((iri("A"),)))
-    assert not found.available([0], role=1).serves(WantedSignal((iri("A"),)))
+    assert [*found.issued([0], role=0).serving(WantedSignal((iri("A"),)))] == [0]
+    assert [*found.issued([0], role=1).serving(WantedSignal((iri("A"),)))] == []
 
 
 def test_the_order_does_not_depend_on_that_of_the_classes_above_a_signal() -> None:

@@ -19,6 +19,9 @@ from selfconf.rdf.vocabulary import FIRST, OWL, RDFS, REST
 HIERARCHY = (RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty)
 READ = (*HIERARCHY, OWL.intersectionOf, FIRST, REST)
 """The predicates that the mode `subclass` reads."""
+_BELOW = (RDFS.subClassOf, OWL.equivalentClass)
+_ABOVE_ALL = (OWL.Thing, RDFS.Resource)
+_INTERSECTION = OWL.intersectionOf  # a name here, as a taxonomy asks for it a hundred thousand times
 Entailment = Callable[[Iterable[Triple]], Iterable[Triple]]
 
 
@@ -56,7 +59,7 @@ def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IR
     for subject, predicate, value in triples:
         if predicate not in (below, same) or not isinstance(subject, IRI) or not isinstance(value, IRI):
             continue
-        if value in (OWL.Thing, RDFS.Resource):
+        if value in _ABOVE_ALL:
             continue
         yield subject, value
         if predicate == same:
@@ -67,9 +70,9 @@ def intersections(document: Document) -> Iterator[tuple[IRI, IRI]]:
     """The pairs (lower, higher) of a class and each named class that it is, or lies below, an intersection of."""
     named: dict[Term, list[IRI]] = {}
     for subject, predicate, value in document.triples():
-        if isinstance(subject, IRI) and predicate in (RDFS.subClassOf, OWL.equivalentClass):
+        if isinstance(subject, IRI) and predicate in _BELOW:
             named.setdefault(value, []).append(subject)
     for subject, predicate, value in document.triples():
-        if predicate == OWL.intersectionOf:
+        if predicate == _INTERSECTION:
             for lower in [subject] if isinstance(subject, IRI) else named.get(subject, ()):
                 yield from ((lower, one) for one in document.items(value) if isinstance(one, IRI))
