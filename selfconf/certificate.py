@@ -91,11 +91,21 @@ class _Check:
         for connection, times in actual.items():
             if times > 1:
                 yield f"{_words(connection)}: this connection is there {times} times"
+        yield from self._unconnected()
         fed = {(connection.sink, connection.input) for connection in actual}
         for candidate in (candidate for some in players.values() for candidate in some):
             for wanted in candidate.profile.inputs:
                 if not wanted.optional and (candidate.profile.component, wanted.name) not in fed:
                     yield f"the input {wanted.name!r} of {candidate.profile.component.short} is not fed"
+
+    def _unconnected(self) -> Iterator[str]:
+        """Yield the roles of interactions with more players than are asked for that feed none and are not fed."""
+        joined = {c for one in self.configuration.connections if one.source != one.sink for c in (one.source, one.sink)}
+        joining = {role for one in self.template.interactions for role in (one.source, one.sink)}
+        for role, assignment in zip(self.template.roles, self.configuration.assignments, strict=True):
+            idle = [component for component in assignment.components if component not in joined]
+            if role.iri in joining and len(idle) > role.minimum:
+                yield f"{role.iri.short} asks for {role.minimum} components, and {idle[-1].short} is not connected"
 
     def _recruits(self, players: Players, extra: Sequence[Connection]) -> Iterator[str]:
         """Yield what is wrong with the recruits: `extra` are the connections that no interaction makes."""

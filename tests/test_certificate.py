@@ -59,9 +59,10 @@ def _answer() -> tuple[Problem, Configuration]:
     plain = problem(
         {
             "eye": [component("camera", outputs="o:Image"), component("spare", outputs="o:Image")],
-            "mind": [component("cap", "i:Image")],
+            "mind": [component("cap", "i:Image"), component("idle"), component("mute")],
         },
         "eye>mind",
+        {"mind": (1, 3)},
         values={"eye": {"camera": 0b01}},
         domain=("Astrid", "Pippi"),
     )
@@ -90,6 +91,12 @@ BROKEN: dict[str, dict[str, Any]] = {
     },
     "allows 1 components and has 2": {
         "assignments": (Assignment(iri("eye"), (iri("camera"), iri("spare"))), Assignment(iri("mind"), (iri("cap"),)))
+    },
+    "mind asks for 1 components, and mute is not connected": {
+        "assignments": (
+            Assignment(iri("eye"), (iri("camera"),)),
+            Assignment(iri("mind"), (iri("cap"), iri("idle"), iri("mute"))),
+        )
     },
     "its roles are not those of the template": {"assignments": ()},
     "it is a configuration of other": {"template": iri("other")},

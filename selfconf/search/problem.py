@@ -13,12 +13,14 @@ strategy can change it: it can only take longer.
 *Extension.* A least solution is then extended: as long as there is a candidate that fits, the first one (in the
 order of the roles, then of the candidates) is added, up to the role's maximum. It fits if it plays no role yet, each
 of its required inputs is matched, and the free parameters still have a value. Adding a component never unfeeds another.
+What was added in a role of an interaction and in the end neither feeds another component nor is fed by one is left out,
+and the rest is done again without it: it may have taken the place of one that is connected.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from heapq import heappop, heappush
 from itertools import chain
@@ -201,21 +203,52 @@ class Problem:
         With a running configuration, components that play the same role there are tried before all others. Where a role
         recruits it is not extended: recruits come first, and further candidates afterwards (`with_further_players`).
         """
-        extended = [list(role) for role in playing]
-        values = self.open_values
-        for role in extended:
-            for candidate in role:
-                values = tuple(v & allowed for v, allowed in zip(values, candidate.admits, strict=True))
         if any(role.recruits for role in self.roles):
-            return self.configuration(extended, values)
+            return self.configuration(playing, self._values_of(playing))
+        preferred: list[Playing] = [self.candidates]
         if running is not None:
             played = {a.role: a.components for a in running.assignments}
             kept = [
                 [c for c in candidates if c.profile.component in played.get(role.iri, ())]
                 for role, candidates in zip(self.roles, self.candidates, strict=True)
             ]
-            values = self._extend(extended, values, kept)
-        return self.configuration(extended, self._extend(extended, values, self.candidates))
+            preferred.insert(0, kept)
+        return self._extended(playing, preferred)
+
+    def _values_of(self, playing: Playing) -> tuple[int, ...]:
+        """Return the values that are left to the variables beside all that plays."""
+        values = self.open_values
+        for candidate in chain.from_iterable(playing):
+            values = tuple(v & allowed for v, allowed in zip(values, candidate.admits, strict=True))
+        return values
+
+    def _extended(self, playing: Playing, preferred: Sequence[Playing], besides: Collection[IRI] = ()) -> Configuration:
+        """Return the configuration of what plays, with each further candidate that fits and is connected to another.
+
+        The first of the `preferred` candidates come before all others; the components `besides` may not play.
+        """
+        asked = {candidate.profile.component for role in playing for candidate in role}
+        excluded = set(besides)
+        while True:
+            extended, values = [list(role) for role in playing], self._values_of(playing)
+            for candidates in preferred:
+                values = self._extend(extended, values, candidates, excluded)
+            found = self.configuration(extended, values)
+            idle = self._idle(found) - asked
+            if not idle:
+                return found
+            excluded |= idle
+
+    def _idle(self, configuration: Configuration) -> set[IRI]:
+        """Return the players of roles in interactions that neither feed another component nor are fed by one."""
+        joined = {end for c in configuration.connections if c.source != c.sink for end in (c.source, c.sink)}
+        return {
+            component
+            for number, assignment in enumerate(configuration.assignments)
+            if self.links[number] or self.sinks[number]
+            for component in assignment.components
+            if component not in joined
+        }
 
     def with_further_players(self, configuration: Configuration) -> Configuration:
         """Return a configuration that has its recruits, extended by every further candidate that fits.
@@ -226,11 +259,8 @@ class Problem:
             [c for one in a.components for c in candidates if c.profile.component == one]
             for a, candidates in zip(configuration.assignments, self.candidates, strict=True)
         ]
-        values = self.open_values
-        for candidate in (candidate for role in playing for candidate in role):
-            values = tuple(v & allowed for v, allowed in zip(values, candidate.admits, strict=True))
-        values = self._extend(playing, values, self.candidates, configuration.recruits)
-        whole = replace(self.configuration(playing, values), recruits=configuration.recruits)
+        extended = self._extended(playing, [self.candidates], configuration.recruits)
+        whole = replace(extended, recruits=configuration.recruits)
         brought = [c for c in configuration.connections if not {c.source, c.sink}.isdisjoint(configuration.recruits)]
         if not {(c.sink, c.input) for c in brought}.isdisjoint((c.sink, c.input) for c in whole.connections):
             return configuration

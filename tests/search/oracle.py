@@ -139,26 +139,59 @@ class World:
         ]
         return (players for players in product(*sized) if self.valid(players))
 
-    def extended(self, players: Sequence[Sequence[Candidate]]) -> list[list[Candidate]]:
-        """With every further candidate that fits, in order, up to the maxima."""
-        grown = [list(role) for role in players]
+    def extended(
+        self, players: Sequence[Sequence[Candidate]], running: Configuration | None = None
+    ) -> list[list[Candidate]]:
+        """With every further candidate that fits, in order, up to the maxima; first those that run in the same role.
+
+        Those of them that are connected to none are left out, and the rest is done again.
+        """
+        played = {} if running is None else {a.role: a.components for a in running.assignments}
+        few = [
+            [c for c in some if c.profile.component in played.get(role.iri, ())]
+            for some, role in zip(self.candidates, self.roles, strict=True)
+        ]
+        asked, excluded = {c.profile.component for role in players for c in role}, set[IRI]()
+        while True:
+            grown = [list(role) for role in players]
+            for candidates in (few, self.candidates):
+                self._grow(grown, [[c for c in some if c.profile.component not in excluded] for some in candidates])
+            idle = self._unconnected(grown) - asked
+            if not idle:
+                return grown
+            excluded |= idle
+
+    def _grow(self, grown: list[list[Candidate]], candidates: Sequence[Sequence[Candidate]]) -> None:
         while True:
             for number, role in enumerate(self.roles):
                 if role.maximum is not None and len(grown[number]) >= role.maximum:
                     continue
-                more = next((c for c in self.candidates[number] if self._fits(grown, number, c)), None)
+                more = next((c for c in candidates[number] if self._fits(grown, number, c)), None)
                 if more is not None:
                     grown[number].append(more)
                     break
             else:
-                return grown
+                return
+
+    def _unconnected(self, players: Sequence[Sequence[Candidate]]) -> set[IRI]:
+        """The players of roles that feed or are fed by others, and who are not connected to any."""
+        pairs = [{c.source, c.sink} for c in self.connections(players)]
+        return {
+            candidate.profile.component
+            for role, some in zip(self.roles, players, strict=True)
+            if any(role.iri in (one.source, one.sink) for one in self.template.interactions)
+            for candidate in some
+            if not any(candidate.profile.component in pair and len(pair) == 2 for pair in pairs)
+        }
 
     def _fits(self, grown: list[list[Candidate]], number: int, more: Candidate) -> bool:
         return self.valid([[*role, more] if k == number else role for k, role in enumerate(grown)])
 
-    def configuration(self, players: Sequence[Sequence[Candidate]]) -> Configuration:
+    def configuration(
+        self, players: Sequence[Sequence[Candidate]], running: Configuration | None = None
+    ) -> Configuration:
         """The configuration that players are, extended."""
-        grown = self.extended(players)
+        grown = self.extended(players, running)
         bindings = self.task.by_name()
         names = {p.iri: p.name for p in self.template.parameters}
         for variable, allowed in zip(self.variables, self.values(grown), strict=True):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from selfconf.model.configuration import Configuration
+from selfconf.model.profile import Ports
 from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.worlds import component, problem
@@ -35,3 +38,20 @@ def test_all_candidates_that_lack_the_same_signal_are_added_once_they_are_fed() 
     answer = first.search(given_)
     assert isinstance(answer, Configuration)
     assert [one.short for one in answer.assignments[0].components] == ["first", "second", "third"]
+
+
+def test_a_further_candidate_joins_only_if_it_feeds_or_is_fed() -> None:
+    # The first of the extras is connected to nobody, and leaves its place to one that is.
+    extras = [component("idle", outputs="b:Bump"), component("useful", outputs="p:Pose")]
+    cap = component("cap", "p:Pose")
+    eased = replace(cap, ports=Ports((cap.inputs[0]._replace(optional=True),)))
+    given_ = problem(
+        {"extra": extras, "control": [eased], "alone": [component("a"), component("b")]},
+        "extra>control",
+        {"extra": (0, 1), "alone": (1, 2)},
+    )
+    answer = first.search(given_)
+    assert isinstance(answer, Configuration)
+    played = [[one.short for one in role.components] for role in answer.assignments]
+    assert played == [["useful"], ["cap"], ["a", "b"]]  # of a role in no interaction that is not asked
+    assert answer == World(given_.task, given_.partition, given_.hierarchy).first()

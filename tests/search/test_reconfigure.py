@@ -10,31 +10,15 @@ from hypothesis import strategies as st
 
 from selfconf.certificate import broken_conditions
 from selfconf.model.configuration import Configuration
-from selfconf.model.partition import Candidate, Partition
+from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal
 from selfconf.search import reconfigure
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
-from tests.search.oracle import Players, World
+from tests.search.oracle import World
 from tests.search.worlds import agreement, component, problem, problems
-
-
-def _running_first(world: World, players: Players, running: Configuration) -> list[list[Candidate]]:
-    """A solution, extended by what runs in the same role, first of all."""
-    grown = [list(role) for role in players]
-    played = {a.role: a.components for a in running.assignments}
-    found = True
-    while found:
-        found = False
-        for number, role in enumerate(world.roles):
-            for candidate in world.candidates[number]:
-                full = role.maximum is not None and len(grown[number]) >= role.maximum
-                more = [[*r, candidate] if k == number else r for k, r in enumerate(grown)]
-                if not found and not full and candidate.profile.component in played[role.iri] and world.valid(more):
-                    grown, found = more, True
-    return grown
 
 
 def _score(after: Configuration, before: Configuration) -> tuple[int, int]:
@@ -49,7 +33,7 @@ def _score(after: Configuration, before: Configuration) -> tuple[int, int]:
 def _nearest(world: World, running: Configuration) -> Configuration | None:
     best: Configuration | None = None
     for players in world.solutions():
-        found = world.configuration(_running_first(world, players, running))
+        found = world.configuration(players, running)
         if best is None or _score(found, running) > _score(best, running):
             best = found
     return best
