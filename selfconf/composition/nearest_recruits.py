@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.nearest import fault_of
+from selfconf.model.candidate_order import candidate_order
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.nearness import Near, ranked
@@ -58,6 +59,7 @@ def _nearest(
 ) -> Iterator[NearMiss]:
     """Those who could nearly be recruited for an input, the nearest first."""
     number = next(number for number, role in enumerate(problem.roles) if role.iri == reason.role)
+    yield from _kept_out(composer, ecology, problem, reason, number)
     profiles = [r.profile for r in problem.supply.recruits if number in r.roles and r.component != reason.component]
     ports = PortLikeness([WantedPorts((reason.wanted.signals,))], signals)
     question = [word for signal in reason.wanted.signals for word in words(signal.short)] + words(reason.input)
@@ -66,6 +68,24 @@ def _nearest(
             obstacle = _obstacle(composer, ecology, problem, reason, near)
             likeness = near.likeness
             yield NearMiss(reason.role, near.profile.component, obstacle, likeness=likeness, recruit=True)
+
+
+def _kept_out(
+    composer: Composer, ecology: Mapping[IRI, Advertisement], problem: Problem, reason: InputUnfed, number: int
+) -> Iterator[NearMiss]:
+    """Those who issue what an input wants, and of whom the role of that number recruits none for one thing alone."""
+    wanted = Input(reason.input, reason.wanted.signals, condition=reason.wanted.condition)
+    may = {recruit.component for recruit in problem.supply.recruits if number in recruit.roles}
+    issuing = [
+        advertisement
+        for advertisement in ecology.values()
+        if advertisement.component not in may
+        and any(problem.hierarchy.pairs(output, wanted) for output in advertisement.profile.outputs)
+    ]
+    for advertisement in sorted(issuing, key=lambda one: candidate_order(one.profile)):
+        faults = composer.partitioner.against_supplying(number, advertisement, composer.gathered(ecology))
+        if len(faults) == 1:
+            yield NearMiss(reason.role, advertisement.component, faults[0], likeness=1.0, recruit=True)
 
 
 def _obstacle(

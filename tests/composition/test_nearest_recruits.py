@@ -68,6 +68,26 @@ def converter(name: str, wanted: str, issued: str) -> str:
     return f':{name} a sc:Component , :Source ; sc:hasInput [ sc:name "i" ; sc:signalType :{wanted} ] ; {made} .'
 
 
+@pytest.mark.parametrize(
+    ("shape", "obstacle"),
+    [
+        ("sh:class :Certified", "is no Certified"),
+        ("sh:not [ sh:property [ sh:path :old ; sh:minCount 1 ] ]", "is what it must not be"),
+        (
+            'sh:sparql [ sh:message "too old" ; sh:select "SELECT $this WHERE { $this a ?type }" ]',
+            "violates: too old",
+        ),
+    ],
+)
+def test_who_issues_the_signal_and_is_kept_out_by_the_shape_of_suppliers_is_near(shape: str, obstacle: str) -> None:
+    aged = source("lidar", "Scan") + " :lidar :old true ."
+    refusal = refused(f" ; sc:recruits [ {shape} ]", NEEDY.format(""), aged, source("sonar", "Echo"))
+    (reason,) = refusal.reasons
+    assert "; the nearest is lidar, which " in str(reason)
+    (miss,) = [miss for miss in refusal.near_misses if miss.recruit and miss.component.short == "lidar"]
+    assert obstacle in str(miss.obstacle)
+
+
 def test_recruits_that_only_feed_each_other_are_named_as_a_circle() -> None:
     said, names = nearest(converter("a", "Raw", "Scan"), converter("b", "Scan", "Raw"))
     assert said == "a, which is fed only in a circle: its input 'i' by b by a"

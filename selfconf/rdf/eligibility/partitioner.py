@@ -156,6 +156,14 @@ class Partitioner:
         profiles = sorted((ecology[component].profile for component in roles), key=candidate_order)
         return tuple(Recruit(profile, frozenset(roles[profile.component])) for profile in profiles)
 
+    def against_supplying(self, number: int, one: Advertisement, ecology: AdvertisementIndex) -> Sequence[Obstacle]:
+        """What keeps a component of an ecology from supplying the players of a role that recruits, by its number."""
+        tests = self.suppliers[number]
+        found = tuple(tests.obstacles(one.profile, self.hierarchy))
+        if found or tests.complete:
+            return found
+        return self.violations(tests, [one], ecology, {}).get(one.component, ())
+
     def akin(self, role: CompiledRole, ecology: AdvertisementIndex) -> Iterator[TypeSet]:
         """The kinds that are of the classes that a role asks for."""
         classes = {test.kind for test in role.classes}
