@@ -417,7 +417,7 @@ CODES: tuple[Code, ...] = (
         ("BindingNode", "BindingParameterOnce", "BindingParameterIri", "BindingValueOnce"),
     ),
     Code(
-        "SC-K03", "A task, or a composite, binds each parameter at most once.",
+        "SC-K03", "A task binds each parameter at most once.",
         "A parameter has one value for all roles that mention it.",
         f"{_BOUND}:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] ,\n"
         "    [ sc:parameter :room ; sc:value :bedroom ] .",
@@ -425,7 +425,7 @@ CODES: tuple[Code, ...] = (
         ("BindingsDistinct",),
     ),
     Code(
-        "SC-K04", "A task, or a composite, binds only parameters that its template has.",
+        "SC-K04", "A task binds only parameters that its template has.",
         "This is checked where task and template stand in one file.",
         f"{_PAIR}\n:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
         f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",

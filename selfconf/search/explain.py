@@ -287,25 +287,33 @@ def never_met(given: ReducedProblem, role: int) -> tuple[Constraint, ...]:
     hopeless = [set(kind.needs) - supported for kind in {option.kind for option in given.options[role]}]
     if given.slots.count(role) != 1 or not all(hopeless):
         return ()
+    return (Played(role), *map(Fed, sorted(_hitting_set(hopeless))))
+
+
+def _hitting_set(sets: Sequence[Collection[int]]) -> Collection[int]:
+    """Return some of the members of sets, of which each set has one; without any one of them a set has none.
+
+    Members of many sets are taken first, and those are left out again that later ones are enough beside.
+    """
     having: dict[int, list[int]] = {}
-    for place, needs in enumerate(hopeless):
-        for need in needs:
-            having.setdefault(need, []).append(place)
-    times = [0] * len(hopeless)
-    # Those of most candidates first, and where as many have two, the one that arc consistency comes to first.
-    chosen = dict.fromkeys(sorted(having, key=lambda need: (-len(having[need]), -need)))
-    for need in [*chosen]:
-        if any(not times[place] for place in having[need]):
-            for place in having[need]:
+    for place, members in enumerate(sets):
+        for member in members:
+            having.setdefault(member, []).append(place)
+    times = [0] * len(sets)
+    # Of members of as many sets the last, which for needs is the one that arc consistency comes to first.
+    chosen = dict.fromkeys(sorted(having, key=lambda member: (-len(having[member]), -member)))
+    for member in [*chosen]:
+        if any(not times[place] for place in having[member]):
+            for place in having[member]:
                 times[place] += 1
         else:
-            del chosen[need]
-    for need in reversed([*chosen]):
-        if all(times[place] > 1 for place in having[need]):
-            del chosen[need]
-            for place in having[need]:
+            del chosen[member]
+    for member in reversed([*chosen]):
+        if all(times[place] > 1 for place in having[member]):
+            del chosen[member]
+            for place in having[member]:
                 times[place] -= 1
-    return (Played(role), *map(Fed, sorted(chosen)))
+    return chosen
 
 
 def derivation(given: ReducedProblem, role: int) -> tuple[Constraint, ...]:

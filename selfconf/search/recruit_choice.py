@@ -22,7 +22,7 @@ Suppliers = tuple[int, ...]
 """The numbers of the recruits that could feed an input."""
 
 
-UNIT = Output._fields.index("unit")
+BESIDES_TYPES = Output._fields.index("unit")
 """From which field of an output on an input may ask for what it says, besides the signal types."""
 
 
@@ -71,7 +71,7 @@ class RecruitChoice:
         for number in ordered:
             recruit = self.recruits[number]
             needed = frozenset([port.wanted for port in recruit.profile.required])
-            issued = frozenset([(output.signals, output[UNIT:]) for output in recruit.profile.outputs])
+            issued = frozenset([(output.signals, output[BESIDES_TYPES:]) for output in recruit.profile.outputs])
             key = needed, issued, recruit.roles
             if key not in known:
                 known.add(key)
