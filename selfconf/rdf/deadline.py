@@ -12,6 +12,7 @@ processor time (`processor_limit`); the time of the clock (`deadline`) is for wh
 
 from __future__ import annotations
 
+import gc
 import signal
 import sys
 import threading
@@ -22,6 +23,8 @@ from functools import partial
 from types import FrameType
 from typing import NamedTuple
 
+SHORT = 1.0
+"""Seconds up to which a limit of processor time is short."""
 RINGING = 0.05
 """Seconds between one ring of the alarm and the next."""
 
@@ -47,12 +50,22 @@ def deadline(seconds: float) -> AbstractContextManager[None]:
     return _limited(seconds, _Timer(signal.ITIMER_REAL, signal.SIGALRM, time.monotonic))
 
 
-def processor_limit(seconds: float) -> AbstractContextManager[None]:
+@contextmanager
+def processor_limit(seconds: float) -> Iterator[None]:
     """Raise TimeUp in the block if it takes more processor time; an outer limit still counts, and goes on.
 
-    The time of all threads of the process counts, and none of other processes.
+    The time of all threads of the process counts, and none of other processes. The garbage collector rests where the
+    limit is `SHORT`: in a program with many values it may take longer than that, and not because of what is limited.
     """
-    return _limited(seconds, _Timer(signal.ITIMER_PROF, signal.SIGPROF, time.process_time))
+    collecting = seconds <= SHORT and gc.isenabled()
+    if collecting:
+        gc.disable()
+    try:
+        with _limited(seconds, _Timer(signal.ITIMER_PROF, signal.SIGPROF, time.process_time)):
+            yield
+    finally:
+        if collecting:
+            gc.enable()
 
 
 @contextmanager

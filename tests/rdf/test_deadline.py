@@ -48,6 +48,23 @@ def test_a_limit_of_each_kind_may_be_set_within_the_other(outer: Limit, inner: L
         endless()
 
 
+@pytest.mark.parametrize(("seconds", "rests"), [(0.1, True), (30.0, False)])
+def test_the_collector_of_garbage_takes_nothing_of_a_short_limit(seconds: float, rests: bool) -> None:
+    with processor_limit(seconds):
+        assert gc.isenabled() is not rests
+        with processor_limit(seconds / 2):
+            assert gc.isenabled() is not rests
+        assert gc.isenabled() is not rests
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        with processor_limit(seconds):
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
+
+
 class _Slow:
     """Its destructor takes longer than any limit of these tests."""
 
