@@ -44,13 +44,13 @@ from selfconf.rdf.turtle import Node
 Focus = TypeVar("Focus", bound=Node)
 SHAPE_SECONDS = 120.0
 """Processor time that judging by one shape may take."""
-FAILURE_SECONDS = 0.2
+FAILURE_SECONDS = 0.12
 """Processor time that may be lost with components that are given up: what they say is untrusted."""
 SLOW_SECONDS = 1.0
 """Processor time that components may take in all beyond the share of each."""
 SHARE_SECONDS, MOST_SHARE_SECONDS = 0.004, 0.04
 """Processor time that each component may take, as long as none conforms, and at most."""
-LEAST_SECONDS = 0.05
+LEAST_SECONDS = 0.03
 """Processor time for one more try; clocks of processor time go by milliseconds."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 _ASKING = rdflib.URIRef("urn:selfconf:asking")
@@ -178,7 +178,8 @@ class _Shares:
     def __init__(self, least: float) -> None:
         """`least` is the processor time that judging takes where nothing is said, on this machine."""
         self._share = max(SHARE_SECONDS, 4 * least)
-        self._failures, self._slow = FAILURE_SECONDS, SLOW_SECONDS
+        slowness = self._share / SHARE_SECONDS
+        self._failures, self._slow = slowness * FAILURE_SECONDS, slowness * SLOW_SECONDS
         self._fine, self._too_large = 0, math.inf
 
     def judged(self, size: int, judge: Callable[[], Collection[ShapeViolated]]) -> Collection[ShapeViolated]:
