@@ -54,11 +54,10 @@ class Managed:
         label = LABELS[self.state].encode() + b"\0"
         return b"\x00\x01\x00\x00" + struct.pack("<BxxxI", self.state, len(label)) + label, attachment
 
-    def leave(self) -> None:
-        """Leave the active state by itself, and tell so."""
+    def tell_that_it_left(self) -> None:
+        """Tell that it has left the active state by itself; whoever asks meanwhile is told what it was told to be."""
         kind = ros_messages.usual_type("lifecycle_msgs/msg/TransitionEvent")
         assert kind is not None
-        self.state = 1
         told = ros_messages.message({"goal_state": {"id": 1, "label": LABELS[1]}}, kind)
         self._events.put(told, struct.pack("<qqB16s", 1, 10**9, 16, b"m" * 16))
 
@@ -107,8 +106,7 @@ def test_a_node_that_leaves_the_active_state_by_itself_has_failed(living: Living
         assert until(lambda: managed.state == 3), found.complaints
 
         def fails() -> bool:  # what is published before the state is known to be active is nothing new
-            managed.leave()
-            managed.state = 3
+            managed.tell_that_it_left()
             return bool(found.causes())
 
         assert until(fails)
