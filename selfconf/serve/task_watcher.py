@@ -75,9 +75,10 @@ class TaskWatcher:
         return graphs
 
     def take_records(self) -> dict[str, TaskRecord]:
-        """The tasks of which more is known since the last call, by identity."""
-        new, self._new_records = self._new_records, set()
-        return {self._tasks[name].identity: self._records[name] for name in new if name in self._tasks}
+        """The tasks of which more is known since the last call, by identity; one that is not known yet has to wait."""
+        new = {name for name in self._new_records if name in self._tasks and self._tasks[name].identity != name}
+        self._new_records = (self._new_records - new) & self._tasks.keys()
+        return {self._tasks[name].identity: self._records[name] for name in new}
 
     def _put_graph(self, configurator: str, triples: bytes) -> None:
         graph = f"urn:selfconf:{self.keys.configuration(configurator)}"

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.port import Urgency
+from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Notice, TaskRecord
+from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.serve import task_watcher
 from selfconf.serve.task_watcher import TaskWatcher
 from tests.lab import Lab, iri
@@ -70,6 +70,18 @@ def test_a_configuration_that_is_replaced_before_it_is_handed_on_is_handed_on_be
         False,
         True,
     ]
+
+
+def test_what_a_configurator_tells_of_its_task_is_handed_on_once_the_identity_is_known(lab: Lab) -> None:
+    watcher = Tasks(lab).watcher
+    record, key = TaskRecord("tidy~1", 1), lab.keys.configurator_call("c1", "task")
+    watcher._task("c1")
+    watcher._records["c1"], watcher._new_records = record, {"c1", "gone"}
+    assert watcher.take_records() == {}
+    status = Status("c1", "idle", iri("tidy"), 0, 0.0, task="tidy~1")
+    watcher._take_statuses(Replies((Sample(key.replace("task", "status"), encode(status)),)))
+    assert watcher.take_records() == {"tidy~1": record}
+    assert watcher.take_records() == {}
 
 
 def test_a_task_that_the_sites_keep_and_none_runs_is_shown_as_kept(lab: Lab) -> None:
