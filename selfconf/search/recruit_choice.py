@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import reduce
 from heapq import heapify, heappop, heappush
 from itertools import chain
 from operator import or_
+from typing import NamedTuple
 
 from selfconf.model.configuration import Configuration, Connection, ordered_connections
 from selfconf.model.partition import Recruit
@@ -26,8 +27,7 @@ BESIDES_TYPES = Output._fields.index("unit")
 """From which field of an output on an input may ask for what it says, besides the signal types."""
 
 
-@dataclass(frozen=True, slots=True)
-class UnfedInput:
+class UnfedInput(NamedTuple):
     """An input that recruits have to feed."""
 
     component: IRI
@@ -44,12 +44,17 @@ class RecruitChoice:
         self.players = dict(players_of(problem, configuration))
         self.recruits: Sequence[Recruit] = problem.supply.recruits
         outputs = [output for _, profile in self.players.values() for output in profile.outputs]
-        usable = problem.supply.usable(outputs, without=self.players.keys())
+        # Without the players, who issue the same as recruits, so that they make nobody usable.
+        usable = (one for one in problem.supply.usable(outputs) if self.recruits[one].component not in self.players)
         self._issued = problem.supply.issued(self._undominated(self.ordered(usable)))
         self._known: dict[tuple[WantedSignal, int | None], Suppliers] = {}
+        self._from_players: dict[WantedSignal, tuple[IRI, Output] | None] = {}
         self.wanted = list(self._wanted())
         self.needs = dict(self._needs_of_recruits())
         """For each recruit that matters, the inputs that other recruits have to feed."""
+        self._place = {number: at for at, number in enumerate(self.ordered(self.needs))}
+        self._alone = {number: 1 << number for number in self.needs}
+        self._lacking = {number: len(needs) for number, needs in self.needs.items()}
         self._feeds = self._needs_by_supplier()
         self._consumers: dict[int, list[int]] = {}
         """For each choice of suppliers, by identity, the recruits that need one of them."""
@@ -70,7 +75,7 @@ class RecruitChoice:
         known: set[tuple[object, ...]] = set()
         for number in ordered:
             recruit = self.recruits[number]
-            needed = frozenset([port.wanted for port in recruit.profile.required])
+            needed = frozenset([port.wanted for port in self.problem.supply.required[number]])
             issued = frozenset([(output.signals, output[BESIDES_TYPES:]) for output in recruit.profile.outputs])
             key = needed, issued, recruit.roles
             if key not in known:
@@ -112,9 +117,9 @@ class RecruitChoice:
         looked_at = {id(need.suppliers) for need in self.wanted}
         while waiting:
             number = waiting.pop()
-            profile = self.recruits[number].profile
-            ports = [port for port in profile.required if self._source_among_players(port) is None]
-            needs = [UnfedInput(profile.component, port, self._suppliers(port)) for port in ports]
+            component = self.recruits[number].component
+            ports = [port for port in self.problem.supply.required[number] if self._source_among_players(port) is None]
+            needs = [UnfedInput(component, port, self._suppliers(port)) for port in ports]
             yield number, needs
             for suppliers in (need.suppliers for need in needs if id(need.suppliers) not in looked_at):
                 looked_at.add(id(suppliers))
@@ -124,14 +129,17 @@ class RecruitChoice:
 
     def _source_among_players(self, port: Input) -> tuple[IRI, Output] | None:
         """The first output of a player that could feed an input."""
-        for component, (_, profile) in self.players.items():
-            for output in profile.outputs:
-                if self.problem.hierarchy.pairs(output, port):
-                    return component, output
-        return None
+        wanted = port.wanted
+        if wanted not in self._from_players:
+            issued = ((component, out) for component, (_, profile) in self.players.items() for out in profile.outputs)
+            pairs = self.problem.hierarchy.pairs
+            self._from_players[wanted] = next((source for source in issued if pairs(source[1], port)), None)
+        return self._from_players[wanted]
 
     def ordered(self, numbers: Iterable[int]) -> list[int]:
         """Recruits in the order in which they are chosen: those that run, then by preference and IRI."""
+        if not self.running:
+            return sorted(numbers)
         return sorted(numbers, key=lambda number: (self.recruits[number].component not in self.running, number))
 
     def placed(self, chosen: Collection[int]) -> list[int]:
@@ -186,9 +194,7 @@ class RecruitChoice:
         generalisation of Dijkstra's algorithm by Knuth (1977). What is settled has a chain of what was settled before
         it, so there is no cycle in one.
         """
-        place = {number: at for at, number in enumerate(self.ordered(self.needs))}
-        chain = {number: 1 << number for number in self.needs}
-        lacking = {number: len(needs) for number, needs in self.needs.items()}
+        place, chain, lacking = self._place, dict(self._alone), dict(self._lacking)
         settled = [(0, place[number], number) for number, count in lacking.items() if not count and number != without]
         heapify(settled)
         least: dict[int, int] = {}
@@ -259,7 +265,7 @@ class RecruitChoice:
         found: list[Connection] = []
         for number in self.placed(chosen):
             profile = self.recruits[number].profile
-            for port in profile.required:
+            for port in self.problem.supply.required[number]:
                 source = self._source_among_players(port) or self._source(port, placed, None)
                 found.append(Connection(source[0], source[1].name, profile.component, port.name))
             placed.append(number)

@@ -7,7 +7,7 @@ recruits never feeds itself. Forward chaining finds it in time linear in the por
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 
@@ -56,37 +56,42 @@ class Supply:
 
         First those for which inputs wait that take any output.
         """
-        self._lacking = [len(recruit.profile.required) for recruit in recruits]
+        self.required = [recruit.profile.required for recruit in recruits]
+        """The inputs of each recruit that must be fed."""
+        self._usable: dict[frozenset[Output], list[int]] = {}
+        """What was answered: a search asks again beside the players that it chose, who are mostly all candidates."""
         self._waiting: dict[IRI, list[tuple[int, int]]] = {}
         """For each signal the inputs that wait for it: the number of the recruit, and that of the required input."""
         self._asking: dict[IRI, list[tuple[int, int]]] = {}
         """For each signal the inputs that wait for it, but do not take it from every output that issues it."""
-        for number, recruit in enumerate(recruits):
-            for place, port in enumerate(recruit.profile.required):
+        for number, required in enumerate(self.required):
+            for place, port in enumerate(required):
                 waiting = self._waiting if port.condition is None else self._asking
                 for signal in port.signals:
                     waiting.setdefault(signal, []).append((number, place))
 
-    def usable(self, outputs: Iterable[Output], without: Set[IRI] = frozenset()) -> list[int]:
+    def usable(self, outputs: Iterable[Output]) -> list[int]:
         """Return the numbers of the recruits that are usable beside some outputs, each after those that feed it."""
-        lacking, met, issued = list(self._lacking), set[tuple[int, int]](), set[IRI]()
-        found = [
-            number
-            for number, recruit in enumerate(self.recruits)
-            if not lacking[number] and recruit.component not in without
-        ]
+        outputs = tuple(outputs)
+        key = frozenset(outputs)
+        if key not in self._usable:
+            self._usable[key] = self._forward(outputs)
+        return list(self._usable[key])
+
+    def _forward(self, outputs: Iterable[Output]) -> list[int]:
+        lacking, met, issued = list(map(len, self.required)), set[tuple[int, int]](), set[IRI]()
+        found = [number for number, count in enumerate(lacking) if not count]
         waiting = [*outputs, *(output for number in found for output in self.recruits[number].profile.outputs)]
         while waiting:
             for one in self._fed_by(waiting.pop(), issued):
-                number, _ = one
-                recruit = self.recruits[number]
-                if one in met or recruit.component in without:
+                if one in met:
                     continue
                 met.add(one)
+                number, _ = one
                 lacking[number] -= 1
                 if not lacking[number]:
                     found.append(number)
-                    waiting += recruit.profile.outputs
+                    waiting += self.recruits[number].profile.outputs
         return found
 
     def _fed_by(self, output: Output, issued: set[IRI]) -> Iterator[tuple[int, int]]:
@@ -111,7 +116,7 @@ class Supply:
             issued.update(types)
         for signal in asking:
             for number, place in self._asking[signal]:
-                condition = self.recruits[number].profile.required[place].condition
+                condition = self.required[number][place].condition
                 if condition is None or condition.met_by(output):
                     yield number, place
 

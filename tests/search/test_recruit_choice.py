@@ -26,6 +26,14 @@ def test_what_only_feeds_itself_has_no_place() -> None:
     assert given.sufficient([2])
 
 
+def test_what_plays_is_no_recruit() -> None:
+    user = component("user", "s:S", "t:T")
+    given = with_recruits(problem({"user": [user]}), user, component("a", "t:T", "s:S"))
+    found = first.search(given)
+    assert isinstance(found, Configuration)
+    assert sorted(RecruitChoice(given, found, ()).needs) == [1]
+
+
 def test_a_chain_is_enough_and_what_can_be_spared_leaves_it() -> None:
     given = choice(component("a", "t:T u:U", "s:S"), component("b", "", "t:T"), component("c", "", "t:T u:U"))
     assert given.sufficient(given.chain())
