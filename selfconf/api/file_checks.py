@@ -10,6 +10,7 @@ import hashlib
 import json
 import multiprocessing
 import os
+import signal
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
@@ -35,11 +36,15 @@ def shared(checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[
     yield checker(suspects[0])  # loads what each process will need
     with multiprocessing.get_context("fork").Pool(processes, _begin, (checker,)) as pool:
         yield from pool.imap(_checked, suspects[1:], chunksize=4)
+        # They end by themselves: a program may have a handler of SIGTERM, which they have, too, until they begin.
+        pool.close()
+        pool.join()
 
 
 def _begin(checker: FileChecker) -> None:
     global _checker
     _checker = checker
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _checked(suspect: UnclearedFile) -> list[Diagnostic]:

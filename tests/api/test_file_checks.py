@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -53,6 +55,20 @@ def files(tmp_path: Path) -> Path:
 def test_processes_give_the_verdicts_of_one(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("selfconf.api.file_checks.WORTH", 2)
     assert check([str(files)], each=shared) == check([str(files)])
+
+
+@pytest.mark.slow
+def test_processes_end_in_a_program_that_has_a_handler_of_sigterm(files: Path) -> None:
+    program = (
+        "import os, signal, sys; signal.signal(signal.SIGTERM, lambda *_: None)\n"
+        "from selfconf.api import file_checks, validation\n"
+        "file_checks.WORTH = 1; os.cpu_count = lambda: 8\n"
+        "print(len(validation.check(sys.argv[1:], each=file_checks.shared).diagnostics))"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", program, str(files)], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert int(ended.stdout) > 0
 
 
 @pytest.mark.slow
