@@ -25,6 +25,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
+from selfconf.model.profile import Place
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.model.wording import plain
@@ -216,15 +217,14 @@ class Inquiry:
         }
         """How many components are eligible for each role."""
         self.left_out = tuple(
-            LeftOut(self._source(component), component, why.reason)
+            LeftOut(self._place(component), component, why.reason)
             for component, why in sorted(self.composer.not_judged().items())
         )
         """The components that play no role, or feed nothing, as what they say cannot be judged, or not in time."""
 
-    def _source(self, component: IRI) -> str:
-        """The name of what a component is described in."""
-        place = self.ecology[component].place
-        return place.source if place else "the ecology"
+    def _place(self, component: IRI) -> Place:
+        """Where a component is described."""
+        return self.ecology[component].place or Place("the ecology")
 
     def insides(self, answer: Answer) -> list[tuple[IRI, Configuration | str]]:
         """What the composites of an answer would be inside, if their sites had this ecology, or why that is nothing.

@@ -1,22 +1,23 @@
-"""Where roles and components are described: file and line, looked up only for what a refusal names.
+"""Where roles and components are described: file and line, looked up only for what a refusal or a complaint names.
 
-Reading for speed forgets lines. So the files of the few that a refusal names are read again, with positions
+Reading for speed forgets lines. So the files of the few that are named are read again, with positions
 (`selfconf.rdf.positions`), if they are files of this machine and not too long for that.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from selfconf.model.left_out import LeftOut
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Place
 from selfconf.model.refusal import InputUnfed, Reason, Refusal
 from selfconf.model.relaxation import AcceptNearMiss, Relaxation
 from selfconf.model.template import Template
-from selfconf.model.term import IRI
+from selfconf.model.term import IRI, BlankNode
 from selfconf.rdf.advertisements import Advertisement
 
 if TYPE_CHECKING:
@@ -24,7 +25,12 @@ if TYPE_CHECKING:
 
 LARGEST_REREAD = 1 << 20
 """Bytes of a file that is read again; of a larger one the name has to do."""
+MOST_REREAD = 20
+"""Of how many files that something was left out of the lines are looked up; of the others the names have to do."""
 Fact = TypeVar("Fact", bound="Reason | Relaxation | NearMiss")
+
+FilesRead = dict[str, "Positions | None"]
+"""The positions in each file that was read again, if it could be."""
 
 
 class Places:
@@ -33,7 +39,7 @@ class Places:
     def __init__(self, template: Template, ecology: Mapping[IRI, Advertisement]) -> None:
         self._roles = {role.iri: role.place for role in template.roles}
         self._ecology = ecology
-        self._read: dict[str, Positions | None] = {}
+        self._read: FilesRead = {}
 
     def of(self, named: IRI) -> Place | None:
         """Where a role or component is described; the line only where it is known."""
@@ -43,11 +49,7 @@ class Places:
             place = self._ecology[named].profile.place if named in self._ecology else None
         if place is None or not Path(place.source).is_file():
             return None  # it comes from another machine, whose lines cannot be looked up here
-        if place.source not in self._read:
-            self._read[place.source] = _positions(place.source)
-        found = self._read[place.source]
-        line = None if found is None else found.line_of(named)
-        return place if line is None else Place(place.source, line)
+        return _with_line(named, place, self._read)
 
     def placed(self, refusal: Refusal) -> Refusal:
         """The refusal with the place of each of its facts."""
@@ -60,6 +62,23 @@ class Places:
 
     def _placed(self, fact: Fact) -> Fact:
         return replace(fact, place=self.of(_spoken_of(fact)))
+
+
+def with_lines(left_out: Iterable[LeftOut]) -> Iterator[LeftOut]:
+    """Yield what was left out of an ecology with the lines where it is described."""
+    read: FilesRead = {}
+    for one in left_out:
+        known = one.place.source in read or len(read) < MOST_REREAD
+        yield replace(one, place=_with_line(one.component, one.place, read)) if known else one
+
+
+def _with_line(named: IRI | BlankNode, place: Place, read: FilesRead) -> Place:
+    """A place with the line of what is named, if it has one and its file can be read again."""
+    if place.source not in read:
+        read[place.source] = _positions(place.source)
+    found = read[place.source]
+    line = None if found is None else found.line_of(named)
+    return place if line is None else Place(place.source, line)
 
 
 def _spoken_of(fact: Reason | Relaxation | NearMiss) -> IRI:

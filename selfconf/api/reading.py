@@ -14,6 +14,7 @@ from selfconf.api.collector import collector_at_rest
 from selfconf.api.ecology import Ecology, EndpointEcology, LoadedEcology
 from selfconf.errors import AuthorError
 from selfconf.model.left_out import LeftOut
+from selfconf.model.profile import Place
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement, SegmentCache, read_advertisements
@@ -147,11 +148,12 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
     with collector_at_rest():
         for text, name, base in texts:
             good, bad = read_advertisements(text, name, base, segments)
-            left_out += [LeftOut(name, malformed.component, malformed.problems[0]) for malformed in bad]
+            left_out += [LeftOut(malformed.place, malformed.component, malformed.problems[0]) for malformed in bad]
             for advertisement in good:
                 if found.setdefault(advertisement.component, advertisement) is not advertisement:
                     other = found[advertisement.component].profile.place
-                    left_out.append(LeftOut(name, advertisement.component, f"it is advertised in {other} already"))
+                    place = advertisement.profile.place or Place(name)
+                    left_out.append(LeftOut(place, advertisement.component, f"it is advertised in {other} already"))
         return AdvertisementIndex(found), tuple(left_out)
 
 

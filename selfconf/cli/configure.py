@@ -46,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 with a configuration, 1 with a refusal, 2 where the budget ended before it was decided."""
     from selfconf.api.answer import Answer, Inquiry
+    from selfconf.api.places import with_lines
     from selfconf.model.refusal import Undecided
     from selfconf.render import undecided_text
 
@@ -56,7 +57,7 @@ def run(given: argparse.Namespace) -> int:
         gc.freeze()  # the partition stays until the command ends, as the files do
         if given.ads is None:
             complain_of(ecology)
-    for one in inquiry.left_out:
+    for one in with_lines(inquiry.left_out):
         complain(str(one))
     answer = inquiry.answer(given.what_if)
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:

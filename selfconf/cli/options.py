@@ -225,7 +225,9 @@ def joined(given: argparse.Namespace) -> LivingEcology:
 
 def complain_of(ecology: Ecology) -> None:
     """Name on stderr what was left out of an ecology when it was last asked."""
-    for one in (*ecology.left_out, *ecology.complaints):
+    from selfconf.api.places import with_lines
+
+    for one in (*with_lines(ecology.left_out), *ecology.complaints):
         complain(str(one))
 
 

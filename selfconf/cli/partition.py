@@ -57,6 +57,7 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.api.alternatives import alternatives
     from selfconf.api.answer import Inquiry, Method
     from selfconf.api.partition_table import PartitionTable
+    from selfconf.api.places import with_lines
 
     task = task_of(given)
     with closing(given_ecology(given)) as ecology:
@@ -65,7 +66,7 @@ def run(given: argparse.Namespace) -> int:
         gc.freeze()  # the partition stays until the command ends, as the files do
         if given.ads is None:
             complain_of(ecology)
-    for one in inquiry.left_out:
+    for one in with_lines(inquiry.left_out):
         complain(str(one))
     if given.show:
         display(_exported(inquiry, given.show))

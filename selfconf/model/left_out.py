@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from selfconf.model.profile import Place
 from selfconf.model.term import IRI, BlankNode
 
 
@@ -11,9 +12,9 @@ from selfconf.model.term import IRI, BlankNode
 class LeftOut:
     """An advertisement that does not count: it does not conform, or its component is advertised already."""
 
-    source: str
+    place: Place
     component: IRI | BlankNode
     reason: str
 
     def __str__(self) -> str:
-        return f"{self.source}: left out {self.component}: {self.reason}"
+        return f"{self.place}: left out {self.component}: {self.reason}"

@@ -26,6 +26,7 @@ import pyoxigraph as ox
 from selfconf.errors import AuthorError, NetworkError, TurtleError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.left_out import LeftOut
+from selfconf.model.profile import Place
 from selfconf.model.term import IRI
 from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
@@ -58,7 +59,7 @@ def read_endpoint(
         good, bad = advertisements.read_advertisements(found, url)
     except TurtleError as error:
         raise NetworkError(f"{url} does not answer in N-Triples: {_line(error.message)}") from None
-    left_out = [LeftOut(url, malformed.component, malformed.problems[0]) for malformed in bad]
+    left_out = [LeftOut(Place(url), malformed.component, malformed.problems[0]) for malformed in bad]
     return {advertisement.component: advertisement for advertisement in good}, left_out
 
 

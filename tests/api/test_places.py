@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 import selfconf as sc
-from selfconf.api.places import LARGEST_REREAD, Places
+from selfconf.api.places import LARGEST_REREAD, MOST_REREAD, Places, with_lines
 from selfconf.api.reading import read
+from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Template
 from selfconf.model.term import IRI
@@ -49,6 +50,17 @@ def write(home: Path, template: str, clock: str, screen: str) -> None:
     (home / "time.ttl").write_text(PREFIXES + "\n# The time.\n" + template)
     (home / "ads" / "clock.ttl").write_text(PREFIXES + clock)
     (home / "ads" / "screen.ttl").write_text(PREFIXES + screen)
+
+
+def test_what_was_left_out_has_a_line_where_its_file_can_be_read(tmp_path: Path) -> None:
+    names = [f"{number:02}.ttl" for number in range(MOST_REREAD + 1)]
+    for name in names:
+        (tmp_path / name).write_text(PREFIXES + "# Malformed.\n:x a sc:Component .")
+    expected = line(tmp_path / names[0], ":x a")
+    some = [*read(tmp_path).left_out, LeftOut(Place("elsewhere.ttl"), IRI("urn:x"), "it has no type")]
+    found = [str(one.place) for one in with_lines(some)]
+    assert found[:MOST_REREAD] == [expected.replace(names[0], name) for name in names[:-1]]
+    assert found[MOST_REREAD:] == [str(tmp_path / names[-1]), "elsewhere.ttl"]
 
 
 def configure(capsys: pytest.CaptureFixture[str], home: Path, *arguments: str) -> Outcome:

@@ -15,6 +15,7 @@ import selfconf as sc
 from selfconf import read
 from selfconf.api.reading import is_endpoint, is_turtle
 from selfconf.errors import AuthorError, TurtleError
+from selfconf.model.profile import Place
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
 
 CLOCK_TURTLE = Path(__file__).resolve().parents[2] / "examples" / "clock" / "clock.ttl"
@@ -207,7 +208,7 @@ def test_of_two_advertisements_of_a_component_the_first_by_path_counts_and_the_o
     ecology = read(tmp_path / "b.ttl", tmp_path / "a.ttl")
     assert iri("Lamp") in ecology.components[iri("x")].types
     (left_out,) = ecology.left_out
-    assert (left_out.source, left_out.component) == (str(tmp_path / "b.ttl"), iri("x"))
+    assert (left_out.place, left_out.component) == (Place(str(tmp_path / "b.ttl")), iri("x"))
     assert left_out.reason == f"it is advertised in {tmp_path / 'a.ttl'} already"
 
 
