@@ -206,7 +206,26 @@ def test_all_answers_that_are_recorded_keep_to_the_schema() -> None:
         found.update(one["code"] for part in ("reasons", "repairs") for one in body.get(part, ()))
     judges["validate"].validate(load("answers")["bad"]["tests/bad"]["stdout"])
     assert found.keys() >= {"configure", "partition", "validate", "query", "cost", "what_if", "status"}
-    assert found.keys() >= {one.code for one in (*get_args(Reason), *get_args(Relaxation))} - {"contradictory-count"}
+    codes = {one.code for one in (*get_args(Reason), *get_args(Relaxation))}
+    assert found.keys() >= codes - {"contradictory-count", "add-recruits"}
+
+
+def test_recruits_to_add_keep_to_the_schema(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "t.ttl").write_text(
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:t:> .\n"
+        ":t a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class :Eye ; sc:recruits true .\n"
+    )
+    (tmp_path / "ad.ttl").write_text(
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:t:> .\n"
+        ':e a sc:Component , :Eye ; sc:hasInput [ sc:name "light" ; sc:signalType :Light ] .\n'
+    )
+    body = printed(capsys, "configure", str(tmp_path / "t.ttl"), "--ads", str(tmp_path / "ad.ttl"))
+    validator("configure").validate(body)
+    added = next(one for one in body["repairs"] if one["code"] == "add-recruits")
+    assert added["message"] == "add one more component for the role eye to recruit that issues Light"
+    assert added["additions"] == [
+        {"role": "urn:t:eye", "count": 1, "outputs": [{"signal": "urn:t:Light"}], "values": {}}
+    ]
 
 
 @pytest.mark.usefixtures("asked_here")

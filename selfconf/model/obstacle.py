@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar
 
+from selfconf.model.profile import Operation, WantedSignal, port_in_words
 from selfconf.model.signal_match import Degree, SignalMatch
 from selfconf.model.term import IRI, Term
 from selfconf.model.unit_dimension import differ_in_dimension
@@ -330,22 +331,21 @@ class NotFedItself(_Predicate):
     in_circle: bool = False
 
     def __str__(self) -> str:
-        wanted = " or ".join(signal.short for signal in self.signals) or "signal"
+        issues = WantedSignal(self.signals).issued
+        port = port_in_words(self.input).removeprefix("the ")
         if self.in_circle:
-            return f"is fed only in a circle: its input {self.input!r} by {' by '.join(c.short for c in self.feeders)}"
+            return f"is fed only in a circle: its {port} by {' by '.join(c.short for c in self.feeders)}"
         if self.feeders:
-            first = self.feeders[0].short
-            return (
-                f"is not fed itself: {first}, which issues a {wanted} for its input {self.input!r}, is not fed either"
-            )
-        return f"is not fed itself: no component that can be recruited issues a {wanted} for its input {self.input!r}"
+            return f"is not fed itself: {self.feeders[0].short}, which {issues} for its {port}, is not fed either"
+        return f"is not fed itself: no component that can be recruited {issues} for its {port}"
 
 
 def _issuing(match: SignalMatch) -> str:
+    verb, sort = ("offers", "operation ") if isinstance(match.wanted, Operation) else ("issues", "")
     wanted = match.wanted.short if match.wanted else "signal without a type"
     if match.offered is None:
-        return f"issues no {wanted}"
-    return f"issues {match.offered.short}, {_RELATIONS[match.degree]} {wanted}"
+        return f"{verb} no {sort}{wanted}"
+    return f"{verb} {sort}{match.offered.short}, {_RELATIONS[match.degree]} {sort}{wanted}"
 
 
 def _taking(match: SignalMatch) -> str:

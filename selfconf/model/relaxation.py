@@ -6,7 +6,7 @@ A relaxation is a fact; it words itself as a request. `code` is stable, for prog
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from selfconf.model.partition import Candidate, NearMiss
@@ -28,6 +28,10 @@ class Addition:
     """Of free parameters, by name, the value that each component must admit."""
 
     def __str__(self) -> str:
+        return self.worded("")
+
+    def worded(self, purpose: str) -> str:
+        """The components in words, with what they are for the role for, such as ` to recruit`; players need none."""
         number = "one more component" if self.count == 1 else f"{self.count} more components"
         one = self.count == 1
         clauses = [
@@ -37,7 +41,7 @@ class Addition:
         ]
         issuing = f" that {listed(clauses)}" if clauses else ""
         values = "".join(f", with {name} {in_words((value,))}" for name, value in self.values)
-        return f"{number} for the role {self.role.short}{issuing}{values}"
+        return f"{number} for the role {self.role.short}{purpose}{issuing}{values}"
 
     def _ports(self, outputs: Sequence[Output]) -> str:
         signals = listed(dict.fromkeys(_signal(output) for output in outputs if output.name not in self.named))
@@ -75,6 +79,20 @@ class AddComponents:
 
     def __str__(self) -> str:
         return f"add {listed(map(str, self.additions))}"
+
+
+@dataclass(frozen=True, slots=True)
+class AddRecruits(AddComponents):
+    """Components that make the task possible as recruits; none of their outputs can be spared."""
+
+    code: ClassVar[str] = "add-recruits"
+
+    def __str__(self) -> str:
+        alike: dict[str, list[Addition]] = {}
+        for addition in self.additions:
+            alike.setdefault(str(addition), []).append(addition)
+        some = [replace(those[0], count=sum(one.count for one in those)) for those in alike.values()]
+        return f"add {listed(addition.worded(' to recruit') for addition in some)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,4 +162,4 @@ class AcceptNearMiss:
         return f"let {self.near.component.short} play {self.near.role.short}, although {self.near}"
 
 
-Relaxation = AddComponents | AskForFewer | AddInteraction | LetRecruit | AcceptNearMiss
+Relaxation = AddComponents | AddRecruits | AskForFewer | AddInteraction | LetRecruit | AcceptNearMiss

@@ -5,7 +5,8 @@ most helpful that could be added for a role; an output that an interaction names
 choice of these. Wherever there is no solution, an irreducible set of constraints cannot
 hold; only a component for one of its roles, or for a role that may feed one of its inputs, changes that. So
 breadth-first search over sets of such additions, each extended by these roles alone, finds the fewest; then outputs are
-taken away again one by one, as long as there is a solution without them.
+taken away again one by one, as long as there is a solution without them. Recruits are added likewise
+(`recruits_to_add`).
 
 *Things to change.* A role that asks for fewer, or for one where it asked for none and others need what it would
 issue; one interaction more, where some candidate issues what is lacking; a near miss accepted. Each alone.
@@ -32,6 +33,7 @@ from selfconf.model.relaxation import (
     AddComponents,
     AddInteraction,
     Addition,
+    AddRecruits,
     AskForFewer,
     LetRecruit,
     Relaxation,
@@ -43,6 +45,7 @@ from selfconf.search.budget import Budget
 from selfconf.search.explain import FeasibilityOracle, core
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import possible_with_recruits
+from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
 from selfconf.search.reduction import Fed, LazyReduction, Played, reduced
 from selfconf.search.strategies import possible, solution
 
@@ -102,15 +105,17 @@ def _relaxations(
     small = _reduced(problem, {miss.component for miss, _ in near_misses})
     accepted = itertools.starmap(AcceptNearMiss, near_misses)
     yield from (one for one in accepted if _possible(relaxed_by(small, one), budget))
+    recruits = recruits_to_add(small, lambda more: _possible(more, budget))
     added = _additions(small, budget)
-    if added is not None:
-        yield added
+    yield from (one for one in (recruits, added) if one is not None)
     yield from (one for one in _interactions(small, refused) if _possible(relaxed_by(small, one), budget))
     yield from _fewer(small, refused, budget)
 
 
 def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
     """Return the problem after a relaxation."""
+    if isinstance(relaxation, AddRecruits):
+        return with_more_recruits(problem, relaxation)
     if isinstance(relaxation, AddComponents):
         more: dict[IRI, list[Candidate]] = {}
         for addition in relaxation.additions:

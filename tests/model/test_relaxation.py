@@ -14,6 +14,7 @@ from selfconf.model.relaxation import (
     AddComponents,
     AddInteraction,
     Addition,
+    AddRecruits,
     AskForFewer,
     LetRecruit,
     Relaxation,
@@ -28,6 +29,7 @@ def test_a_repair_by_type_says_what_the_component_is_not() -> None:
 
 EYE, MIND = iri("eye"), iri("mind")
 IMAGE = Output("image", (iri("Image"),))
+LIKE_A, LIKE_B = (IMAGE._replace(conforms=frozenset((shape,))) for shape in "ab")
 WORDED: list[tuple[Relaxation, str]] = [
     (AddComponents((Addition(EYE, 1),)), "add one more component for the role eye"),
     (
@@ -44,6 +46,17 @@ WORDED: list[tuple[Relaxation, str]] = [
     (
         AddComponents((Addition(EYE, 2, (Output("reset()", ()),), frozenset(("reset()",))),)),
         "add 2 more components for the role eye that offer an operation by the name 'reset'",
+    ),
+    (
+        AddRecruits((Addition(EYE, 1, (IMAGE,)), Addition(MIND, 1, (IMAGE,)))),
+        (
+            "add one more component for the role eye to recruit that issues Image and one more component for the role"
+            " mind to recruit that issues Image"
+        ),
+    ),
+    (
+        AddRecruits((Addition(EYE, 1, (LIKE_A,)), Addition(EYE, 1, (LIKE_B,)))),
+        "add 2 more components for the role eye to recruit that issue Image as the sc:accepts of its input asks",
     ),
     (AskForFewer(EYE, 0), "let the role eye be optional (sc:minCount 0)"),
     (AskForFewer(EYE, 2), "let the role eye ask for 2 (sc:minCount 2)"),
@@ -64,6 +77,7 @@ def test_every_relaxation_is_worded_and_has_a_code_and_a_role() -> None:
         "accept-near-miss",
         "add-components",
         "add-interaction",
+        "add-recruits",
         "ask-for-fewer",
         "let-recruit",
     ]

@@ -25,6 +25,7 @@ from selfconf.model.relaxation import (
     AddComponents,
     AddInteraction,
     Addition,
+    AddRecruits,
     AskForFewer,
     LetRecruit,
     Relaxation,
@@ -62,6 +63,7 @@ REASONS: tuple[Reason, ...] = (
 """A reason of each kind."""
 REPAIRS: tuple[Relaxation, ...] = (
     AddComponents((Addition(SOURCE, 2, (Output("time", (term("Text"),)),)),)),
+    AddRecruits((Addition(SINK, 1, (Output("time", (term("Text"),)),)),)),
     AskForFewer(SOURCE, 0),
     AddInteraction(SOURCE, SINK, place=Place("tell.ttl", 7)),
     AcceptNearMiss(MISS, Candidate(Profile(LAMP))),

@@ -115,7 +115,7 @@ def test_a_refusal_has_every_fact_with_its_code_its_role_and_a_sentence() -> Non
 def test_a_fact_of_a_refusal_has_a_place_where_that_is_known() -> None:
     body = refusal_body(REFUSAL)
     assert [one.get("place") for one in body["reasons"]] == [None, None, "tell.ttl:7", "screen.ttl", None, None]
-    assert [one.get("place") for one in body["repairs"]] == [None, None, "tell.ttl:7", None, None, None]
+    assert [one.get("place") for one in body["repairs"]] == [None, None, None, "tell.ttl:7", None, None, None]
     (miss,) = body["near_misses"]
     assert miss == {"role": SOURCE, "component": LAMP, "obstacle": "is no Clock", "place": "lamp.ttl:4"}
 

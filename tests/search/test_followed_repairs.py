@@ -19,21 +19,25 @@ PREFIXES = """\
 @prefix : <urn:t:> .
 """
 ADDED = re.compile(
-    r"(one|\d+) more components? for the role (\w+)(?: that issues? (.*?))?(?:, with robot (\w+))?"
+    r"(one|\d+) more components? for the role (\w+)( to recruit)?(?: that issues? (.*?))?(?:, with robot (\w+))?"
     r"(?=$|(?:,| and) (?:one|\d+) more)"
 )
 ISSUED = re.compile(r"(\w+)(?: by the output '(\w+)')?")
 
 
 def ecology(rng: random.Random) -> tuple[str, dict[str, str]]:
-    """A template, in which interactions name ports and a parameter may be free, and statements of its roles."""
+    """A template, whose interactions name ports, and where a parameter may be free, and statements of its roles.
+
+    Some of these recruit.
+    """
     roles = [f"r{k}" for k in range(rng.randint(2, 4))]
     free = rng.random() < 0.3
     about = {}
     for role in roles:
         count = rng.choice(["", "", "", " ; sc:minCount 2", " ; sc:minCount 0"])
+        recruits = rng.choice(["", "", "", " ; sc:recruits true", " ; sc:recruits [ sh:class :HELPER ]"])
         where = " ; sh:property [ sh:path :on ; sh:in ( :robot ) ]" if free and rng.random() < 0.7 else ""
-        about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where} ."
+        about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where}{recruits} ."
     listed = " ".join(f":{role}" for role in roles)
     lines = [f":t a sc:Template ; sc:roles ( {listed} ) {'; sc:parameter :robot' * free} ."]
     lines += [':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .'] * free
@@ -71,12 +75,13 @@ def followed(repair: Relaxation, template: str, about: dict[str, str]) -> tuple[
     said, about, new = str(repair), dict(about), []
     if isinstance(repair, AddComponents):
         parts = said.removeprefix("add ")
-        for number, role, issues, robot in ADDED.findall(parts):
+        for number, role, recruited, issues, robot in ADDED.findall(parts):
             outputs = {}
             for signal, name in ISSUED.findall(issues.replace(" and ", ", ")) if issues else ():
                 outputs[name or f"any{len(outputs)}"] = signal
             for k in range(1 if number == "one" else int(number)):
-                new.append(component(f"new{role}{len(new)}{k}", role, {}, outputs, robot or None))
+                kind = "helper" if recruited else role
+                new.append(component(f"new{role}{len(new)}{k}", kind, {}, outputs, robot or None))
     elif isinstance(repair, AddInteraction):
         source, sink = re.findall(r"the role (\w+)", said)
         template += f"\n:{source} sc:feeds :{sink} ."
