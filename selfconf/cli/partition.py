@@ -76,7 +76,7 @@ def run(given: argparse.Namespace) -> int:
     if given.format == "json":
         display(json.dumps(_body(found, why), indent=2, ensure_ascii=False))
     else:
-        display("\n".join(line for one in found.roles for line in _lines(one, found.names, why)))
+        display("\n".join(line for one in found.roles for line in _lines(one, found.names, why, bool(inquiry.holders))))
     return 0 if found.sufficient else 1
 
 
@@ -92,7 +92,7 @@ def _exported(inquiry: Inquiry, how: str) -> str:
     return "\n\n".join(f"# {role.iri}\n{texts[how](role)}" for role in partitioner.roles)
 
 
-def _lines(one: RolePartition, names: Names, why: Why) -> Iterator[str]:
+def _lines(one: RolePartition, names: Names, why: Why, some_held: bool) -> Iterator[str]:
     from selfconf.render import alternative_text, holder_text
 
     told = {found.component: found for found in why.get(one.role.iri, ())}
@@ -101,7 +101,7 @@ def _lines(one: RolePartition, names: Names, why: Why) -> Iterator[str]:
     yield f"{names(one.role.iri)}  {len(one.eligible) or 'nobody is'} eligible"
     for number, component in enumerate(one.eligible, 1):
         held = one.held.get(component)
-        said = f": {alternative_text(told[component], chosen)}" if component in told else ""
+        said = f": {alternative_text(told[component], chosen, some_held)}" if component in told else ""
         yield f"  {number}. {names(component)}{said}" + (f"  ({holder_text(held)})" if held is not None else "")
     if one.recruits:
         more = len(one.recruits) - SHOWN

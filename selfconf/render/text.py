@@ -70,25 +70,27 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
     return "\n".join(lines)
 
 
-def alternative_text(one: Alternative, chosen: Alternative | None) -> str:
-    """What speaks for a candidate of a role and against it, beside the one that is chosen."""
+def alternative_text(one: Alternative, chosen: Alternative | None, some_held: bool = False) -> str:
+    """What speaks for a candidate of a role and against it, beside the one that is chosen.
+
+    Where tasks hold some of the components, only the others are free for a configuration.
+    """
     said = [f"preference {one.preference:g}" if one.preference else "no preference"]
     if one.cost:
         said.append(f"cost {_amounts(one.cost)}")
     if one.unknown:
         said.append(f"{one.unknown} {'term' if one.unknown == 1 else 'terms'} of the cost unknown")
-    return f"{', '.join(said)}; {_outcome(one, chosen)}"
+    return f"{', '.join(said)}; {_outcome(one, chosen, some_held)}"
 
 
-def _outcome(one: Alternative, chosen: Alternative | None) -> str:
+def _outcome(one: Alternative, chosen: Alternative | None, some_held: bool) -> str:
     """What comes of a candidate."""
     proved = "" if one.proved else " at most"
     if one.chosen:
         return f"chosen, all in all{proved} {_amounts(one.total)}" if one.total else "chosen"
     if one.outcome != "possible":
-        return {"impossible": "no configuration has it", "undecided": "not decided in time"}.get(
-            one.outcome, "not tried"
-        )
+        impossible = "no configuration of what is free has it" if some_held else "no configuration has it"
+        return {"impossible": impossible, "undecided": "not decided in time"}.get(one.outcome, "not tried")
     if not one.total:
         return "possible, and comes later in the order"
     level, more = next(((n, x) for n, x in enumerate(one.extra(chosen), 1) if x), (0, Fraction(0)))

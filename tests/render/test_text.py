@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from decimal import Decimal
 
+import pytest
+
+from selfconf.model.alternative import Alternative
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Refusal, TooFewEligible, Undecided
 from selfconf.render import (
+    alternative_text,
     configuration_text,
     consequences_text,
     cost_text,
@@ -121,3 +126,11 @@ def test_names_are_as_they_are_asked_for() -> None:
     assert "configured tell" in configuration_text(CONFIGURATION, short)
     assert CLOCK not in configuration_text(CONFIGURATION, short)
     assert LAMP not in refusal_text(REFUSAL, short)
+
+
+@pytest.mark.parametrize(
+    ("some_held", "said"), [(False, "no configuration has it"), (True, "no configuration of what is free has it")]
+)
+def test_what_cannot_be_is_told_with_regard_to_what_others_hold(some_held: bool, said: str) -> None:
+    one = Alternative(CLOCK, Decimal(0), (), 0, False, "impossible")
+    assert alternative_text(one, None, some_held) == f"no preference; {said}"
