@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TypedDict
 
@@ -68,6 +69,8 @@ WAKING = 15.0
 """Seconds that a component that a site starts may take to live."""
 SITE_BACK = 3.0
 """Seconds that a site may be away before what it was starting is given up."""
+LEFT_BEHIND = 8
+"""How many lives of a component are remembered at most that may only be frozen."""
 RESERVE_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
 
@@ -109,6 +112,8 @@ class Calls:
         """The connections that each component was given, in which life, so that only new ones are reported."""
         self._lives: dict[IRI, str] = {}
         """The life of each component that has obeyed a call of this task, and not yet a release."""
+        self._left_behind: dict[IRI, tuple[str, ...]] = {}
+        """The lives that have obeyed a call of this task, and ended, or seemed to, before they obeyed a release."""
         self._called: set[IRI] = set()
         """The components that were asked to be held, or to act, whatever has come of it."""
         self._unborn: set[IRI] = set()
@@ -126,7 +131,7 @@ class Calls:
         found = self.ecology.discovery.found.get(effect.component)
         held = self._lives.get(effect.component)
         if held is not None and not self.ecology.lives_on(effect.component, held):
-            del self._lives[effect.component]
+            self._leave_behind(effect.component)
         if self.ecology.life(effect.component) is not None:
             self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
         elif found is not None and found.startable:
@@ -135,8 +140,10 @@ class Calls:
             detail = "it is advertised, but it does not run" if found is None or not found.unable else found.unable
             self._unreachable(effect.component, Call.WAKE, effect.epoch, detail)
 
-    def woken(self, component: IRI) -> None:
-        """A component lives; perhaps it was started for this task."""
+    def woken(self, component: IRI, life: str) -> None:
+        """A component lives; perhaps it was started for this task, or it was frozen and has not been released."""
+        if life in self._left_behind.get(component, ()):
+            self._release_left_behind(component, life)
         self._unborn.discard(component)
         self.gone.discard(component)
         waiting = self._waking.pop(component, None)
@@ -256,7 +263,7 @@ class Calls:
         self._awaited.discard(component)
         message = Release(**self._claim(component, effect.epoch))
         if not self._lives_on(component):
-            self._lives.pop(component, None)
+            self._leave_behind(component)
             never_acted = component in self._unborn - self._called
             off = Answered(component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE if never_acted else None)
             self.bus.wake_up(lambda: self._step(off))
@@ -283,6 +290,41 @@ class Calls:
 
         self.bus.ask(self.keys.call(component, Call.RELEASE.value), encode(message), CALL, answered)
         self.bus.later(GONE, partial(self._is_gone, component))
+
+    def _leave_behind(self, component: IRI) -> None:
+        """Remember the life of a component that is held and does not live any more: it may only be frozen."""
+        life = self._lives.pop(component, None)
+        if life is not None:
+            self._left_behind[component] = (*self._left_behind.get(component, ()), life)[-LEFT_BEHIND:]
+
+    def _release_left_behind(self, component: IRI, life: str) -> None:
+        """Tell a life that was frozen that it is released, whatever other lives of the component were told since.
+
+        Unless it is wanted again: then it is told so.
+        """
+        if life not in self._left_behind.get(component, ()) or not self.ecology.lives_on(component, life):
+            return
+        again = partial(self._release_left_behind, component, life)
+        wanted = component in self._waking or component in self._state().held
+        if wanted and self._life(component) == life:
+            self.bus.later(CALL, again)
+            return
+        message = replace(Release(**self._claim(component, self._state().epoch)), life=life)
+
+        def answered(replies: Replies) -> None:
+            answer = self._answer_in(replies, life)
+            if answer is not None and answer.life == life:
+                self._caught_up(component, life)
+            else:
+                self.bus.later(CALL, again)
+
+        self.bus.ask(self.keys.call(component, Call.RELEASE.value), encode(message), CALL, answered)
+
+    def _caught_up(self, component: IRI, life: str) -> None:
+        """A life has answered a call: it has been left behind no longer."""
+        left = tuple(one for one in self._left_behind.pop(component, ()) if one != life)
+        if left:
+            self._left_behind[component] = left
 
     def _release_again(self, effect: ReleaseFrom) -> None:
         if self._state().owed.get(effect.component) == effect.epoch:
@@ -381,6 +423,7 @@ class Calls:
             self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
             self._lives[component] = answer.life
+            self._caught_up(component, answer.life)
         applied = answer.verdict is Verdict.DONE and call is Call.APPLY
         if applied and self.moved(component, answer.outputs, answer.callers):
             self._step(Rewired(component))  # before the answer: those that it calls are told, then all is complete

@@ -68,6 +68,8 @@ class Liveness:
         """The lives of the roll-call that the watch has not shown yet, with the component's chunk."""
         self._unseen_sites: set[str] = set()
         """The liveliness keys of the sites that have answered, but that the watch has not shown yet."""
+        self._ended_sites: set[str] = set()
+        """The liveliness keys of the sites that have ended since the last discovery, whatever they answer to it."""
         self._names: dict[str, IRI] = {}
         """Every component that was ever advertised, by its chunk: an event costs one look-up, however many live."""
         self._doubted: set[tuple[str, str]] = set()
@@ -91,7 +93,8 @@ class Liveness:
         """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
         self._names.update((component_chunk(component), component) for component in discovery.found)
         self._sites -= self._unseen_sites - discovery.site_tokens
-        self._sites |= discovery.answered
+        self._sites |= discovery.answered - self._ended_sites
+        self._ended_sites.clear()
         if not self.ecology.followed:
             self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
             self._unseen_sites = set(discovery.answered)
@@ -110,7 +113,7 @@ class Liveness:
             self.ecology.began(chunk, life)
             component = self._component(chunk)
             if component is not None:
-                self._calls.woken(component)
+                self._calls.woken(component, life)
             self._step(Appeared({component: life} if component is not None else {}))
 
     def _ended(self, chunk: str, life: str) -> None:
@@ -229,6 +232,10 @@ class Liveness:
 
     def _site_changed(self, key: str, alive: bool) -> None:
         self._unseen_sites.discard(key)
+        if alive:
+            self._ended_sites.discard(key)
+        else:
+            self._ended_sites.add(key)
         if alive and key not in self._sites:
             self._sites.add(key)
             self._calls.site_began(owner_of(key))

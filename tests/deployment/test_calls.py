@@ -313,6 +313,20 @@ def test_a_component_that_goes_on_after_it_was_frozen_for_long_is_released(lab: 
     assert lab.until(lambda: not agent.state.owed, 0.1)
 
 
+def test_a_component_that_was_frozen_is_released_whatever_another_life_of_it_has_answered(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    frozen, runtime = lab.node_of("tracker"), lab.runtimes["tracker"]
+    lab.network.pause(frozen)
+    lab.let_pass(2 * GONE)
+    lab.component("tracker")
+    assert lab.until(lambda: not agent.state.owed, 0.5)  # the other life owes nothing, and has said so
+    lab.crash("tracker")
+    assert runtime.active
+    lab.network.resume(frozen)
+    assert lab.until(lambda: not runtime.active, 0.5)
+
+
 def test_a_component_that_speaks_another_protocol_is_replaced(lab: Lab) -> None:
     """A component whose program speaks another protocol is replaced, not trusted."""
     runtime = lab.runtimes["tracker"]

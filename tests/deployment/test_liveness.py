@@ -411,6 +411,26 @@ def test_a_site_that_is_cut_off_before_lives_are_followed_is_news_when_it_is_bac
     assert len(lab.acts("query")) == asked + 1
 
 
+def test_a_site_that_is_cut_off_after_its_answer_is_news_when_it_is_back(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    astrid, late = lab.site("astrid", "sonar", "encoder", "control"), lab.site("living-room", "tracker")
+    assert isinstance(late.bus, MemoryBus)
+    agent = lab.agent(patient=True)
+    lab.let_pass(2 * SETTLING)
+    lab.network.pause(late.bus)
+    lab.component("tracker")  # so that the ecology is asked once more
+    lab.let_pass(0.01)
+    lab.isolate(astrid)  # it has answered, while the other has not
+    lab.let_pass(0.01)
+    lab.network.resume(late.bus)
+    lab.let_pass(2 * SETTLING)
+    assert agent.state.phase is Phase.REFUSED
+    asked = len(lab.acts("query"))
+    lab.rejoin(astrid)
+    lab.let_pass(0.1)
+    assert len(lab.acts("query")) == asked + 1
+
+
 def test_where_a_hub_is_opened_anew_no_end_is_believed_but_not_for_ever(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)

@@ -45,6 +45,8 @@ def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
         pytest.param(106261, COMPOSED, id="what stood behind an output is released, as the inside begins anew"),
         pytest.param(103267, COMPOSED, id="who calls from inside is told while the task outside looks anew"),
         pytest.param(104138, PAPER, id="a task that waits looks again at the end, with slow components"),
+        pytest.param(403221, COMPOSED, id="what was frozen goes on, after another life of it was released"),
+        pytest.param(403772, PAPER, id="a site is cut off after its answer, while another has not answered"),
     ],
 )
 def test_a_history_that_was_broken_once_is_not_any_more(seed: int, ecology: FaultyEcology, folder: Path) -> None:
