@@ -15,6 +15,8 @@ LONG_CHAIN = 4_000
 """From how many recruits on a look takes longer: a chain has a bit for each."""
 LITERAL_STEPS = 50_000_000
 """Steps of the solver times the suppliers of all needs, at most: a conflict takes the longer the more there are."""
+FEWEST_STEPS = 40
+"""With how many steps the solver is asked at least: where it may have fewer, its clauses alone take longer than that."""
 WithoutSpare = Callable[[Sequence[int]], list[int]]
 """Recruits that are enough, by number, without those that can be spared."""
 
@@ -24,9 +26,11 @@ def fewest(choice: RecruitChoice, budget: Budget) -> tuple[list[int], bool]:
     met = _improved(choice, choice.without_spare(choice.chain()), budget)
     if not met or not solver_available():
         return met, not met
+    steps = LITERAL_STEPS // max(1, choice.number_of_suppliers)
+    if steps < FEWEST_STEPS:
+        return met, False
     reduced, wanted = choice.reduced()
-    suppliers = sum(len(option.kind.supports) for option in reduced.options[-1])
-    budget = budget.part(LITERAL_STEPS // max(1, suppliers))
+    budget = budget.part(steps)
     with FoundedSolver(reduced, wanted) as clauses:
         order = [option.number for option in reduced.options[-1]]
         return fewest_of(clauses, order, met, choice.without_spare, budget)

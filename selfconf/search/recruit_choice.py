@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import reduce
 from heapq import heapify, heappop, heappush
@@ -36,6 +36,19 @@ class UnfedInput(NamedTuple):
     """The numbers of the recruits that could."""
 
 
+class LeastChains(NamedTuple):
+    """For choices of suppliers a short chain that ends in one of them."""
+
+    least: Mapping[int, int]
+    """For a choice, by identity, which recruits are in the chain; bit k is the one at place k of the order."""
+    order: Sequence[int]
+
+    def joined(self, needs: Iterable[UnfedInput]) -> list[int]:
+        """The recruits of the chains of some needs, sorted."""
+        whole = reduce(or_, (self.least[id(need.suppliers)] for need in needs), 0)
+        return sorted(number for place, number in enumerate(self.order) if whole >> place & 1)
+
+
 class RecruitChoice:
     """The recruits that matter to the players of one configuration, and what they could feed."""
 
@@ -53,7 +66,6 @@ class RecruitChoice:
         self.needs = dict(self._needs_of_recruits())
         """For each recruit that matters, the inputs that other recruits have to feed."""
         self._place = {number: at for at, number in enumerate(self.ordered(self.needs))}
-        self._alone = {number: 1 << number for number in self.needs}
         self._lacking = {number: len(needs) for number, needs in self.needs.items()}
         self._feeds = self._needs_by_supplier()
         self._consumers: dict[int, list[int]] = {}
@@ -66,6 +78,11 @@ class RecruitChoice:
     def possible(self) -> bool:
         """Whether each need of the players has a usable supplier; then each need of these has one, too."""
         return all(need.suppliers for need in self.wanted)
+
+    @property
+    def number_of_suppliers(self) -> int:
+        """How many recruits could feed each choice, all choices together."""
+        return sum(map(len, self._feeds.values()))
 
     def _undominated(self, ordered: Iterable[int]) -> Iterator[int]:
         """Yield of recruits in their order the first of those that need the same and issue the same for the same roles.
@@ -172,20 +189,15 @@ class RecruitChoice:
 
     def chain(self) -> list[int]:
         """Recruits that are enough: for each need the supplier that takes the fewest, with all that feed it in turn."""
-        return self._joined(self._least_chains())
+        return self._least_chains().joined(self.wanted)
 
     def exchanged(self, chosen: Collection[int], number: int) -> list[int] | None:
         """Recruits that are enough without one of those chosen, of which the others cost nothing; None if none are."""
-        free = sum(1 << other for other in chosen if other != number)
-        chains = self._least_chains(free, number)
-        return self._joined(chains) if all(id(need.suppliers) in chains for need in self.wanted) else None
+        chains = self._least_chains(frozenset(chosen) - {number}, number)
+        return chains.joined(self.wanted) if all(id(need.suppliers) in chains.least for need in self.wanted) else None
 
-    def _joined(self, chains: Mapping[int, int]) -> list[int]:
-        whole = reduce(or_, (chains[id(need.suppliers)] for need in self.wanted), 0)
-        return [number for number in sorted(self.needs) if whole >> number & 1]
-
-    def _least_chains(self, free: int = 0, without: int | None = None) -> dict[int, int]:
-        """For choices of suppliers, by identity, a short chain that ends in one of them; bit k is recruit k.
+    def _least_chains(self, free: Set[int] = frozenset(), without: int | None = None) -> LeastChains:
+        """For choices of suppliers a short chain that ends in one of them.
 
         For each choice of a player, and for each that is settled before them.
 
@@ -194,24 +206,34 @@ class RecruitChoice:
         generalisation of Dijkstra's algorithm by Knuth (1977). What is settled has a chain of what was settled before
         it, so there is no cycle in one.
         """
-        place, chain, lacking = self._place, dict(self._alone), dict(self._lacking)
+        place, lacking = self._place, dict(self._lacking)
+        order: list[int] = []
+        costly = 0
+        """Those in the order that are not free."""
+        feeding: dict[int, int] = {}
+        """For recruits that are not settled, those that feed them."""
         settled = [(0, place[number], number) for number, count in lacking.items() if not count and number != without]
         heapify(settled)
         least: dict[int, int] = {}
         unmet = {id(need.suppliers) for need in self.wanted}
         while settled and unmet:
             number = heappop(settled)[2]
+            itself = 1 << len(order)
+            order.append(number)
+            costly |= 0 if number in free else itself
+            whole = feeding.pop(number, 0) | itself
             for suppliers in self._feeds.get(number, ()):
                 if id(suppliers) in least:
                     continue
-                least[id(suppliers)] = chain[number]
+                least[id(suppliers)] = whole
                 unmet.discard(id(suppliers))
                 for fed in self._consumers.get(id(suppliers), ()):
-                    chain[fed] |= chain[number]
+                    feeding[fed] = feeding.get(fed, 0) | whole
                     lacking[fed] -= 1
                     if not lacking[fed] and fed != without:
-                        heappush(settled, ((chain[fed] & ~free).bit_count(), place[fed], fed))
-        return least
+                        cost = (feeding[fed] & costly).bit_count() + (fed not in free)
+                        heappush(settled, (cost, place[fed], fed))
+        return LeastChains(least, order)
 
     def without_spare(self, chosen: Sequence[int]) -> list[int]:
         """Recruits without those that can be spared, the last by preference first."""
