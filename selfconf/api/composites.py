@@ -84,6 +84,8 @@ class InsideOfComposite:
         """Which components may call each of its operations."""
         self.runner: TaskRunner | None = None
         """What runs the inside, while the composite acts."""
+        self._beginnings = 0
+        """How often an inside has begun: what one reports that has come to rest concerns nobody."""
         self._again: Apply | None = None
         """The call with which the inside is to begin anew once it has come to rest."""
         self._waiting: list[Callable[[], None]] = []
@@ -128,6 +130,7 @@ class InsideOfComposite:
 
     def _begin(self, message: Apply) -> None:
         self._values = dict(message.values)
+        self._beginnings += 1
         try:
             request = self._request_with(self._values, lambda: self._wires.keys())
         except SelfconfError as error:
@@ -137,7 +140,7 @@ class InsideOfComposite:
         request = replace(
             request,
             outside=Outside(self.profile.component, lambda: self._wires, lambda name: self._called_by.get(name, ())),
-            report=self._report,
+            report=partial(self._report, self._beginnings),
             priority=message.priority,
             ended=self._ended,
         )
@@ -164,9 +167,9 @@ class InsideOfComposite:
 
     # What the inside reports.
 
-    def _report(self, event: RunEvent) -> None:
+    def _report(self, beginning: int, event: RunEvent) -> None:
         log.info("%s: %s", self.profile.component.short, event.act)
-        if self.runner is None or self.ending or self._again is not None:
+        if beginning != self._beginnings or self.runner is None or self.ending or self._again is not None:
             return
         if isinstance(event, ComponentLost | ComponentReleased) and event.component in self._standing:
             self._silent |= self._standing[event.component]

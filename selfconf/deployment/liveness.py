@@ -63,7 +63,9 @@ class Liveness:
         self.bus, self.ecology = ecology.bus, ecology
         self._state, self._step, self._report, self._calls = state, step, report, calls
         self._sites: set[str] = set()
-        """The liveliness keys of the sites that have answered: a site that was started again has another one."""
+        """The liveliness keys of the sites that answered last, or are news: one that was started again has another."""
+        self._shown_sites: set[str] = set()
+        """The liveliness keys of the sites that the watch shows to live."""
         self._unseen: set[tuple[str, str]] = set()
         """The lives of the roll-call that the watch has not shown yet, with the component's chunk."""
         self._unseen_sites: set[str] = set()
@@ -90,10 +92,9 @@ class Liveness:
         """How many signals each component has passed over because its code was too slow, when it was asked last."""
 
     def discovered(self, discovery: Discovery) -> None:
-        """Follow lives from the first discovery on; have a site that did not answer in full asked again later."""
+        """Follow lives from the first discovery on; ask sites later that were not asked or did not answer in full."""
         self._names.update((component_chunk(component), component) for component in discovery.found)
-        self._sites -= self._unseen_sites - discovery.site_tokens
-        self._sites |= discovery.answered - self._ended_sites
+        self._sites = set(discovery.answered - self._ended_sites)
         self._ended_sites.clear()
         if not self.ecology.followed:
             self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
@@ -101,7 +102,7 @@ class Liveness:
             self.bus.later(SETTLING, self._end_unseen)
         self.ecology.follow(self._life_changed, self._site_changed)
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
-        if discovery.missing:
+        if discovery.missing or not discovery.site_tokens.issuperset(self._shown_sites):
             self._ask_again = self.bus.later(ASK_SITE_AGAIN, lambda: self._step(Appeared({})))
 
     def _life_changed(self, key: str, alive: bool) -> None:
@@ -234,8 +235,10 @@ class Liveness:
         self._unseen_sites.discard(key)
         if alive:
             self._ended_sites.discard(key)
+            self._shown_sites.add(key)
         else:
             self._ended_sites.add(key)
+            self._shown_sites.discard(key)
         if alive and key not in self._sites:
             self._sites.add(key)
             self._calls.site_began(owner_of(key))
@@ -243,7 +246,7 @@ class Liveness:
         elif not alive:
             self._site_ended = self.bus.now()
             self._sites.discard(key)
-            if owner_of(key) not in map(owner_of, self._sites):
+            if owner_of(key) not in map(owner_of, self._sites | self._shown_sites):
                 self._calls.site_ended(owner_of(key))
 
     def reopens(self) -> None:

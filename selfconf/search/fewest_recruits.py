@@ -16,7 +16,7 @@ LONG_CHAIN = 4_000
 LITERAL_STEPS = 50_000_000
 """Steps of the solver times the suppliers of all needs, at most: a conflict takes the longer the more there are."""
 FEWEST_STEPS = 40
-"""With how many steps the solver is asked at least: where it may have fewer, its clauses alone take longer than that."""
+"""With how many steps the solver is asked at least: where it may have fewer, its clauses alone take longer."""
 WithoutSpare = Callable[[Sequence[int]], list[int]]
 """Recruits that are enough, by number, without those that can be spared."""
 

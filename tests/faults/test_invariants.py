@@ -68,9 +68,9 @@ def calls_a_stranger(self: Operations, message: Apply) -> None:
     self._wires = {name: (Wire(iri("odometry"), "where()"),) for name in self._wires}
 
 
-def fails_at_once(self: InsideOfComposite, event: RunEvent) -> None:
+def fails_at_once(self: InsideOfComposite, beginning: int, event: RunEvent) -> None:
     """A composite that fails when a component inside of it is lost."""
-    REPORT(self, event)
+    REPORT(self, beginning, event)
     if isinstance(event, ComponentLost):
         self.runtime.fail("something inside of it is lost")
 
