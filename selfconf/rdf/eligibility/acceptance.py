@@ -24,7 +24,7 @@ from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import shape_text
 from selfconf.rdf.eligibility.compiler import compile_role
 from selfconf.rdf.eligibility.node_paths import WalkedStatements
-from selfconf.rdf.shacl import misfit
+from selfconf.rdf.shacl import PAIRS, misfit
 from selfconf.rdf.turtle import Document, Node, Triple, parse
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
@@ -102,14 +102,14 @@ class OutputShape:
         if wrong is not None:
             raise TemplateError(wrong[1], file="sc:accepts")
         self._names: dict[Term, IRI] = {}
-        """For each path of the shape the property that the tests see in its place."""
+        """For each path of the shape, or property that values are compared to, what the tests see in its place."""
         named = {subject: [*map(self._renamed, said)] for subject, said in self._document.statements.items()}
         self._paths = [(shape_text(self._document, path), self._document, path) for path in self._names]
         self._tests = compile_role(Document("sc:accepts", named, {}), _SHAPE, (), {}, frozenset())
 
     def _renamed(self, statement: tuple[IRI, Term]) -> tuple[IRI, Term]:
         predicate, value = statement
-        if predicate != SH.path:
+        if predicate != SH.path and predicate not in PAIRS:
             return statement
         # The last segment of the name is how an obstacle calls the property.
         steps = ".".join(step.short for step in _steps(self._document, value))

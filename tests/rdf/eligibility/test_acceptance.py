@@ -24,15 +24,16 @@ from tests.effort import examples
 from tests.lab import PREFIXES
 
 OUTPUTS = """
-:low a sc:Component, :Sensor ; :on :Pippi ; sc:hasOutput [ sc:name "o" ; sc:signalType :Pose ; sc:unit unit:M ;
+:low a sc:Component, :Sensor ; :on :Pippi ; sc:hasOutput [ sc:name "o" ; sc:signalType :Pose ; sc:unit unit:M ; :age 2 ;
     sc:rate [ sc:value 3 ; sc:unit unit:HZ ] ; :quality 0.5 , 2 ; rdfs:label "slow"@en ] .
 :high a sc:Component, :Sensor, :Good ; :on :Astrid ; sc:hasOutput [ sc:name "o" ; sc:signalType :Pose , :Scan ;
-    sc:rate [ sc:value 9 ; sc:unit unit:HZ ] ; :quality "best" ] , [ a :Raw ; sc:name "p" ; sc:signalType :Scan ] .
+    :age 9 ; sc:rate [ sc:value 9 ; sc:unit unit:HZ ] ; :quality "best" ] ,
+    [ a :Raw ; sc:name "p" ; sc:signalType :Scan ] .
 :bare a sc:Component, :Sensor ; :on :Astrid , :Pippi ; sc:hasOutput [ sc:name "o" ] .
 """
 PATHS = st.sampled_from(
     (
-        "sc:unit", "sc:frame", "sc:signalType", "sc:name", ":quality", "rdfs:label", "( sc:rate sc:value )",
+        "sc:unit", "sc:frame", "sc:signalType", "sc:name", ":quality", ":age", "rdfs:label", "( sc:rate sc:value )",
         "( [ sh:inversePath sc:hasOutput ] :on )", "[ sh:alternativePath ( sc:unit :quality ) ]",
         "( [ sh:inversePath sc:hasOutput ] sc:hasOutput sc:name )", "[ sh:zeroOrMorePath sc:rate ]",
         "( sc:signalType [ sh:zeroOrMorePath rdfs:subClassOf ] )",
@@ -44,6 +45,7 @@ CONSTRAINTS = st.sampled_from(
         "sh:in ( :Astrid )", "sh:minInclusive 5", "sh:maxExclusive 5", "sh:datatype xsd:integer", "sh:nodeKind sh:IRI",
         'sh:pattern "^o"', "sh:hasValue :Data", "sh:hasValue :Scan", "sh:node [ sh:nodeKind sh:IRI ]",
         'sh:languageIn ( "en" )', "sh:minLength 2", "sh:class :Raw", "sh:not [ sh:hasValue 3 ]",
+        "sh:lessThan :age", "sh:lessThanOrEquals :age", "sh:equals :age", "sh:disjoint :age",
         "sh:qualifiedValueShape [ sh:nodeKind sh:IRI ] ; sh:qualifiedMinCount 1",
         'sh:qualifiedValueShape [ sh:minLength 2 ; sh:pattern "^o" ] ; sh:qualifiedMaxCount 0',
         "sh:qualifiedValueShape [ sh:in ( :Astrid unit:M 9 ) ] ; sh:qualifiedMinCount 1 ; sh:qualifiedMaxCount 1",
@@ -129,6 +131,7 @@ def answered(accepts: str) -> Configuration | Refusal | Undecided:
         ("sh:property [ sh:path ( sc:rate sc:value ) ; sh:minInclusive 5 ]", "high"),
         ("sh:property [ sh:path sc:unit ; sh:hasValue unit:M ]", "low"),
         ("sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :on ) ; sh:in ( :Astrid ) ]", "high"),
+        ("sh:property [ sh:path ( sc:rate sc:value ) ; sh:lessThanOrEquals :age ]", "high"),
         ("sh:property [ sh:path [ sh:inversePath sc:hasOutput ] ; sh:node [ sh:class :Good ] ]", "high"),
     ],
 )
