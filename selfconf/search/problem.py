@@ -13,8 +13,8 @@ strategy can change it: it can only take longer.
 *Extension.* A least solution is then extended: as long as there is a candidate that fits, the first one (in the
 order of the roles, then of the candidates) is added, up to the role's maximum. It fits if it plays no role yet, each
 of its required inputs is matched, and the free parameters still have a value. Adding a component never unfeeds another.
-What was added in a role of an interaction and in the end neither feeds another component nor is fed by one is left out,
-and the rest is done again without it: it may have taken the place of one that is connected.
+What was added in a role of an interaction and in the end neither feeds another component nor is fed by one is left out
+of that role, and the rest is done again: it may have taken the place of one that is connected, or be of use elsewhere.
 """
 
 from __future__ import annotations
@@ -228,22 +228,25 @@ class Problem:
         The first of the `preferred` candidates come before all others; the components `besides` may not play.
         """
         asked = {candidate.profile.component for role in playing for candidate in role}
-        excluded = set(besides)
         while True:
             extended, values = [list(role) for role in playing], self._values_of(playing)
             for candidates in preferred:
-                values = self._extend(extended, values, candidates, excluded)
+                values = self._extend(extended, values, candidates, besides)
             found = self.configuration(extended, values)
-            idle = self._idle(found) - asked
+            idle = {(role, component) for role, component in self._idle(found) if component not in asked}
             if not idle:
                 return found
-            excluded |= idle
+            # In another role they may be of use.
+            preferred = [
+                [[c for c in some if (role, c.profile.component) not in idle] for role, some in enumerate(candidates)]
+                for candidates in preferred
+            ]
 
-    def _idle(self, configuration: Configuration) -> set[IRI]:
-        """Return the players of roles in interactions that neither feed another component nor are fed by one."""
+    def _idle(self, configuration: Configuration) -> set[tuple[int, IRI]]:
+        """Return what neither feeds another component nor is fed by one, with its role, which is in an interaction."""
         joined = {end for c in configuration.connections if c.source != c.sink for end in (c.source, c.sink)}
         return {
-            component
+            (number, component)
             for number, assignment in enumerate(configuration.assignments)
             if self.links[number] or self.sinks[number]
             for component in assignment.components

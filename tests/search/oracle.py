@@ -144,19 +144,23 @@ class World:
     ) -> list[list[Candidate]]:
         """With every further candidate that fits, in order, up to the maxima; first those that run in the same role.
 
-        Those of them that are connected to none are left out, and the rest is done again.
+        Those of them that are connected to none are left out of that role, and the rest is done again.
         """
         played = {} if running is None else {a.role: a.components for a in running.assignments}
         few = [
             [c for c in some if c.profile.component in played.get(role.iri, ())]
             for some, role in zip(self.candidates, self.roles, strict=True)
         ]
-        asked, excluded = {c.profile.component for role in players for c in role}, set[IRI]()
+        asked, excluded = {c.profile.component for role in players for c in role}, set[tuple[IRI, IRI]]()
         while True:
             grown = [list(role) for role in players]
             for candidates in (few, self.candidates):
-                self._grow(grown, [[c for c in some if c.profile.component not in excluded] for some in candidates])
-            idle = self._unconnected(grown) - asked
+                allowed = [
+                    [c for c in some if (role.iri, c.profile.component) not in excluded]
+                    for role, some in zip(self.roles, candidates, strict=True)
+                ]
+                self._grow(grown, allowed)
+            idle = {(role, component) for role, component in self._unconnected(grown) if component not in asked}
             if not idle:
                 return grown
             excluded |= idle
@@ -173,11 +177,11 @@ class World:
             else:
                 return
 
-    def _unconnected(self, players: Sequence[Sequence[Candidate]]) -> set[IRI]:
-        """The players of roles that feed or are fed by others, and who are not connected to any."""
+    def _unconnected(self, players: Sequence[Sequence[Candidate]]) -> set[tuple[IRI, IRI]]:
+        """The players, each with its role, of roles that feed or are fed by others, and who are connected to none."""
         pairs = [{c.source, c.sink} for c in self.connections(players)]
         return {
-            candidate.profile.component
+            (role.iri, candidate.profile.component)
             for role, some in zip(self.roles, players, strict=True)
             if any(role.iri in (one.source, one.sink) for one in self.template.interactions)
             for candidate in some

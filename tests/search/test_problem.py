@@ -28,6 +28,18 @@ def test_a_candidate_that_lacks_a_signal_is_added_once_a_source_of_it_is() -> No
     assert answer == World(given_.task, given_.partition, given_.hierarchy).first()
 
 
+def test_who_is_left_out_of_one_role_may_still_play_another() -> None:
+    given_ = problem(
+        {"extra": [component("a")], "control": [component("cap")], "alone": [component("a")]},
+        "extra>control",
+        {"extra": (0, 1), "alone": (0, 1)},
+    )
+    answer = first.search(given_)
+    assert isinstance(answer, Configuration)
+    assert [[one.short for one in role.components] for role in answer.assignments] == [[], ["cap"], ["a"]]
+    assert answer == World(given_.task, given_.partition, given_.hierarchy).first()
+
+
 def test_all_candidates_that_lack_the_same_signal_are_added_once_they_are_fed() -> None:
     waiting = [component(name, "p:Pose b:Bump") for name in ("second", "third")]
     given_ = problem(
