@@ -52,14 +52,25 @@ class LeastChains(NamedTuple):
 class RecruitChoice:
     """The recruits that matter to the players of one configuration, and what they could feed."""
 
-    def __init__(self, problem: Problem, configuration: Configuration, running: Collection[IRI]) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        configuration: Configuration,
+        running: Collection[IRI],
+        among: Collection[int] | None = None,
+    ) -> None:
+        """`among` are the only recruits that are looked at, where some were chosen by what else they are worth."""
         self.problem, self.plain, self.running = problem, configuration, running
         self.players = dict(players_of(problem, configuration))
         self.recruits: Sequence[Recruit] = problem.supply.recruits
         outputs = [output for _, profile in self.players.values() for output in profile.outputs]
         # Without the players, who issue the same as recruits, so that they make nobody usable.
         usable = (one for one in problem.supply.usable(outputs) if self.recruits[one].component not in self.players)
-        self._issued = problem.supply.issued(self._undominated(self.ordered(usable)))
+        if among is None:
+            looked_at = self._undominated(self.ordered(usable))
+        else:
+            looked_at = filter(frozenset(among).__contains__, usable)
+        self._issued = problem.supply.issued(looked_at)
         self._known: dict[tuple[WantedSignal, int | None], Suppliers] = {}
         self._from_players: dict[WantedSignal, tuple[IRI, Output] | None] = {}
         self.wanted = list(self._wanted())

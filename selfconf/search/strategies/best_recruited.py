@@ -74,7 +74,7 @@ def best_with_recruits(
         found = search.run(Budget(steps))
     if not isinstance(found, _Chosen):
         return Undecided(steps) if found is None else None
-    choice = RecruitChoice(problem, problem.solved(found.players), kept)
+    choice = RecruitChoice(problem, problem.solved(found.players), kept, found.recruits)
     brought = [number for number in found.recruits if number in choice.needs]
     spent = costs.levels(found.players, brought)
     least = spent if search.proved else costs.levels_of(search.bound, len(part.slots))

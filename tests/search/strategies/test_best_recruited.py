@@ -154,6 +154,18 @@ def test_the_cheapest_recruits_may_be_more_than_the_fewest() -> None:
     assert answer.configuration.recruits == (iri("x"), iri("y"))
 
 
+def test_of_recruits_that_issue_the_same_the_cheapest_is_taken() -> None:
+    pytest.importorskip("pysat")
+    user = stated(component("user", "s:S"), latency=0)
+    dear, cheap = (stated(component(name, "", "s:S"), latency=cost) for name, cost in (("dear", 5), ("cheap", 1)))
+    helped = with_recruits(problem({"user": [user]}), dear, cheap)
+    template = replace(helped.task.template, cost=((CostTerm(LATENCY),),))
+    answer = best.best_configuration(Problem(replace(helped.task, template=template), helped.partition))
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.proved) == ((Fraction(1),), True)
+    assert answer.configuration.recruits == (iri("cheap"),)
+
+
 def test_a_recruit_that_could_be_spared_is_not_taken_for_its_reward() -> None:
     pytest.importorskip("pysat")
     given_ = cheap_or_dear()
