@@ -27,6 +27,7 @@ from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner, near_misse
 from selfconf.rdf.tasks import TaskDocument
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
+from selfconf.search.reduction import recruits_that_matter
 from selfconf.search.relaxations import NEAR, with_relaxations
 from selfconf.search.strategies import possible
 from selfconf.search.what_if import consequences
@@ -104,6 +105,11 @@ class Composer:
                     self._partition, self._task, self.outside, self.hierarchy, self._unfed
                 )
         return self._ecology
+
+    def recruitable(self, ecology: Mapping[IRI, Advertisement]) -> set[IRI]:
+        """The components that could be recruited for what the candidates of the roles need."""
+        problem = self._problem(self.partition(ecology), frozenset(), None)
+        return {problem.supply.recruits[number].component for number in recruits_that_matter(problem)}
 
     def compose(
         self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None

@@ -153,9 +153,9 @@ def _refused(composers: Mapping[IRI, Composer], known: Mapping[IRI, Advertisemen
 
 def _may_hold(composer: Composer, known: Mapping[IRI, Advertisement]) -> set[IRI]:
     """The components that could be inside of a composite, if it were no matter that one of them is itself."""
-    partition = composer.partition(dict(known))
-    players = {candidate.profile.component for some in partition.candidates[:-1] for candidate in some}
-    return players | {recruit.component for recruit in partition.recruits}
+    ecology = dict(known)
+    roles = composer.partition(ecology).candidates[:-1]
+    return composer.recruitable(ecology).union(candidate.profile.component for some in roles for candidate in some)
 
 
 def _way_back(component: IRI, within: Mapping[IRI, set[IRI]]) -> list[IRI]:

@@ -152,3 +152,27 @@ def test_an_optional_input_that_nobody_feeds_is_fed_to_nobody_inside(
 def test_why_there_is_no_configuration_is_said_in_words() -> None:
     assert why_none(None) == "it was taken down"
     assert why_none(Undecided(steps=7)) == str(Undecided(steps=7))
+
+
+NESTED = """
+:outer a sc:Component, :Outer ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ;
+    sc:grounding [ sc:template :o ] .
+:o a sc:Template ; sc:roles ( :inmost ) ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :inmost ] .
+:inmost a sc:Role ; sh:class :Inner .
+:inner a sc:Component, :Inner ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ;
+    sc:grounding [ sc:template :i ] .
+:i a sc:Template ; sc:roles ( :tracker ) ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker ] .
+:tracker a sc:Role ; sh:class :Tracker ; sc:recruits true .
+:a a sc:Component, :Tracker ; sc:hasInput [ sc:name "i" ; sc:signalType :Image ] ;
+    sc:hasOutput [ sc:name "where" ; sc:signalType :Pose ] .
+:eye a sc:Component, :Camera ; sc:hasOutput [ sc:name "image" ; sc:signalType :Image ] .
+"""
+
+
+def test_what_no_recruit_is_wanted_for_is_in_no_circle() -> None:
+    found, why = judged(NESTED)
+    assert (sorted(found), why) == ([iri("inner"), iri("outer")], {})
+    # Where the inner one could recruit the outer one, it is a circle.
+    found, why = judged(NESTED.replace('"i" ; sc:signalType :Image', '"i" ; sc:signalType :Pose'))
+    assert found == {}
+    assert "it could be inside of itself (inner of outer of inner)" in why[iri("inner")]

@@ -6,8 +6,8 @@
 * `in_order` has the options of each role in the order of its candidates.
 * `assigned` gives the candidates for each role that chosen options stand for.
 * `with_recruits` is a problem whose recruits are options as well, those of one role more that has no slots, without a
-  component (`NO_COMPONENT`). `needed_signals` are those that some components and their suppliers need, `signals_served`
-  those that a component serves.
+  component (`NO_COMPONENT`). `recruits_that_matter` are those that could be fed, and feed somebody. `needed_signals`
+  are those that some components and their suppliers need, `signals_served` those that a component serves.
 * `pruned` removes options by arc consistency; `consistent` does so for classes, and says why each was removed.
 * A `Constraint` is one of `Played` (a role), `Fed` (a need), `Shared` (the value of a variable) and `Distinct` (the
   components). `all_of` lists those of a problem, and `subproblem` is the problem with only some of them in force.
@@ -27,7 +27,12 @@ from selfconf.search.reduction.constraints import (
 )
 from selfconf.search.reduction.dominance import LazyReduction, reduced
 from selfconf.search.reduction.needs import Need
-from selfconf.search.reduction.recruit_options import needed_signals, signals_served, with_recruits
+from selfconf.search.reduction.recruit_options import (
+    needed_signals,
+    recruits_that_matter,
+    signals_served,
+    with_recruits,
+)
 from selfconf.search.reduction.reduced_problem import (
     InterchangeabilityClass,
     Option,
@@ -55,6 +60,7 @@ __all__ = [
     "in_order",
     "needed_signals",
     "pruned",
+    "recruits_that_matter",
     "reduced",
     "signals_served",
     "signature",

@@ -42,7 +42,7 @@ def with_recruits(
     `distinguished` candidates are of a class of their own, and `order` is another order of the candidates of each role.
     """
     alone = Problem(problem.task, problem.partition.without_recruits(), problem.hierarchy)
-    matter = _that_matter(problem)
+    matter = recruits_that_matter(problem)
     components = {candidate.profile.component for some in problem.candidates for candidate in some}
     recruitable = components.intersection(problem.supply.recruits[number].component for number in matter)
     part = reduced(alone, recruitable.union(distinguished), order)
@@ -51,7 +51,7 @@ def with_recruits(
     return _Joined(problem, part, list(_undominated(problem, matter, recruitable))).problem()
 
 
-def _that_matter(problem: Problem) -> list[int]:
+def recruits_that_matter(problem: Problem) -> list[int]:
     """Return the recruits that could be fed, and could feed a player or what feeds one, by number."""
     recruiting = [number for number, role in enumerate(problem.roles) if role.recruits]
     needed = needed_signals(problem, [c.profile for number in recruiting for c in problem.candidates[number]])
