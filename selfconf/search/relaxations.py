@@ -26,7 +26,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss
-from selfconf.model.profile import Input, Output, Ports, Profile, WantedSignal
+from selfconf.model.profile import CALL_MARK, Input, Output, Ports, Profile, WantedSignal
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.relaxation import (
     AcceptNearMiss,
@@ -43,7 +43,7 @@ from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.explain import FeasibilityOracle, core
-from selfconf.search.problem import Problem
+from selfconf.search.problem import Link, Problem
 from selfconf.search.recruiting import possible_with_recruits
 from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
 from selfconf.search.reduction import Fed, LazyReduction, Played, reduced
@@ -234,9 +234,7 @@ def wanted_of(problem: Problem, role: int) -> list[tuple[Output, ...]]:
             if link.source == role:
                 wanted = plain if link.output is None else by_name.setdefault(link.output, {})
                 for candidate in problem.candidates[sink]:
-                    wanted.update(
-                        (port.wanted, None) for port in candidate.profile.required if link.input in (None, port.name)
-                    )
+                    wanted.update((port.wanted, None) for port in candidate.profile.required if _asks(link, port))
     names = set(by_name)
     others = []
     for one in plain:
@@ -250,6 +248,12 @@ def wanted_of(problem: Problem, role: int) -> list[tuple[Output, ...]]:
         others.append(one.output(name))
     ways = itertools.product(*([one.output(name) for one in wanted] for name, wanted in by_name.items() if wanted))
     return [(*others, *chosen) for chosen in itertools.islice(ways, CHOICES)]
+
+
+def _asks(link: Link, port: Input) -> bool:
+    """Return whether an input could be fed along an interaction, by the names: no output feeds what calls, or back."""
+    called = link.output is not None and link.output.endswith(CALL_MARK)
+    return link.input in (None, port.name) and (link.output is None or called is port.is_operation)
 
 
 def _helpful(problem: Problem, budget: Budget) -> list[int]:

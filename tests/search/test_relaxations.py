@@ -185,6 +185,11 @@ def test_what_has_to_leave_by_an_output_says_so() -> None:
     ]
 
 
+def test_no_operation_is_asked_to_feed_an_input_and_no_output_to_answer_a_call() -> None:
+    given_ = problem({"a": [], "b": [component("b1", "x:X")]}, "a.ask()>b")
+    assert wanted_of(given_, 0) == [()]
+
+
 def test_signals_of_one_name_leave_by_outputs_of_different_names() -> None:
     given_ = problem({"a": [], "b": [component("b1", "x:one/X y:two/X")]}, "a>b")
     assert [[o.name for o in outputs] for outputs in wanted_of(given_, 0)] == [["X", "X2"]]
