@@ -25,6 +25,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
+from selfconf.model.configuration import Configuration
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss
 from selfconf.model.profile import CALL_MARK, Input, Output, Ports, Profile, WantedSignal
 from selfconf.model.refusal import Refusal, Undecided
@@ -44,7 +45,7 @@ from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.explain import FeasibilityOracle, core
 from selfconf.search.problem import Link, Problem
-from selfconf.search.recruiting import possible_with_recruits
+from selfconf.search.recruiting import first_recruited, possible_with_recruits
 from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
 from selfconf.search.reduction import Fed, LazyReduction, Played, reduced
 from selfconf.search.strategies import possible, solution
@@ -92,8 +93,24 @@ def relaxations(
     """
     recruits = any(role.recruits for role in problem.roles)
     for one in _relaxations(problem, refused, near_misses, steps):
-        if not recruits or possible_with_recruits(relaxed_by(problem, one), RECRUIT_TRIAL_STEPS):
-            yield one
+        in_the_end = _with_recruits(problem, one) if recruits else one
+        if in_the_end is not None:
+            yield in_the_end
+
+
+def _with_recruits(problem: Problem, relaxation: Relaxation) -> Relaxation | None:
+    """Return a change as it has to be for players that have recruits; None if there are none."""
+    changed = relaxed_by(problem, relaxation)
+    if isinstance(relaxation, AddRecruits) or not isinstance(relaxation, AddComponents) or not problem.variables:
+        return relaxation if possible_with_recruits(changed, RECRUIT_TRIAL_STEPS) else None
+    found = first_recruited(changed, RECRUIT_TRIAL_STEPS)
+    if not isinstance(found, Configuration):
+        return None
+    playing = [
+        [candidate for candidate in some if candidate.profile.component in one.components]
+        for some, one in zip(changed.candidates, found.assignments, strict=True)
+    ]
+    return _with_values(problem, relaxation, playing)
 
 
 def _relaxations(

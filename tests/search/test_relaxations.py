@@ -18,6 +18,7 @@ from selfconf.search.problem import Problem
 from selfconf.search.relaxations import relaxed_by, wanted_of, with_relaxations
 from selfconf.search.strategies import first
 from tests.search.oracle import World
+from tests.search.test_recruiting import with_recruits
 from tests.search.worlds import agreement, component, iri, problem, problems
 
 OF_PIPPI = PropertyUnmet(iri("support"), (NotAmong(frozenset((iri("Pippi"),)), frozenset((iri("Astrid"),))),))
@@ -205,6 +206,20 @@ def test_an_addition_names_the_value_that_the_others_leave() -> None:
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
     words = [str(one) for one in with_relaxations(given_, refused).repairs]
+    assert words[0] == "add one more component for the role sonar, with robot pippi"
+
+
+def test_an_addition_names_a_value_with_which_there_are_recruits() -> None:
+    # The first of the drives needs what itself alone issues.
+    given_ = problem(
+        {"sonar": [], "drive": [component("first", "x:X", "x:X"), component("second")]},
+        values={"drive": {"first": 0b01, "second": 0b10}},
+        domain=["astrid", "pippi"],
+    )
+    helped = with_recruits(given_, component("first", "x:X", "x:X"))
+    refused = first.search(helped)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(helped, refused).repairs]
     assert words[0] == "add one more component for the role sonar, with robot pippi"
 
 
