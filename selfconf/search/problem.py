@@ -84,6 +84,8 @@ class Problem:
             tuple(dict.fromkeys(link.source for link in links)) for links in self.links
         )
         """For each role, the roles that feed it."""
+        self._feeding: dict[int, dict[str | None, Sources]] = {}
+        """For each role that was asked about what may feed its inputs, by name."""
         self.supply = Supply(partition.recruits, hierarchy)
         self.spared: tuple[Set[WantedSignal], ...] = self._spared()
         """For each role the signals that recruits may supply to its players, so that no role has to."""
@@ -132,12 +134,21 @@ class Problem:
 
     def feeding(self, role: int, name: str | None) -> Sources:
         """Return what may feed an input of a role, by its name; None stands for one that no interaction names."""
-        some = [
-            Feeder(source, output, output is not None and wanted is not None)
-            for source, output, wanted in self.links[role]
-            if wanted in (None, name)
-        ]
-        return tuple(dict.fromkeys(some))
+        known = self._feeding.get(role)
+        if known is None:
+            known = self._feeding[role] = self._feeding_by_name(role)
+        return known[name] if name in known else known[None]
+
+    def _feeding_by_name(self, role: int) -> dict[str | None, Sources]:
+        """Return what may feed the inputs of a role by their names, as far as interactions name them, and by None."""
+        found: dict[str | None, dict[Feeder, None]] = {
+            name: {} for name in (None, *(w for _, _, w in self.links[role]))
+        }
+        for source, output, wanted in self.links[role]:
+            feeder = Feeder(source, output, output is not None and wanted is not None)
+            for some in found.values() if wanted is None else (found[wanted],):
+                some[feeder] = None
+        return {name: tuple(some) for name, some in found.items()}
 
     def matches(self, output: Output, link: Link, wanted: Input) -> bool:
         """Return whether an output feeds an input along a link, by the names, where given, and the signal types.

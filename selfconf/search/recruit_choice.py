@@ -15,9 +15,17 @@ from selfconf.model.partition import Recruit
 from selfconf.model.profile import Input, Output, Profile, WantedSignal
 from selfconf.model.term import IRI
 from selfconf.search.problem import Feeder, Problem
-from selfconf.search.reduction import NO_COMPONENT, InterchangeabilityClass, Need, Option, ReducedProblem
+from selfconf.search.reduction import (
+    NO_COMPONENT,
+    InterchangeabilityClass,
+    Need,
+    Needs,
+    NeedScope,
+    Option,
+    ReducedProblem,
+)
 
-UNSAID = WantedSignal((), None)
+UNSAID = Input("", ())
 """What a choice of suppliers is wanted for, where its number says all."""
 Suppliers = tuple[int, ...]
 """The numbers of the recruits that could feed an input."""
@@ -279,7 +287,7 @@ class RecruitChoice:
             )
             for one in self.ordered(self.needs)
         ]
-        needs = tuple(Need(0, UNSAID, (Feeder(0),)) for _ in number)
+        needs = Needs(Need(NeedScope(0, (Feeder(0),)), UNSAID) for _ in number)
         wanted = list(dict.fromkeys(number[id(need.suppliers)] for need in self.wanted))
         return ReducedProblem((), (tuple(options),), needs, ()), wanted
 

@@ -20,12 +20,13 @@ than slots.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 
 from selfconf.search.engines.matching import HallSet, unmatchable
-from selfconf.search.reduction import Option, ReducedProblem
+from selfconf.search.reduction import NeedScope, Option, ReducedProblem
 
 SHARE_UNFIT = 2
 """A need says little if at most one in this number of the options that could feed it do not."""
@@ -35,6 +36,8 @@ CONFLICTS_PER_OPTION = 200
 """How many conflicts are looked at, for each option."""
 SHARES_PER_OPTION = 2
 """How many groups are put together at most, for each option, before counting ends."""
+ENOUGH = 1 - 1e-9
+"""A share of one slot, but for rounding."""
 SPREAD = 4
 """For each role of the group from which it began how many groups are put together at most."""
 
@@ -64,9 +67,10 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
 
     If components need not be distinct, one component in two roles is no conflict.
     """
-    needs = _fed_by_one(reduced)
+    used = set[int]().union(*[option.kind.needs for options in reduced.options for option in options])
+    needs = _fed_by_one(reduced, used)
     names = [option.component for options in reduced.options for option in options if option.component]
-    if sum(map(len, needs.values())) * SHARE_FED_BY_ONE < len(reduced.needs):
+    if sum(map(len, needs.values())) * SHARE_FED_BY_ONE < len(used):
         needs = {}
     if not needs and (not distinct or len(set(names)) == len(names)):
         return ExclusiveGroups()
@@ -85,15 +89,18 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
     )
 
 
-def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
-    """Return for each role with one slot the needs of other roles that it alone can feed."""
+def _fed_by_one(reduced: ReducedProblem, used: Set[int]) -> dict[int, set[int]]:
+    """Return for each role with one slot those of some needs, of other roles, that it alone can feed."""
     asked = Counter(reduced.slots)
+    scopes = reduced.needs.scopes
+    of_scope: defaultdict[NeedScope, set[int]] = defaultdict(set)
+    for number in used:
+        of_scope[scopes[number]].add(number)
     found: dict[int, set[int]] = {}
-    for number, (role, _, sources, _) in enumerate(reduced.needs):
-        if sources and sources[0][0] == sources[-1][0] != role and asked[sources[0][0]] == 1:
-            source = sources[0][0]
-            if len(sources) == 1 or all(other == source for other, *_ in sources):
-                found.setdefault(source, set()).add(number)
+    for scope, numbers in of_scope.items():
+        roles = {source.role for source in scope.sources}
+        if len(roles) == 1 and scope.role not in roles and asked[min(roles)] == 1:
+            found.setdefault(min(roles), set()).update(numbers)
     return found
 
 
@@ -105,7 +112,9 @@ class _Conflicts:
         self.options: list[Option] = [option for options in reduced.options for option in options]
         self.asked = Counter(reduced.slots)
         self.role = [option.kind.role for option in self.options]
-        self.of_role = _masks(self.role, len(reduced.options))
+        self.start = [0, *accumulate(map(len, reduced.options))]
+        """The number of the first option of each role, and of all."""
+        self.of_role = [(1 << end) - (1 << start) for start, end in pairwise(self.start)]
         self.across = [0] * len(self.options)
         """For each option the options of other roles that it excludes."""
         self.stated: set[int] = set()
@@ -115,11 +124,12 @@ class _Conflicts:
 
     def _by_needs(self, fed_by: Mapping[int, set[int]]) -> None:
         having: dict[int, list[int]] = {need: [] for needs in fed_by.values() for need in needs}
-        for number, option in enumerate(self.options):
+        for number, option in enumerate(self.options if having else ()):
             for need in option.kind.needs:
                 if need in having:
                     having[need].append(number)
         left = CONFLICTS_PER_OPTION * len(self.options)
+        across = self.across
         for source, needs in fed_by.items():
             lacking = self._lacking(source, needs)
             few = max(1, len(self.reduced.options[source]) // SHARE_UNFIT)
@@ -130,23 +140,28 @@ class _Conflicts:
                     continue
                 self.stated.add(need)
                 have = having[need]
-                lack, need_it = _mask(numbers), _mask(have)
+                # Pairs are wired one by one: mostly one option lacks what one other needs.
+                lack = 1 << numbers[0] if len(numbers) == 1 else _mask(numbers)
+                need_it = 1 << have[0] if len(have) == 1 else _mask(have)
                 for number in numbers:
-                    self.across[number] |= need_it
+                    across[number] |= need_it
                 for number in have:
-                    self.across[number] |= lack
+                    across[number] |= lack
 
     def _lacking(self, source: int, needs: set[int]) -> dict[int, list[int]]:
         """Return for each need that is not supported by all options of a role those that do not support it."""
         lacking: dict[int, list[int]] = {}
-        of_kind: dict[int, set[int]] = {}
-        for number in _bits(self.of_role[source]):
-            kind = self.options[number].kind
-            missing = of_kind.get(id(kind))
+        missing_of: dict[int, set[int]] = {}
+        for number, option in enumerate(self.reduced.options[source], self.start[source]):
+            kind = option.kind
+            missing = missing_of.get(id(kind))
             if missing is None:
-                missing = of_kind[id(kind)] = needs.difference(kind.supports)
+                missing = missing_of[id(kind)] = needs.difference(kind.supports)
             for need in missing:
-                lacking.setdefault(need, []).append(number)
+                if need in lacking:
+                    lacking[need].append(number)
+                else:
+                    lacking[need] = [number]
         return lacking
 
     def _by_components(self) -> None:
@@ -195,13 +210,18 @@ class _Counting:
         """The roles of each of these."""
         self.having: list[list[int]] = [[] for _ in graph.options]
         """For each option the groups that have it."""
-        for members in groups:
+        self.weights: list[float] = []
+        """The share of each of these in the slots: an option has an equal part in the slots of its role."""
+        part = [graph.asked[role] / graph.of_role[role].bit_count() for role in graph.role]
+        weights = [sum([part[option] for option in members]) for members in groups]
+        for members, weight in zip(groups, weights, strict=True) if max(weights, default=0) >= ENOUGH else ():
             roles = frozenset([graph.role[option] for option in members])
             if len(roles) > 2:
                 for option in members:
                     self.having[option].append(len(self.groups))
                 self.groups.append(_mask(members))
                 self.roles.append(roles)
+                self.weights.append(weight)
         self.left = SHARES_PER_OPTION * len(graph.options)
         """How many groups may still be put together."""
         self.played: list[int] = []
@@ -213,7 +233,9 @@ class _Counting:
 
     def run(self) -> None:
         """Count from one group after the other, the largest first, but for those that are played for sure by then."""
-        order = sorted(range(len(self.groups)), key=lambda number: -len(self.roles[number]))
+        # Of no more groups than slots, one at least has a share of one slot or more.
+        order = [number for number, weight in enumerate(self.weights) if weight >= ENOUGH]
+        order.sort(key=lambda number: -len(self.roles[number]))
         known: set[int] = set()
         for start in order:
             if self.crowded or self.left <= 0:
@@ -279,13 +301,6 @@ def _mask(numbers: Sequence[int]) -> int:
     for number in numbers:
         mask |= 1 << number
     return mask
-
-
-def _masks(roles: Sequence[int], number: int) -> list[int]:
-    masks = [0] * number
-    for place, role in enumerate(roles):
-        masks[role] |= 1 << place
-    return masks
 
 
 def _bits(mask: int) -> Iterator[int]:

@@ -53,7 +53,7 @@ class ReducedSearch:
         self.last = [-1] * len(reduced.needs)
         """The last slot with an option that supports each need."""
         for role, place in last_slot.items():  # in the order of places
-            for need in {need for option in reduced.options[role] for need in option.kind.supports}:
+            for need in set[int]().union(*[option.kind.supports for option in reduced.options[role]]):
                 self.last[need] = place
         self.expiring: list[list[int]] = [[] for _ in slots]
         """For each slot the needs that no later slot can support."""

@@ -44,7 +44,7 @@ def _use(reduced: ReducedProblem, role: int) -> Hashable:
         (
             option.kind.admits,
             option.kind.supports,
-            frozenset(reduced.needs[need]._replace(role=-1, input=None) for need in option.kind.needs),
+            frozenset((reduced.needs[need].wanted, reduced.needs[need].sources) for need in option.kind.needs),
         )
         for option in reduced.options[role]
     )

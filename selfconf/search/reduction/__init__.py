@@ -2,7 +2,8 @@
 
 * `reduced` makes a `ReducedProblem` by dominance; `LazyReduction` does so when the result is first asked for.
 * An `Option` is a candidate that a slot may take. It belongs to an `InterchangeabilityClass`, which its `signature`
-  decides. A `Need` is a signal that an input must get.
+  decides. A `Need` is a signal that an input must get; those of a problem are its `Needs`,
+  and those of a `NeedScope` may be fed by the same links.
 * `in_order` has the options of each role in the order of its candidates.
 * `assigned` gives the candidates for each role that chosen options stand for.
 * `with_recruits` is a problem whose recruits are options as well, those of one role more that has no slots, without a
@@ -26,7 +27,7 @@ from selfconf.search.reduction.constraints import (
     subproblem,
 )
 from selfconf.search.reduction.dominance import LazyReduction, reduced
-from selfconf.search.reduction.needs import Need
+from selfconf.search.reduction.needs import Need, Needs, NeedScope
 from selfconf.search.reduction.recruit_options import (
     needed_signals,
     recruits_that_matter,
@@ -50,6 +51,8 @@ __all__ = [
     "InterchangeabilityClass",
     "LazyReduction",
     "Need",
+    "NeedScope",
+    "Needs",
     "Option",
     "Played",
     "ReducedProblem",

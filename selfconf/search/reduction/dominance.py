@@ -38,6 +38,7 @@ from selfconf.search.reduction.needs import Wiring
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem, signature
 
 _PORTS: Callable[[Candidate], Ports] = attrgetter("profile.ports")
+_COMPONENT: Callable[[Candidate], IRI] = attrgetter("profile.component")
 _ADMITS: Callable[[Candidate], tuple[int, ...]] = attrgetter("admits")
 
 MANY_PORTS = 8
@@ -94,7 +95,7 @@ def reduced(
     return ReducedProblem(
         slots,
         tuple(tuple(left.get(role, ())) for role in range(len(problem.roles))),
-        tuple(wiring.needs),
+        wiring.needs,
         problem.open_values,
     )
 
@@ -151,10 +152,8 @@ def _classified(
     kinds: dict[Hashable, InterchangeabilityClass] = {}
     met: dict[InterchangeabilityClass, int] = {}
     found: list[Option] = []
-    for number in numbers:
-        candidate = candidates[number]
-        component = candidate.profile.component
-        signed = signature(candidate)
+    some = [candidates[number] for number in numbers]
+    for number, component, signed in zip(numbers, map(_COMPONENT, some), map(signature, some), strict=True):
         key: Hashable = number if apart else (signed, component) if component in distinguished else signed
         kind = kinds.get(key)
         if kind is None:
@@ -197,8 +196,11 @@ def _first_of_each(shared: Sequence[Hashable]) -> list[int]:
     return sorted(dict(zip(reversed(shared), reversed(range(len(shared))), strict=True)).values())
 
 
-def _first_few_of_each(shared: Sequence[Hashable], most: int) -> list[int]:
-    wanted = {one: min(count, most) for one, count in Counter(shared).items()}
+def _first_few_of_each(shared: Sequence[Hashable], most: int) -> Sequence[int]:
+    counts = Counter(shared)
+    if max(counts.values()) <= most:
+        return range(len(shared))
+    wanted = {one: min(count, most) for one, count in counts.items()}
     left = sum(wanted.values())
     found: list[int] = []
     enough: set[Hashable] = set()

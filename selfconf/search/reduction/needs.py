@@ -8,27 +8,91 @@ of an output and an input is ever compared.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, overload
 
 from selfconf.model.profile import Condition, Input, Output, WantedSignal
 from selfconf.model.term import IRI
 from selfconf.search.problem import Feeder, Problem, Sources
 
-_Numbers = dict[tuple[tuple[IRI, ...], Condition | None], int]
-"""The numbers of needs by signals and condition."""
+
+class NeedScope:
+    """What the needs of inputs have in common that the same links may feed, in one role; not changed once made."""
+
+    __slots__ = ("named", "role", "sources")
+
+    def __init__(self, role: int, sources: Sources, named: bool = False) -> None:
+        self.role, self.sources = role, sources
+        self.named = named
+        """Whether some interaction into the role names an input."""
 
 
 class Need(NamedTuple):
-    """A signal that an input of each component that plays `role` must get, if the component has such an input.
+    """A signal that an input of each component in the role of a scope must get, if the component has such an input."""
 
-    `input` is the name of the first such input, where some interaction into the role names an input.
-    """
+    scope: NeedScope
+    port: Input
+    """The first such input."""
 
-    role: int
-    wanted: WantedSignal
-    sources: Sources
-    input: str | None = None
+    @property
+    def role(self) -> int:
+        """The role whose components need it."""
+        return self.scope.role
+
+    @property
+    def sources(self) -> Sources:
+        """What may feed it."""
+        return self.scope.sources
+
+    @property
+    def wanted(self) -> WantedSignal:
+        """The signal."""
+        return self.port.wanted
+
+    @property
+    def input(self) -> str | None:
+        """The name of the first such input, where some interaction into the role names an input."""
+        return self.port.name if self.scope.named else None
+
+
+class Needs(Sequence[Need]):
+    """Needs by number: the scope and the first input of each, put together when it is asked for."""
+
+    __slots__ = ("ports", "scopes")
+
+    def __init__(self, needs: Iterable[Need] = ()) -> None:
+        self.scopes: list[NeedScope] = []
+        self.ports: list[Input] = []
+        for scope, port in needs:
+            self.scopes.append(scope)
+            self.ports.append(port)
+
+    def __len__(self) -> int:
+        return len(self.ports)
+
+    @overload
+    def __getitem__(self, number: int) -> Need: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> list[Need]: ...
+
+    def __getitem__(self, number: int | slice) -> Need | list[Need]:
+        if isinstance(number, slice):
+            return list(map(Need, self.scopes[number], self.ports[number]))
+        return Need(self.scopes[number], self.ports[number])
+
+
+class _Numbering:
+    """The numbers of the needs of one scope."""
+
+    __slots__ = ("others", "plain", "scope")
+
+    def __init__(self, scope: NeedScope) -> None:
+        self.scope = scope
+        self.plain: dict[IRI, int] = {}
+        """Those of one signal each, without a condition, by that."""
+        self.others: dict[tuple[tuple[IRI, ...], Condition | None], int] = {}
+        """All others, by signals and condition."""
 
 
 class Wiring:
@@ -42,87 +106,128 @@ class Wiring:
     def __init__(self, problem: Problem, roles: int | None = None) -> None:
         self.problem = problem
         self._roles = len(problem.roles) if roles is None else roles
-        self.needs: list[Need] = []
+        self.needs = Needs()
         self._conditions: dict[int, Condition] = {}
         """The needs with a condition, each with that."""
-        self._names_inputs = [any(link.input for link in links) for links in problem.links]
-        self._fed: list[dict[IRI, list[int]]] = [{} for _ in problem.roles]
-        """For each role and signal the needs that any output of the role feeds with it."""
+        self._feeds: list[list[_Numbering]] = [[] for _ in problem.roles]
+        """For each role the needs that any output of the role may feed."""
+        self._fed_of: dict[tuple[_Numbering, ...], dict[IRI, tuple[int, ...]]] = {}
+        """The needs that signals feed, by that, of roles that may feed the same ones."""
         self._fed_by_name: list[dict[tuple[IRI, str], list[int]]] = [{} for _ in problem.roles]
         """For each role, signal and name of an output the needs that only an output of this name feeds."""
         self._untyped: list[dict[tuple[bool, str], list[int]]] = [{} for _ in problem.roles]
         """For each role the needs that an output of this name feeds without a type, or (True) whatever its type."""
 
-    def needed(self, role: int, inputs: Sequence[tuple[Input, ...]]) -> list[tuple[int, ...]]:
+    def needed(self, role: int, inputs: Iterable[tuple[Input, ...]]) -> list[tuple[int, ...]]:
         """Return for the inputs of each class of a role the numbers of the needs that they are."""
-        named, spared = self._names_inputs[role], self.problem.spared[role]
-        fed_alike: dict[Sources, _Numbers] = {}
-        by_name: dict[str | None, tuple[Sources, _Numbers | None]] = {}
+        named = any(link.input for link in self.problem.links[role])
+        spared, scopes, ports = self.problem.spared[role], self.needs.scopes, self.needs.ports
+        alike: dict[Sources, _Numbering] = {}
+        by_name: dict[str | None, _Numbering | None] = {}
         found: list[tuple[int, ...]] = []
         for some in inputs:
             numbers: list[int] = []
-            for name, signals, _, optional, condition in some:
+            for port in some:
+                name, signals, _, optional, condition = port
                 if optional:
                     continue
                 called = name if named else None
                 if called not in by_name:
-                    sources = self.problem.feeding(role, called)
-                    later = self._fed_later(sources)
-                    by_name[called] = sources, None if later else fed_alike.setdefault(sources, {})
-                sources, known = by_name[called]
-                wanted = signals, condition
-                if known is None or (spared and wanted in spared):
+                    by_name[called] = self._numbering(role, called, named, alike)
+                numbering = by_name[called]
+                if numbering is None or (spared and (signals, condition) in spared):
                     continue
-                number = known.get(wanted)
-                if number is None:
-                    number = known[wanted] = self._new(Need(role, WantedSignal(*wanted), sources, called))
+                if condition is None and len(signals) == 1:
+                    number = numbering.plain.setdefault(signals[0], len(ports))
+                else:
+                    number = numbering.others.setdefault((signals, condition), len(ports))
+                if number == len(ports):
+                    scopes.append(numbering.scope)
+                    ports.append(port)
                 numbers.append(number)
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
+        for numbering in alike.values():
+            self._note(numbering)
         return found
 
-    def _new(self, need: Need) -> int:
-        """Number a need, and note which outputs feed it."""
-        number = len(self.needs)
-        self.needs.append(need)
-        signals, condition = need.wanted
-        if condition is not None:
-            self._conditions[number] = condition
-        for source, output, by_name in need.sources:
+    def _numbering(
+        self, role: int, called: str | None, named: bool, alike: dict[Sources, _Numbering]
+    ) -> _Numbering | None:
+        """Return where inputs of a name are numbered, with all that the same links feed; None if they are no needs."""
+        sources = self.problem.feeding(role, called)
+        if self._roles < len(self.problem.roles) and any(source.role >= self._roles for source in sources):
+            return None
+        found = alike.get(sources)
+        if found is None:
+            found = alike[sources] = _Numbering(NeedScope(role, sources, named))
+            for source, output, _ in sources:
+                if output is None:
+                    self._feeds[source].append(found)
+        return found
+
+    def _note(self, numbering: _Numbering) -> None:
+        """Note the conditions of needs, and those that are fed by the name of an output."""
+        for (_, condition), number in numbering.others.items():
+            if condition is not None:
+                self._conditions[number] = condition
+        sources = numbering.scope.sources
+        for source, output, by_name in sources:
             if output is None:
-                fed = self._fed[source]
-                for signal in signals:
-                    fed.setdefault(signal, []).append(number)
                 continue
-            if by_name:
+            numbers = [*numbering.plain.values(), *numbering.others.values()]
+            for number in numbers if by_name else ():
+                signals = self.needs.ports[number].signals
                 self._untyped[source].setdefault((not signals, output), []).append(number)
-            if Feeder(source) not in need.sources:  # any output of that role feeds it
-                for signal in signals:
+            for number in numbers if Feeder(source) not in sources else ():  # else any output of that role feeds it
+                for signal in self.needs.ports[number].signals:
                     self._fed_by_name[source].setdefault((signal, output), []).append(number)
-        return number
 
-    def _fed_later(self, sources: Sources) -> bool:
-        return self._roles < len(self.problem.roles) and any(source.role >= self._roles for source in sources)
-
-    def supported(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
+    def supported(self, role: int, outputs: Iterable[tuple[Output, ...]]) -> list[tuple[int, ...]]:
         """Return for the outputs of each class of a role the needs that they support."""
         by_signal = not (self._fed_by_name[role] or self._untyped[role] or self._conditions)
         fits = self._of_signals if by_signal else self._of_outputs
-        found = (fits(role, some) for some in outputs)
-        return [tuple(sorted(set(numbers))) if len(numbers) > 1 else tuple(numbers) for numbers in found]
+        fed = self._fed(role)
+        found: list[tuple[int, ...]] = []
+        for some in outputs:
+            numbers = fits(role, some, fed)
+            if len(numbers) > 1:
+                if len(set(numbers)) < len(numbers):
+                    numbers = list(dict.fromkeys(numbers))
+                numbers.sort()  # at once, as they are nearly in order; not if they came out of a set
+            found.append(tuple(numbers))
+        return found
 
-    def _of_signals(self, role: int, outputs: tuple[Output, ...]) -> list[int]:
+    def _fed(self, role: int) -> dict[IRI, tuple[int, ...]]:
+        """Return for each signal the needs that any output of a role feeds with it."""
+        several = tuple(self._feeds[role])
+        known = self._fed_of.get(several)
+        if known is not None:
+            return known
+        fed = self._fed_of[several] = {}
+        for numbering in several:
+            plain = numbering.plain
+            if fed.keys().isdisjoint(plain):
+                fed.update(zip(plain, zip(plain.values(), strict=True), strict=True))
+            else:
+                for signal, number in plain.items():
+                    fed[signal] = (*fed.get(signal, ()), number)
+            for (signals, _), number in numbering.others.items():
+                for signal in signals:
+                    fed[signal] = (*fed.get(signal, ()), number)
+        return fed
+
+    def _of_signals(self, _: int, outputs: tuple[Output, ...], fed: Mapping[IRI, tuple[int, ...]]) -> list[int]:
         """Return the needs that outputs support, where their signals alone decide that."""
-        fed, hierarchy = self._fed[role], self.problem.hierarchy
         # One loop without a call: an ecology may have a million outputs.
-        if hierarchy.flat:
-            return [need for output in outputs for signal in output[1] for need in fed.get(signal, ())]
-        served = hierarchy.served
+        if self.problem.hierarchy.flat:
+            return [need for output in outputs for signal in output[1] if signal in fed for need in fed[signal]]
+        served = self.problem.hierarchy.served
         return [need for output in outputs for signal in served(output[1]) for need in fed.get(signal, ())]
 
-    def _of_outputs(self, role: int, outputs: tuple[Output, ...]) -> list[int]:
+    def _of_outputs(self, role: int, outputs: tuple[Output, ...], fed: Mapping[IRI, tuple[int, ...]]) -> list[int]:
         """Return the needs that outputs support, by their signals, their names and what conditions ask of them."""
         served = self.problem.hierarchy.served
-        fed, by_name, untyped = self._fed[role], self._fed_by_name[role], self._untyped[role]
+        by_name, untyped = self._fed_by_name[role], self._untyped[role]
         numbers: list[int] = []
         for output in outputs:
             name, offered = output[:2]

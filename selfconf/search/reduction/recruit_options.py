@@ -23,7 +23,7 @@ from selfconf.model.term import IRI
 from selfconf.search.problem import Feeder, Problem
 from selfconf.search.reduction.constraints import NO_COMPONENT
 from selfconf.search.reduction.dominance import reduced
-from selfconf.search.reduction.needs import Need
+from selfconf.search.reduction.needs import Need, Needs, NeedScope
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem
 
 Rank = Callable[[int], tuple[Fraction, ...]]
@@ -116,11 +116,12 @@ class _Joined:
 
     def _needed(self, ports: Iterable[Input]) -> tuple[int, ...]:
         found: list[int] = []
+        scope = NeedScope(self.role, (Feeder(self.role),))
         for port in ports:
             number = self._known.get(port.wanted)
             if number is None:
                 number = self._known[port.wanted] = len(self.needs)
-                self.needs.append(Need(self.role, port.wanted, (Feeder(self.role),)))
+                self.needs.append(Need(scope, port))
                 for signal in port.signals:
                     self._wanting.setdefault(signal, []).append(number)
             found.append(number)
@@ -157,9 +158,10 @@ class _Joined:
             options.append(Option(number, NO_COMPONENT, kind))
         for number in helped:
             need = self.needs[number]
-            self.needs[number] = need._replace(sources=(*need.sources, Feeder(self.role)))
+            scope = NeedScope(need.role, (*need.sources, Feeder(self.role)), need.scope.named)
+            self.needs[number] = Need(scope, need.port)
         return ReducedProblem(
-            self.part.slots, (*self.part.options, tuple(options)), tuple(self.needs), self.part.values
+            self.part.slots, (*self.part.options, tuple(options)), Needs(self.needs), self.part.values
         )
 
     def _met(self, outputs: Sequence[Output], wanting: Mapping[IRI, list[int]]) -> tuple[int, ...]:

@@ -17,12 +17,13 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from operator import attrgetter
+from typing import NamedTuple
 
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import Ports
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
-from selfconf.search.reduction.needs import Need
+from selfconf.search.reduction.needs import Needs
 
 Signature = tuple[Ports, tuple[int, ...]]
 """All of a candidate that decides its interchangeability class: its ports, and the values that it admits."""
@@ -58,8 +59,7 @@ class Option:
         self.number, self.component, self.kind = number, component, kind
 
 
-@dataclass(frozen=True, slots=True)
-class Removal:
+class Removal(NamedTuple):
     """Why a class is in no solution: a need without support, or a variable without a value that every role admits."""
 
     kind: InterchangeabilityClass
@@ -74,7 +74,7 @@ class ReducedProblem:
     slots: tuple[int, ...]
     """The role of each slot, in order; a role that asks for k components has k slots."""
     options: tuple[tuple[Option, ...], ...]
-    needs: tuple[Need, ...]
+    needs: Needs
     values: tuple[int, ...]
     """The values that each variable may have before any slot is filled, as a mask."""
     removals: tuple[Removal, ...] = ()
