@@ -23,7 +23,7 @@ constraints in force never make less possible. There are no groups then, as each
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from selfconf.model.partition import ANY_VALUE
@@ -126,22 +126,17 @@ class Encoding:
 
     def _needs(self, stated: frozenset[int]) -> None:
         """Write the needs that are not stated otherwise."""
-        supporting: list[list[list[int]]] = [[] for _ in self.reduced.needs]
-        needing: list[list[int]] = [[] for _ in self.reduced.needs]
+        needing: dict[int, list[int]] = {}
         for options, literals in zip(self.reduced.options, self.plays, strict=True):
-            of_role: dict[int, list[int]] = {}
             for option, literal in zip(options, literals, strict=True):
-                kind = option.kind
-                for need in kind.supports:
-                    of_role.setdefault(need, []).append(literal)
-                for need in kind.needs:
-                    needing[need].append(literal)
-            for need, some in of_role.items():
-                supporting[need].append(some)
+                for need in option.kind.needs:
+                    if need in needing:
+                        needing[need].append(literal)
+                    elif need not in stated:
+                        needing[need] = [literal]
+        supporting = self._supporting(needing) if needing else {}
         add = self.clauses.append
-        for need, having in enumerate(needing):
-            if not having or need in stated:
-                continue
+        for need, having in sorted(needing.items()):
             force = self._in_force(Fed(need))
             by_role = supporting[need]
             supports = by_role[0] if len(by_role) == 1 else [self._any_of(some) for some in by_role]
@@ -153,6 +148,21 @@ class Encoding:
             add([*force, -fed, *supports])
             for literal in having:
                 add([-literal, fed])
+
+    def _supporting(self, needs: Collection[int]) -> dict[int, list[list[int]]]:
+        """Return for some needs the literals of the options that support them, role by role."""
+        found: dict[int, list[list[int]]] = {need: [] for need in needs}
+        for options, literals in zip(self.reduced.options, self.plays, strict=True):
+            of_role: dict[int, list[int]] = {}
+            for option, literal in zip(options, literals, strict=True):
+                for need in option.kind.supports:
+                    if need in of_role:
+                        of_role[need].append(literal)
+                    elif need in found:
+                        of_role[need] = [literal]
+            for need, some in of_role.items():
+                found[need].append(some)
+        return found
 
     def _any_of(self, literals: list[int]) -> int:
         """Return a literal that holds iff one of some does."""
@@ -167,29 +177,27 @@ class Encoding:
         return found
 
     def _values(self) -> None:
-        for variable, open_values in enumerate(self.reduced.values):
-            constrained = [
-                (literal, option.kind.admits[variable] & open_values)
-                for options, literals in zip(self.reduced.options, self.plays, strict=True)
-                for option, literal in zip(options, literals, strict=True)
-                if option.kind.admits[variable] != ANY_VALUE
-            ]
-            if constrained:
-                self._one_value(constrained, self._in_force(Shared(variable)))
+        constrained: list[list[tuple[int, int]]] = [[] for _ in self.reduced.values]
+        for options, literals in zip(self.reduced.options, self.plays, strict=True):
+            for option, literal in zip(options, literals, strict=True):
+                for variable, mask in enumerate(option.kind.admits):
+                    if mask != ANY_VALUE:
+                        constrained[variable].append((literal, mask & self.reduced.values[variable]))
+        for variable, some in enumerate(constrained):
+            if some:
+                self._one_value(some, self._in_force(Shared(variable)))
 
     def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> None:
         """Let options have a common value of a variable, given their literals and the masks of what they admit."""
         width = max((mask if mask >= 0 else ~mask).bit_length() for _, mask in constrained)
-        values = [self.literal() for _ in range(width)]
-        self._at_most(values, 1)
+        values = [(1 << k, self.literal()) for k in range(width)]
+        self._at_most([value for _, value in values], 1)
         for literal, mask in constrained:
             if mask >= 0:
-                self.clauses.append([*force, -literal, *(values[k] for k in range(width) if mask >> k & 1)])
+                self.clauses.append([*force, -literal, *[value for bit, value in values if mask & bit]])
                 continue
             # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
-            for k in range(width):
-                if not mask >> k & 1:
-                    self.clauses.append([*force, -literal, -values[k]])
+            self.clauses += [[*force, -literal, -value] for bit, value in values if not mask & bit]
 
     def _ascending(self, first: Sequence[int], second: Sequence[int]) -> None:
         """Let the option of one role come before that of another one; one of each plays."""
