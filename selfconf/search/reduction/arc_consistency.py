@@ -8,7 +8,9 @@ number of needs and supports of all classes.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence, Set
+from functools import reduce
+from operator import or_
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Removal
@@ -25,6 +27,8 @@ def consistent(
     removed: set[int] = set()
     removals: list[Removal] = []
     unsupported = [need for need in range(needs) if not supports[need]]
+    admitted = _Admitted(kinds, values, required) if values else None
+    roles: set[int] = set(required)
     while True:
         while unsupported:
             need = unsupported.pop()
@@ -32,14 +36,17 @@ def consistent(
                 if id(kind) not in removed:
                     removed.add(id(kind))
                     removals.append(Removal(kind, need=need))
+                    roles.add(kind.role)
                     unsupported += _without_support_of(kind, supports)
         # Values come after needs: a pass over all classes for each variable costs more than following the counters.
-        by_value = _valueless([kind for kind in kinds if id(kind) not in removed], values, required) if values else {}
+        by_value = admitted.valueless(removed, roles) if admitted else {}
         if not by_value:
             return removed, removals
+        roles.clear()
         for removal in by_value.values():
             removed.add(id(removal.kind))
             removals.append(removal)
+            roles.add(removal.kind.role)
             unsupported += _without_support_of(removal.kind, supports)
 
 
@@ -65,26 +72,47 @@ def _without_support_of(kind: InterchangeabilityClass, supports: list[int]) -> I
             yield need
 
 
-def _valueless(
-    kinds: Sequence[InterchangeabilityClass], values: Sequence[int], required: Collection[int]
-) -> dict[int, Removal]:
-    """Return the classes, by identity, that admit only values of a variable that some role cannot have.
+class _Admitted:
+    """The values that are left to the variables, as classes are removed."""
 
-    None are returned once a required role has no class left: then there is no solution, and the cause is that role.
-    """
-    found: dict[int, Removal] = {}
-    if not {kind.role for kind in kinds}.issuperset(required):
-        return found
-    for number, common in enumerate(values):
-        by_role = dict.fromkeys(required, 0)
+    def __init__(
+        self, kinds: Sequence[InterchangeabilityClass], values: Sequence[int], required: Collection[int]
+    ) -> None:
+        self.kinds = kinds
+        self.values = list(values)
+        self._narrowed = {number for number, common in enumerate(values) if common != ANY_VALUE}
+        """The variables that have lost values since it was last asked about them."""
+        self._of_role: dict[int, list[InterchangeabilityClass]] = {role: [] for role in required}
         for kind in kinds:
-            if kind.role in by_role:
-                by_role[kind.role] |= kind.admits[number]
-        for allowed in by_role.values():
-            common &= allowed
-        if common != ANY_VALUE:
-            for kind in kinds:
-                if not kind.admits[number] & common:
-                    # A class may fail on two variables; the first is its cause.
-                    found.setdefault(id(kind), Removal(kind, variable=number))
-    return found
+            if kind.role in self._of_role:
+                self._of_role[kind.role].append(kind)
+
+    def valueless(self, removed: Set[int], roles: Iterable[int]) -> dict[int, Removal]:
+        """Return the classes left, by identity, that admit only values of a variable that some role cannot have.
+
+        Only `roles` have lost classes since it was last asked about them. None are returned once a required role has no
+        class left: then there is no solution, and the cause is that role.
+        """
+        self._narrow(removed, roles)
+        found: dict[int, Removal] = {}
+        if not all(self._of_role.values()):
+            return found
+        self.kinds = [kind for kind in self.kinds if id(kind) not in removed]
+        for number in sorted(self._narrowed):
+            common = self.values[number]
+            for kind in [kind for kind in self.kinds if not kind.admits[number] & common]:
+                # A class may fail on two variables; the first is its cause.
+                found.setdefault(id(kind), Removal(kind, variable=number))
+        self._narrowed.clear()
+        return found
+
+    def _narrow(self, removed: Set[int], roles: Iterable[int]) -> None:
+        """Take from the variables the values that the classes left of some roles do not admit."""
+        for role in self._of_role.keys() & roles:
+            left = self._of_role[role] = [kind for kind in self._of_role[role] if id(kind) not in removed]
+            for number, masks in enumerate(zip(*[kind.admits for kind in left], strict=True)):
+                # No step of Python for each class: nearly none constrains all variables.
+                common = self.values[number] if ANY_VALUE in masks else self.values[number] & reduce(or_, masks)
+                if common != self.values[number]:
+                    self.values[number] = common
+                    self._narrowed.add(number)
