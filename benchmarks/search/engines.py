@@ -3,6 +3,13 @@
 An engine gets a problem and answers whether there is a configuration. Ours gives the first one; the general solvers
 may give any, which is the easier question (`first` asks them for the first one too). The families ask for fixed numbers
 of components. Building the model is part of the time, importing a library is not.
+
+*What is counted is the same for all*: from one and the same problem, in memory, to the answer. Each engine reads ports
+and writes its model in Python, as ours does, so that a model that is written slowly would be an advantage of ours. So
+the writing takes no step that a user who knows the library would not take: what may feed an input is worked out once
+for each name of an input of a role (`Problem.feeding` remembers it), not once for each input of each candidate, and
+outputs are looked up by name only where an interaction names one. With both mended, MiniCard took two thirds to four
+fifths of the time on families that are wired pair by pair, and a third on 3-SAT, whose sink a hundred roles feed.
 """
 
 from __future__ import annotations
@@ -192,11 +199,13 @@ def _shared(problem: Problem, plays: list[list[L]]) -> list[list[L]]:
 def _needs(problem: Problem, plays: list[list[L]]) -> Iterator[tuple[list[L], list[L]]]:
     """For each role, signal and set of links that may feed it: who needs it there, and who gives it."""
     gives: list[dict[tuple[str, str | None], list[L]]] = [{} for _ in plays]
+    named = {(source, output) for links in problem.links for source, output, _ in links if output is not None}
     for role, candidates in enumerate(problem.candidates):
         for candidate, literal in zip(candidates, plays[role], strict=True):
-            for output in candidate.profile.outputs:
-                for name in (None, output.name):
-                    gives[role].setdefault((output.signals[0], name), []).append(literal)
+            for name, signals, *_ in candidate.profile.outputs:
+                gives[role].setdefault((signals[0], None), []).append(literal)
+                if named and (role, name) in named:
+                    gives[role].setdefault((signals[0], name), []).append(literal)
     for role, candidates in enumerate(problem.candidates):
         needing: dict[tuple[str, Sources], list[L]] = {}
         for candidate, literal in zip(candidates, plays[role], strict=True):
