@@ -38,7 +38,6 @@ from selfconf.search.reduction.needs import Wiring
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem, signature
 
 _PORTS: Callable[[Candidate], Ports] = attrgetter("profile.ports")
-_COMPONENT: Callable[[Candidate], IRI] = attrgetter("profile.component")
 _ADMITS: Callable[[Candidate], tuple[int, ...]] = attrgetter("admits")
 
 MANY_PORTS = 8
@@ -152,8 +151,10 @@ def _classified(
     kinds: dict[Hashable, InterchangeabilityClass] = {}
     met: dict[InterchangeabilityClass, int] = {}
     found: list[Option] = []
-    some = [candidates[number] for number in numbers]
-    for number, component, signed in zip(numbers, map(_COMPONENT, some), map(signature, some), strict=True):
+    for number in numbers:
+        candidate = candidates[number]
+        component = candidate.profile.component
+        signed = signature(candidate)
         key: Hashable = number if apart else (signed, component) if component in distinguished else signed
         kind = kinds.get(key)
         if kind is None:

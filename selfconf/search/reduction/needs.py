@@ -146,8 +146,7 @@ class Wiring:
                     ports.append(port)
                 numbers.append(number)
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
-        for numbering in alike.values():
-            self._note(numbering)
+        self._note_particular(role, alike.values())
         return found
 
     def _numbering(
@@ -165,8 +164,15 @@ class Wiring:
                     self._feeds[source].append(found)
         return found
 
+    def _note_particular(self, role: int, numberings: Iterable[_Numbering]) -> None:
+        """Note the needs of a role that have a condition, and those that are fed by the name of an output."""
+        names_outputs = any(link.output for link in self.problem.links[role])
+        for numbering in numberings:
+            if numbering.others or names_outputs:
+                self._note(numbering)
+
     def _note(self, numbering: _Numbering) -> None:
-        """Note the conditions of needs, and those that are fed by the name of an output."""
+        """Note which needs have a condition, and which are fed by the name of an output."""
         for (_, condition), number in numbering.others.items():
             if condition is not None:
                 self._conditions[number] = condition
@@ -205,12 +211,8 @@ class Wiring:
             return known
         fed = self._fed_of[several] = {}
         for numbering in several:
-            plain = numbering.plain
-            if fed.keys().isdisjoint(plain):
-                fed.update(zip(plain, zip(plain.values(), strict=True), strict=True))
-            else:
-                for signal, number in plain.items():
-                    fed[signal] = (*fed.get(signal, ()), number)
+            for signal, number in numbering.plain.items():
+                fed[signal] = (*fed[signal], number) if signal in fed else (number,)
             for (signals, _), number in numbering.others.items():
                 for signal in signals:
                     fed[signal] = (*fed.get(signal, ()), number)
