@@ -21,7 +21,7 @@ than slots.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
@@ -67,11 +67,8 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
 
     If components need not be distinct, one component in two roles is no conflict.
     """
-    used = set[int]().union(*[option.kind.needs for options in reduced.options for option in options])
-    needs = _fed_by_one(reduced, used)
+    needs = _fed_by_one(reduced)
     names = [option.component for options in reduced.options for option in options if option.component]
-    if sum(map(len, needs.values())) * SHARE_FED_BY_ONE < len(used):
-        needs = {}
     if not needs and (not distinct or len(set(names)) == len(names)):
         return ExclusiveGroups()
     graph = _Conflicts(reduced, needs, distinct)
@@ -89,19 +86,23 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
     )
 
 
-def _fed_by_one(reduced: ReducedProblem, used: Set[int]) -> dict[int, set[int]]:
-    """Return for each role with one slot those of some needs, of other roles, that it alone can feed."""
-    asked = Counter(reduced.slots)
+def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
+    """Return for each role with one slot the needs of other roles that it alone can feed, if these are many."""
     scopes = reduced.needs.scopes
-    of_scope: defaultdict[NeedScope, set[int]] = defaultdict(set)
+    asked = Counter(reduced.slots)
+    alone: dict[NeedScope, int] = {}
+    for scope in dict.fromkeys(scopes):
+        role, *others = [source.role for source in scope.sources] or [scope.role]
+        if role != scope.role and asked[role] == 1 and others.count(role) == len(others):
+            alone[scope] = role
+    if not alone:
+        return {}
+    found: defaultdict[int, set[int]] = defaultdict(set)
+    used = set[int]().union(*[option.kind.needs for options in reduced.options for option in options])
     for number in used:
-        of_scope[scopes[number]].add(number)
-    found: dict[int, set[int]] = {}
-    for scope, numbers in of_scope.items():
-        roles = {source.role for source in scope.sources}
-        if len(roles) == 1 and scope.role not in roles and asked[min(roles)] == 1:
-            found.setdefault(min(roles), set()).update(numbers)
-    return found
+        if scopes[number] in alone:
+            found[alone[scopes[number]]].add(number)
+    return found if sum(map(len, found.values())) * SHARE_FED_BY_ONE >= len(used) else {}
 
 
 class _Conflicts:

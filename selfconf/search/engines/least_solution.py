@@ -150,7 +150,9 @@ class _Descent:
         clauses = turn.clauses
         for slot in range(turn.fixed, len(self.settled)):
             literals = self.plays[self.slots[slot]]
-            for number in range(self._start(slot), self.settled[slot]):
+            # Its clauses know already of what was rejected for the slot that it was asked about.
+            start = max(turn.rejected, self._start(slot)) if slot == turn.fixed else self._start(slot)
+            for number in range(start, self.settled[slot]):
                 clauses.add([-literals[number]])
             clauses.add([literals[self.settled[slot]]])
             turn.modelled = turn.modelled and clauses.holds(literals[self.settled[slot]])
