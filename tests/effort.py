@@ -1,8 +1,8 @@
 """How many examples a property sees, by the environment variable HYPOTHESIS_PROFILE.
 
 `quick` is a tenth of the usual number (`make quick`), `nightly` twenty times as many (`make nightly`); anything else
-is two fifths of it (`make test`), so that the tests end in time on two processors. The
-examples of a usual or quick run are the same each time.
+is two fifths of it (`make test`), or three twentieths where every example is solved several times, by enumeration
+too, so that the tests end in time on two processors. The examples of a usual or quick run are the same each time.
 """
 
 from __future__ import annotations
@@ -24,3 +24,8 @@ _SHARES = {"quick": 0.1, "nightly": 20.0}
 def examples(usual: int) -> int:
     """Return the number of examples under this profile of a property that usually sees `usual` of them."""
     return max(1, int(usual * _SHARES.get(PROFILE, 0.4)))
+
+
+def solved_examples(usual: int) -> int:
+    """Return the number of examples of a property whose examples are solved by several searches: at least 25."""
+    return max(25, int(usual * _SHARES.get(PROFILE, 0.15)))

@@ -149,7 +149,7 @@ def check(problem: Problem) -> None:
 
 
 @given(recruiting())
-@agreement(1.0 if NIGHTLY else 0.5)  # 500 for every push: tests/composition/test_searches.py
+@agreement(1.0 if NIGHTLY else 0.5)  # more for every push: tests/composition/test_searches.py
 def test_recruits_are_those_that_enumeration_finds_first(problem: Problem) -> None:
     pytest.importorskip("pysat")
     check(problem)

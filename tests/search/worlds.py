@@ -25,13 +25,13 @@ from selfconf.model.profile import (
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
-from tests.effort import NIGHTLY, examples
+from tests.effort import NIGHTLY, solved_examples
 
 
 def agreement(share: float = 1.0) -> settings:
-    """How many problems a test draws: 200 for every push, 50 in a quick run, 10,000 at night."""
+    """How many problems a test draws: 75 for every push, 50 in a quick run, 10,000 at night."""
     return settings(
-        max_examples=examples(int(500 * share)),
+        max_examples=solved_examples(int(500 * share)),
         deadline=None,
         derandomize=not NIGHTLY,
         database=None,

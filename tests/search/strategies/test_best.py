@@ -18,6 +18,7 @@ from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
+from tests.effort import NIGHTLY
 from tests.search.oracle import Players, World
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -139,7 +140,7 @@ def test_what_is_found_in_few_steps_has_a_true_bound(aided: bool, monkeypatch: p
     """For each answer without a proof whether there is a better one."""
 
     @given(priced_problems(plain_ports=True))
-    @agreement()
+    @agreement(1.0 if NIGHTLY else 2.5)  # so many that ten answers and more lack a proof
     def search(problem: Problem) -> None:
         world = World(problem.task, problem.partition, problem.hierarchy)
         least = min((_total(world, players) for players in world.solutions()), default=None)
