@@ -14,7 +14,7 @@ import hashlib
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from selfconf.errors import TurtleError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
@@ -138,8 +138,9 @@ def _digest(*parts: bytes) -> hashlib.blake2s:
     return found
 
 
+@lru_cache(maxsize=16)  # those that ship and some more: a program that validates again has the same ones
 def _loaded(source: SourceText) -> Prefiltered:
-    """What an ontology declares, in whatever format it is. Raises TurtleError."""
+    """What an ontology declares, in whatever format it is, to be read only. Raises TurtleError."""
     for fault in _encoding(source):
         raise TurtleError(fault.message, file=source.name, line=fault.line, column=fault.column)
     octets = source.octets.removeprefix(_BYTE_ORDER_MARK)
