@@ -88,7 +88,10 @@ QUERIED = frozenset(map(code_of, ALL.subjects(SH.sparql)))
 
 @pytest.mark.slow
 def test_every_constraint_is_broken_by_a_bad_file() -> None:
-    missing = constraints() - set().union(*map(broken, BAD))
+    missing = constraints()
+    for path in BAD:
+        if promised_codes(path) & {code_of(shape) for shape, _ in missing}:
+            missing -= broken(path)
     assert not {(shape.removeprefix(SHAPES), component.removeprefix(str(SH))) for shape, component in missing}
 
 
