@@ -487,28 +487,18 @@ class Watch:
 
         They are kept until the next look, or another value might come to lie at the same place.
         """
-        history = self._history
-        self._kept = [
-            *(life.runtime.activation for life in history.lives),
-            *(agent.state for agent in (*history.agents, *history.living())),
-        ]
-        return (
-            [
-                life.node.open
-                and (
-                    life.node.paused,
-                    life.thread.hangs,
-                    life.runtime.active,
-                    len(life.recorder.said),
-                    id(life.runtime.activation),
-                )
-                for life in history.lives
-            ],
-            [
-                (id(agent.state), node_of(agent).open, node_of(agent).paused)
-                for agent in (*history.agents, *history.living())
-            ],
-            len(history.network._cut),
-            sum(node.expelled for node in history.network.nodes),
-            len(history.network._events) > MOST_WAITING,
-        )
+        history, network = self._history, self._history.network
+        lives, agents = history.lives, [*history.agents, *history.living()]
+        self._kept = [*(life.runtime.activation for life in lives), *(agent.state for agent in agents)]
+        seen = [*map(id, self._kept), len(lives)]
+        for life in lives:
+            if life.node.open:
+                runtime = life.runtime
+                seen += (life.node.paused, life.thread.hangs, runtime.active, len(life.recorder.said))
+            else:
+                seen.append(-1)
+        for agent in agents:
+            node = node_of(agent)
+            seen += (node.open, node.paused)
+        expelled = [node.expelled for node in network.nodes].count(True)
+        return seen, len(network._cut), expelled, len(network._events) > MOST_WAITING
