@@ -54,7 +54,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--smoke", action="store_true", help="one short round, to see that it works")
     given = parser.parse_args()
-    trials, components, signals, seconds = (2, 20, 20, 0.2) if given.smoke else (20, 1000, 300, 5.0)
+    trials, components, signals, seconds = (1, 20, 20, 0.1) if given.smoke else (20, 1000, 300, 5.0)
     times: Times = {}
     ways = (PLAIN, KEYED, UNREAD)
     for number in range(1 if given.smoke else given.rounds):

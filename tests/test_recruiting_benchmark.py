@@ -10,7 +10,7 @@ from tests.benchmark import short_run
 
 @pytest.mark.process
 def test_the_short_run_finds_answers() -> None:
-    assert "| decoys | 80 | 1 |" in short_run("benchmarks.recruiting")
+    assert "| decoys | 40 | 1 |" in short_run("benchmarks.recruiting")
 
 
 @pytest.mark.parametrize("family", FAMILIES)

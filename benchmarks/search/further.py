@@ -25,7 +25,7 @@ from benchmarks.search import engines as anything
 from benchmarks.search import first
 from benchmarks.search.families import Instance
 from benchmarks.search.further_families import CHOOSING, REPORTING, SMALL, UNSEEN, Family, instances
-from benchmarks.search.measure import Measured, measure
+from benchmarks.search.measure import Measured, made, measure
 from benchmarks.search.report import WORK, Row, table
 from selfconf.search.problem import Problem
 
@@ -64,7 +64,7 @@ class Asked(NamedTuple):
 
 def asked(half: str, instance: Instance, installed: Sequence[str], limit: float, times: int = 3) -> Asked:
     """Ask all engines both questions about an instance; raises AssertionError if they disagree."""
-    problem = instance.make()
+    problem = made(instance.make)
     able = [e for e in first.ENGINES if e.partition(",")[0] in installed and e not in SLOW and first.able(e, problem)]
     found = _timed(problem, able, limit, times, first.ENGINES)
     least = Row(instance, found, _agreed(instance, found))

@@ -38,6 +38,12 @@ class Measured:
     memory: float = 0.0
 
 
+def made(make: Callable[[], Problem]) -> Problem:
+    """Make a problem once what is left of others is gone: the processes that are to solve it have a copy of all."""
+    gc.collect()
+    return make()
+
+
 def measure(
     engine: str,
     problem: Problem,
@@ -62,7 +68,6 @@ def measure(
 def _once(engine: str, problem: Problem, limit: float, engines: Mapping[str, Engine], traced: bool) -> Measured:
     context = multiprocessing.get_context("fork")
     receiving, sending = context.Pipe(duplex=False)
-    gc.collect()
     gc.freeze()  # so that the child does not copy the pages of the problem as it counts references to nothing
     process = context.Process(target=_child, args=(engine, engines[engine], problem, sending, traced))
     process.start()

@@ -21,7 +21,7 @@ from benchmarks.search import families as f
 from benchmarks.search import first, tuning
 from benchmarks.search.engines import SMALL, installed
 from benchmarks.search.families import Instance
-from benchmarks.search.measure import Measured, measure
+from benchmarks.search.measure import Measured, made, measure
 from benchmarks.search.report import Row, page, plot, table
 
 SEED = 52_417
@@ -69,7 +69,7 @@ def measured(instance: Instance, engines: Sequence[str], limit: float, times: in
 
     The second row is only there if there is a configuration. Raises AssertionError if engines disagree.
     """
-    problem = instance.make()
+    problem = made(instance.make)
     hopeful = [e for e in engines if instance.size <= SMALL.get(e, instance.size) and not _hopeless(e, instance)]
     row = _row(instance, {engine: measure(engine, problem, limit, times) for engine in hopeful})
     yield row

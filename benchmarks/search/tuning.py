@@ -14,7 +14,7 @@ from types import ModuleType
 
 from benchmarks.search import families as f
 from benchmarks.search.families import Instance
-from benchmarks.search.measure import measure
+from benchmarks.search.measure import made, measure
 from selfconf.search.engines import candidate_search
 from selfconf.search.engines import clause_learning as sat
 from selfconf.search.strategies import first as solve
@@ -78,7 +78,7 @@ def tried(limit: float, times: int = 3) -> list[Tried]:
     """Every value of every threshold on every instance, the other thresholds being as they are."""
     seconds: dict[tuple[str, object], list[float]] = {}
     for instance in instances():
-        problem = instance.make()
+        problem = made(instance.make)
         for threshold in THRESHOLDS:
             chosen = threshold.chosen
             for value in threshold.values:
