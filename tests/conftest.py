@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import secrets
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
+from selfconf.__main__ import COLLECTING
 from tests import schedule
 from tests.asked_here import ask_here
 from tests.effort import examples
@@ -24,6 +27,7 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("selfconf")
+gc.set_threshold(*COLLECTING)  # as in the programs; what is collected of all tests is much to look at again and again
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -45,10 +49,17 @@ def _takes_seconds(item: pytest.Item) -> bool:
     return any(item.get_closest_marker(mark) for mark in ("process", "slow"))
 
 
+@pytest.fixture(scope="session")
+def runtime_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Folders without end, one for each test, in a folder of their own: `mktemp` reads all names beside a new one."""
+    return map(tmp_path_factory.mktemp("runtime").joinpath, map(str, count()))
+
+
 @pytest.fixture(autouse=True)
-def runtime_folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+def runtime_folder(runtime_folders: Iterator[Path], monkeypatch: pytest.MonkeyPatch) -> Path:
     """No test sees the sites that happen to run on this machine, and none is seen by them."""
-    folder = tmp_path_factory.mktemp("runtime")
+    folder = next(runtime_folders)
+    folder.mkdir(mode=0o700)
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(folder))
     for name in ("SELFCONF_ECOLOGY", "SELFCONF_CONNECT", "SELFCONF_PARENT", "SELFCONF_ROS_DEFINITIONS"):
         monkeypatch.delenv(name, raising=False)
