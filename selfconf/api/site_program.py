@@ -8,7 +8,7 @@ import platform
 import re
 import secrets
 import socket
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from pathlib import Path
@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 
 from selfconf import files, rendezvous
 from selfconf.api.arguments import option
-from selfconf.api.composites import Composites
 from selfconf.api.joining import Joining
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import described_in, existing
@@ -24,18 +23,22 @@ from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.port import Bus
 from selfconf.bus.zenoh_bus import client
-from selfconf.deployment import Keeper, RunRequest, TaskFolder
+from selfconf.deployment import Keeper, TaskFolder
 from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.hierarchy import Reasoning
+from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
+from selfconf.rdf.advertisements import Advertisement
 from selfconf.render import count
 from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
 
 if TYPE_CHECKING:
+    from selfconf.api.composites import Composites
     from selfconf.api.secured_site import SecuredSite
+    from selfconf.deployment import RunRequest
 
 Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
 """Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
@@ -99,16 +102,22 @@ def serve(
         log_path = _log_path(log, ecology, name).absolute()
         joining.log = str(log_path)
         keys_of, believed = (None, None) if secured is None else (secured.keys_of, secured.believed)
-        composites = Composites(
-            bus,
-            ecology,
-            described_in,
-            complain,
-            work.work,
-            believed,
-            hierarchy,
-            lambda why: site.tell_unable(why),  # it is made below, and refreshes the composites
-        )
+
+        def composites_of_site() -> Composites:
+            from selfconf.api.composites import Composites  # loads all that configures their insides and runs them
+
+            return Composites(
+                bus,
+                ecology,
+                described_in,
+                complain,
+                work.work,
+                believed,
+                hierarchy,
+                lambda why: site.tell_unable(why),  # it is made below, and refreshes the composites
+            )
+
+        composites = _CompositesOnceThereAre(composites_of_site)
         site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond, changed=composites.refresh)
         if secured is not None:
             secured.keep_door(site, joining, complain)
@@ -210,3 +219,23 @@ def _request_of(work: WorkQueue, believed: Beliefs | None, record: TaskRecord) -
     from selfconf.api.detached import request_of
 
     return request_of(record, work.work, believed)
+
+
+class _CompositesOnceThereAre:
+    """The composites of a site, made when the first one is advertised: most sites have none, and start sooner."""
+
+    def __init__(self, make: Callable[[], Composites]) -> None:
+        self._make = make
+        self._made: Composites | None = None
+
+    def refresh(self, advertisements: Mapping[IRI, Advertisement]) -> None:
+        """Let those live whose inside can be configured from these advertisements, and no others."""
+        if self._made is None and any(one.profile.inside is not None for one in advertisements.values()):
+            self._made = self._make()
+        if self._made is not None:
+            self._made.refresh(advertisements)
+
+    def close(self) -> None:
+        """Let none live."""
+        if self._made is not None:
+            self._made.close()

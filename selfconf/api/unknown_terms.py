@@ -9,13 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
+from typing import TYPE_CHECKING
 
 from selfconf import library
-from selfconf.api.task import TaskSpecification
 from selfconf.model.term import IRI, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement, LoadedAdvertisement
 from selfconf.rdf.vocabulary import SC, SH, TYPE
+
+if TYPE_CHECKING:
+    from selfconf.api.task import TaskSpecification
 
 MOST_LOOKED_AT = 1000
 """How many advertisements of an ecology are looked at: a hundred thousand take longer than a search among them."""

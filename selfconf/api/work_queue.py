@@ -5,8 +5,10 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from selfconf.model.run_event import RunEvent
+if TYPE_CHECKING:
+    from selfconf.model.run_event import RunEvent
 
 
 class WorkQueue:

@@ -3,14 +3,36 @@
 A `RunRequest` says which task to run, and how, and what is `Outside` of it if it is the inside of a composite; a
 `TaskRunner` runs it. Inside, `calls` makes the calls to components,
 `liveness` decides when a component is believed to be dead, and `record` answers questions about what is deployed.
-A `Keeper` runs the tasks that live in the sites, which keep their records in a `TaskFolder`.
+A `Keeper` runs the tasks that live in the sites, which keep their records in a `TaskFolder`. What runs a task is
+loaded when it is first asked for: a site without tasks starts sooner.
 """
 
-from selfconf.deployment.holders import holders_in
-from selfconf.deployment.identity import TaskIdentity
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from selfconf.deployment.keeper import Keeper
-from selfconf.deployment.run_request import Outside, RunRequest
-from selfconf.deployment.runner import TaskRunner
 from selfconf.deployment.task_folder import TaskFolder
 
+if TYPE_CHECKING:
+    from selfconf.deployment.holders import holders_in
+    from selfconf.deployment.identity import TaskIdentity
+    from selfconf.deployment.run_request import Outside, RunRequest
+    from selfconf.deployment.runner import TaskRunner
+
 __all__ = ["Keeper", "Outside", "RunRequest", "TaskFolder", "TaskIdentity", "TaskRunner", "holders_in"]
+
+_HOME = {
+    "holders_in": "holders",
+    "TaskIdentity": "identity",
+    "Outside": "run_request",
+    "RunRequest": "run_request",
+    "TaskRunner": "runner",
+}
+"""Where each name is defined that is loaded when it is first used."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'selfconf.deployment' has no attribute {name!r}")
+    found = globals()[name] = getattr(import_module(f"selfconf.deployment.{_HOME[name]}"), name)
+    return found

@@ -12,17 +12,20 @@ import hashlib
 import logging
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
-from selfconf.deployment.run_request import RunRequest
-from selfconf.deployment.runner import TaskRunner
 from selfconf.deployment.task_folder import TaskFolder
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.model.run_event import RunEvent, TaskRunning
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of
 from selfconf.protocol.messages import TaskRecord
+
+if TYPE_CHECKING:
+    from selfconf.deployment.run_request import RunRequest
+    from selfconf.deployment.runner import TaskRunner
 
 log = logging.getLogger(__name__)
 
@@ -147,6 +150,7 @@ class Keeper:
         request = self._requests.get(record.task)
         if request is None:
             return
+        from selfconf.deployment.runner import TaskRunner  # what a site without tasks does not need
 
         def ended(_: object) -> None:
             self.runners.pop(record.task, None)
