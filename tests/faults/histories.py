@@ -184,7 +184,7 @@ class History:
     def composites(self) -> Iterator[Life]:
         """The composites that live now: what they do themselves is nothing, and takes no time."""
         for site, composites in self.lab.composites.items():
-            node = self.node(site)
+            node = self.node(site) if composites.living else None
             for inside in composites.living.values() if node is not None else ():
                 assert node is not None
                 thread = SimulatedCodeThread(node, inside.runtime.hung)
@@ -193,7 +193,7 @@ class History:
     def insides(self) -> Iterator[InsideOfComposite]:
         """The composites that live now, with what they are inside."""
         for site, composites in self.lab.composites.items():
-            if self.node(site) is not None:
+            if composites.living and self.node(site) is not None:
                 yield from composites.living.values()
 
     def living(self) -> list[TaskRunner]:

@@ -489,14 +489,16 @@ class Watch:
         """
         history, network = self._history, self._history.network
         lives, agents = history.lives, [*history.agents, *history.living()]
-        self._kept = [*(life.runtime.activation for life in lives), *(agent.state for agent in agents)]
-        seen = [*map(id, self._kept), len(lives)]
+        kept: list[object] = [agent.state for agent in agents]
+        seen = [*map(id, kept), len(lives)]
         for life in lives:
             if life.node.open:
-                runtime = life.runtime
-                seen += (life.node.paused, life.thread.hangs, runtime.active, len(life.recorder.said))
+                runtime, activation = life.runtime, life.runtime.activation
+                kept.append(activation)
+                seen += id(activation), life.node.paused, life.thread.hangs, runtime.active, len(life.recorder.said)
             else:
                 seen.append(-1)
+        self._kept = kept
         for agent in agents:
             node = node_of(agent)
             seen += (node.open, node.paused)
