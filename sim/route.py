@@ -37,13 +37,10 @@ class RouteMap:
     def __init__(self, apartment: Apartment, clearance: float) -> None:
         self._clearance = clearance
         panels = [panel for wall in apartment.walls for panel in wall.panels() if panel.z == 0.0]
-        self._blocks: list[Block] = [*panels, *(piece for piece in apartment.furniture if piece.solid)]
-        corners = [spot for block in self._blocks for spot in _corners(block, clearance + 0.01)]
-        self._nodes = [
-            spot
-            for spot in corners
-            if apartment.room_at(*spot) and all(_gap(block, spot) >= clearance for block in self._blocks)
-        ]
+        blocks: list[Block] = [*panels, *(piece for piece in apartment.furniture if piece.solid)]
+        self._obstacles = [_Obstacle(block) for block in blocks]
+        corners = [spot for block in blocks for spot in _corners(block, clearance + 0.01)]
+        self._nodes = [spot for spot in corners if apartment.room_at(*spot) and self._is_clear(spot)]
         self._seen = {spot: [other for other in self._nodes if self._sees(spot, other)] for spot in self._nodes}
 
     def way(self, start: Spot, goal: Spot) -> list[Spot]:
@@ -65,16 +62,50 @@ class RouteMap:
                     heapq.heappush(queue, (longer, there))
         raise RouteError(start, goal)
 
+    def _is_clear(self, spot: Spot) -> bool:
+        return all(one.gap(one.local(spot)) >= self._clearance for one in self._obstacles)
+
     def _sees(self, a: Spot, b: Spot) -> bool:
-        # Who stands closer to something than the clearance may leave it, but not come closer.
-        return not any(
-            _meets(block, a, b, min(self._clearance, _gap(block, a), _gap(block, b)) - 1e-6) for block in self._blocks
-        )
+        for obstacle in self._obstacles:
+            here, there = obstacle.local(a), obstacle.local(b)
+            # Who stands closer to something than the clearance may leave it, but not come closer.
+            margin = min(self._clearance, obstacle.gap(here), obstacle.gap(there)) - 1e-6
+            if obstacle.meets(here, there, margin):
+                return False
+        return True
 
 
-def _local(block: Block, spot: Spot) -> Spot:
-    seen = Pose(block.x, block.y, block.theta).relative(Pose(*spot))
-    return seen.x, seen.y
+class _Obstacle:
+    """A block in a frame of its own, in which its sides lie along the axes."""
+
+    def __init__(self, block: Block) -> None:
+        frame = Pose(block.x, block.y, block.theta).inverse()
+        self._x, self._y = frame.x, frame.y
+        self._cosine, self._sine = math.cos(frame.theta), math.sin(frame.theta)
+        self._halves = block.width / 2, block.depth / 2
+
+    def local(self, spot: Spot) -> Spot:
+        """Return a spot as the block sees it."""
+        x, y = spot
+        return self._x + self._cosine * x - self._sine * y, self._y + self._sine * x + self._cosine * y
+
+    def gap(self, spot: Spot) -> float:
+        """Return by how much the sides may be moved outwards before they reach a local spot; negative inside."""
+        (x, y), (width, depth) = spot, self._halves
+        return max(abs(x) - width, abs(y) - depth)
+
+    def meets(self, a: Spot, b: Spot, margin: float) -> bool:
+        """Say whether the segment between two local spots meets the block, its sides moved outwards (slab method)."""
+        enter, leave = 0.0, 1.0
+        for start, end, side in zip(a, b, self._halves, strict=True):
+            half, way = side + margin, end - start
+            if abs(way) < 1e-12:
+                if abs(start) >= half:
+                    return False
+                continue
+            first, second = sorted(((-half - start) / way, (half - start) / way))
+            enter, leave = max(enter, first), min(leave, second)
+        return enter < leave
 
 
 def _corners(block: Block, margin: float) -> Iterator[Spot]:
@@ -83,27 +114,6 @@ def _corners(block: Block, margin: float) -> Iterator[Spot]:
         for y in (-1, 1):
             corner = frame.compose(Pose(x * (block.width / 2 + margin), y * (block.depth / 2 + margin)))
             yield corner.x, corner.y
-
-
-def _gap(block: Block, spot: Spot) -> float:
-    """Return by how much a block's sides may be moved outwards before they reach a spot; negative inside."""
-    x, y = _local(block, spot)
-    return max(abs(x) - block.width / 2, abs(y) - block.depth / 2)
-
-
-def _meets(block: Block, a: Spot, b: Spot, margin: float) -> bool:
-    """Say whether the segment from a to b meets a block whose sides are moved outwards (the slab method)."""
-    (ax, ay), (bx, by) = _local(block, a), _local(block, b)
-    enter, leave = 0.0, 1.0
-    for start, end, half in ((ax, bx, block.width / 2 + margin), (ay, by, block.depth / 2 + margin)):
-        way = end - start
-        if abs(way) < 1e-12:
-            if abs(start) >= half:
-                return False
-            continue
-        first, second = sorted(((-half - start) / way, (half - start) / way))
-        enter, leave = max(enter, first), min(leave, second)
-    return enter < leave
 
 
 def _trace(before: dict[Spot, Spot], goal: Spot) -> list[Spot]:
