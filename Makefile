@@ -21,10 +21,15 @@ demo: $(VENV)/with-sim
 # one is said in tests/schedule.py.
 PARALLEL := --numprocesses $(shell echo $$((1 + $$(nproc 2>/dev/null || echo 2))))
 
+# What tests write lies in memory, where there are 2 GiB for it and programs may be in it: the tests of one run make and
+# remove ten thousand folders, for which some disks take half a minute and more.
+MEMORY := $(shell df --output=avail /dev/shm 2>/dev/null | awk '$$1 >= 2097152 { print "/dev/shm" }')
+IN_MEMORY := $(if $(MEMORY),$(shell awk '$$2 == "/dev/shm" && $$4 !~ /noexec/ { print "TMPDIR=/dev/shm"; exit }' /proc/mounts))
+
 # A test that starves among others on a busy machine is run once more, alone; more than five failures stand.
 test: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
-	$(BIN)/python -m pytest $(PARALLEL) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.alone $(VENV)/tests.xml
+	$(IN_MEMORY) $(BIN)/python -m pytest $(PARALLEL) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.alone $(VENV)/tests.xml
 
 # The tests that start programs once more, each ecology with keys: a job of its own, as it takes as long as the others.
 # One that starves among others is run once more, alone, as by `make test`.
