@@ -7,29 +7,23 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from selfconf import rendezvous
-from selfconf.api.answer import Answer, Method, configure
 from selfconf.api.arguments import Paths, option
 from selfconf.api.component_states import ComponentState, component_states
 from selfconf.api.deployed import deployed_body
-from selfconf.api.detached import task_record
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
 from selfconf.api.membership import MEMBERS, beliefs, check_may_run, member
 from selfconf.api.output_sources import follow_output
-from selfconf.api.run import TAKING_DOWN, Run
 from selfconf.api.site_logs import LogSource
-from selfconf.api.task import TaskSpecification
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies, Sample
-from selfconf.configurator.state import Policy
 from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
 from selfconf.errors import AuthorError, NetworkError, PeerError, TurtleError
 from selfconf.model.holder import Holder
-from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
@@ -50,6 +44,12 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
 from selfconf.rdf.vocabulary import SC
 from selfconf.render.why import told_why
+
+if TYPE_CHECKING:
+    from selfconf.api.answer import Answer
+    from selfconf.api.run import Run
+    from selfconf.api.task import TaskSpecification
+    from selfconf.model.refusal import Refusal, Undecided
 
 ROLL_CALL = 3.0
 """How long, in seconds, a roll-call may take."""
@@ -457,6 +457,8 @@ class LivingEcology(Ecology):
         what_if: bool = False,
     ) -> Answer | Refusal | Undecided:
         """What `selfconf.configure` answers for this ecology, as it is now. Changes nothing."""
+        from selfconf.api.answer import configure  # here and below: who only looks on needs no search and no machine
+
         return configure(
             task,
             self,
@@ -490,6 +492,10 @@ class LivingEcology(Ecology):
         lower priority holds. `upgrade` are the seconds after which a component that the strategy would rather have is
         changed to; without it, none is.
         """
+        from selfconf.api.answer import Method
+        from selfconf.api.run import Run
+        from selfconf.configurator.state import Policy
+
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         chosen = option(Policy, "policy", policy)
         return Run(
@@ -524,6 +530,10 @@ class LivingEcology(Ecology):
         The arguments are those of `run`; the task waits where there is no configuration. Raises NetworkError if no
         site keeps it, or if a task of that name lives.
         """
+        from selfconf.api.answer import Method
+        from selfconf.api.detached import task_record
+        from selfconf.configurator.state import Policy
+
         check_may_run(self._credentials)
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         record = task_record(task.complete(), method, option(Policy, "policy", policy), name, priority, upgrade)
@@ -581,6 +591,8 @@ class LivingEcology(Ecology):
 
     def _await_end(self, names: set[str]) -> None:
         """Wait until configurators have released everything and left."""
+        from selfconf.api.run import TAKING_DOWN
+
         deadline = self._bus.now() + TAKING_DOWN
         lives = partial(self._bus.roll_call, self._view.keys.any_configurator_life(), ROLL_CALL)
         while names:

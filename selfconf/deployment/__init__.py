@@ -3,32 +3,33 @@
 A `RunRequest` says which task to run, and how, and what is `Outside` of it if it is the inside of a composite; a
 `TaskRunner` runs it. Inside, `calls` makes the calls to components,
 `liveness` decides when a component is believed to be dead, and `record` answers questions about what is deployed.
-A `Keeper` runs the tasks that live in the sites, which keep their records in a `TaskFolder`. What runs a task is
-loaded when it is first asked for: a site without tasks starts sooner.
+A `Keeper` runs the tasks that live in the sites, which keep their records in a `TaskFolder`. Each is loaded when it is
+first used: a site without tasks, and a command that only looks on, start sooner.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from selfconf.deployment.keeper import Keeper
-from selfconf.deployment.task_folder import TaskFolder
-
 if TYPE_CHECKING:
     from selfconf.deployment.holders import holders_in
     from selfconf.deployment.identity import TaskIdentity
+    from selfconf.deployment.keeper import Keeper
     from selfconf.deployment.run_request import Outside, RunRequest
     from selfconf.deployment.runner import TaskRunner
+    from selfconf.deployment.task_folder import TaskFolder
 
 __all__ = ["Keeper", "Outside", "RunRequest", "TaskFolder", "TaskIdentity", "TaskRunner", "holders_in"]
 
 _HOME = {
-    "holders_in": "holders",
-    "TaskIdentity": "identity",
+    "Keeper": "keeper",
     "Outside": "run_request",
     "RunRequest": "run_request",
+    "TaskFolder": "task_folder",
+    "TaskIdentity": "identity",
     "TaskRunner": "runner",
+    "holders_in": "holders",
 }
-"""Where each name is defined that is loaded when it is first used."""
+"""Where each name is defined. It is loaded when it is first used."""
 
 
 def __getattr__(name: str) -> Any:
