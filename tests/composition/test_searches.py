@@ -106,7 +106,7 @@ def outcome(strategy: Strategy, problem: Problem, running: Configuration | None 
 
 
 @given(ecologies(), st.data())
-@agreement(1.0 if NIGHTLY else 2.5)  # 187 for every push
+@agreement(1.0 if NIGHTLY else 500 / 75)  # 500 for every push
 def test_everything_at_once_is_answered_as_enumeration_does(problem: Problem, data: st.DataObject) -> None:
     pytest.importorskip("pysat")
     asked, world, found = solutions(problem)
