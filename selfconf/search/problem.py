@@ -342,8 +342,9 @@ class Problem:
         found: dict[IRI, Issuing] = defaultdict(lambda: defaultdict(list))
         for position, role in enumerate(playing):
             for candidate in role:
-                served = [self.hierarchy.served(output.signals) for output in candidate.profile.outputs]
-                for signal in wanted if () in served else wanted.intersection(chain.from_iterable(served)):
+                types = [output.signals for output in candidate.profile.outputs]
+                served = chain.from_iterable(map(self.hierarchy.served, types))
+                for signal in wanted if () in types else wanted.intersection(served):
                     found[signal][position].append(candidate)
         return found
 

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from selfconf.model.configuration import Configuration
-from selfconf.model.profile import Ports
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.profile import Output, Ports
+from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
 from tests.search.oracle import World
-from tests.search.worlds import component, problem
+from tests.search.worlds import component, iri, problem
 
 SENSORS = [component("gps", outputs="p:Pose"), component("skirt", outputs="b:Bump")]
 
@@ -67,3 +71,12 @@ def test_a_further_candidate_joins_only_if_it_feeds_or_is_fed() -> None:
     played = [[one.short for one in role.components] for role in answer.assignments]
     assert played == [["useful"], ["cap"], ["a", "b"]]  # of a role in no interaction that is not asked
     assert answer == World(given_.task, given_.partition, given_.hierarchy).first()
+
+
+@pytest.mark.parametrize("hierarchy", [NOTHING_ABOVE, Hierarchy([(iri("Pose"), iri("Place"))])])
+def test_an_output_without_a_type_that_is_named_feeds_under_every_hierarchy(hierarchy: Hierarchy) -> None:
+    source = replace(component("a"), ports=Ports((), (Output("o", ()),)))
+    plain = problem({"source": [source], "sink": [component("b", "i:Pose")]}, "source.o>sink.i")
+    answer = first.search(Problem(plain.task, plain.partition, hierarchy))
+    assert isinstance(answer, Configuration)
+    assert [(one.output, one.input) for one in answer.connections] == [("o", "i")]
