@@ -144,7 +144,7 @@ def test_another_unit_of_one_dimension_is_near_and_one_of_another_dimension_is_l
     [
         ("sh:property [ sh:path ( sc:rate sc:value ) ; sh:minInclusive 5 ]", "its rate.value is 3, not at least 5"),
         ("sh:property [ sh:path sc:name ; sh:lessThan sc:name ]", 'its name is "o", not less than its name'),
-        ("sh:closed true", "it violates: it does not conform"),
+        ("sh:property [ sh:path sc:name ; sh:disjoint sc:name ]", "it violates: it does not conform"),
     ],
 )
 def test_of_an_output_that_is_not_accepted_it_is_told_why(shape: str, said: str) -> None:

@@ -160,7 +160,7 @@ class OutputShape:
         for component, nodes in own.items():
             # What another component says is not seen, so that nobody judges others.
             data = to_rdflib(seen.triples(component))
-            wrong = violations(data, shapes, _SHAPE, list(nodes.values()), "sc:accepts")
+            wrong = violations(data, shapes, _SHAPE, list(nodes.values()), "sc:accepts", "the shape")
             found |= {port for port, node in nodes.items() if node not in wrong}
             reasons += [one for some in wrong.values() for one in some]
             for port, node in nodes.items():

@@ -13,8 +13,9 @@ from collections.abc import Iterable
 import pyoxigraph as ox
 
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES
 from selfconf.rdf.sparql import fault
-from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import FIRST, NIL, SH, XSD
 
 
@@ -32,6 +33,14 @@ LITERAL = COUNTS | SWITCHES | LIMITS | _terms("pattern", "flags")
 NODES = _terms("node", "not", "property", "qualifiedValueShape", "sparql")
 NODE_KINDS = _terms("IRI", "BlankNode", "Literal", "BlankNodeOrIRI", "BlankNodeOrLiteral", "IRIOrLiteral")
 ONLY_WITH_A_PATH = _terms("minCount", "maxCount", "uniqueLang", "lessThan", "lessThanOrEquals", "qualifiedValueShape")
+BESIDES: dict[IRI, tuple[IRI, ...]] = {
+    SH.qualifiedValueShape: (SH.qualifiedMinCount, SH.qualifiedMaxCount),
+    SH.qualifiedMinCount: (SH.qualifiedValueShape,),
+    SH.qualifiedMaxCount: (SH.qualifiedValueShape,),
+    SH.qualifiedValueShapesDisjoint: (SH.qualifiedValueShape,),
+    SH.ignoredProperties: (SH.closed,),
+}
+"""What says nothing without one of others; pySHACL judges no shape with it."""
 PATH_FORMS = _terms("inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
 """What leads from a path in brackets to the path that it is made of; an alternative leads to a list of paths."""
 DEEPEST_PATH = 50
@@ -43,6 +52,8 @@ WANTED: dict[IRI, str] = {
     **dict.fromkeys(COUNTS, "a whole number"),
     **dict.fromkeys(SWITCHES, "true or false"),
     **dict.fromkeys(LISTS, "a list in parentheses"),
+    **dict.fromkeys(LISTS_OF_SHAPES, "a list in parentheses, of one shape at least"),
+    SH.languageIn: "a list in parentheses, of language tags",
     **dict.fromkeys(NAMES, "an IRI"),
     **dict.fromkeys(LIMITS, "a literal"),
     **dict.fromkeys(NODES, "a shape, not a literal"),
@@ -64,12 +75,31 @@ def unfit(predicate: IRI) -> str:
 def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[Term]) -> tuple[Triple, str] | None:
     """The first statement whose value cannot stand where it does, and a sentence; `variables` may stand anywhere."""
     for triple in triples:
-        _, predicate, value = triple
-        if predicate not in WANTED or value in variables:
+        shape, predicate, value = triple
+        if value in variables:
             continue
         query = _refused(document, value) if predicate == SH.sparql else None
-        if query is not None or not _fits(document, predicate, value):
+        if query is not None or (predicate in WANTED and not _fits(document, predicate, value)):
             return query or triple, unfit(predicate).rstrip(".")
+        lacking = _lacking(document, shape, predicate)
+        if lacking is not None:
+            return triple, lacking
+    return None
+
+
+def of_values(predicate: IRI) -> str:
+    """A sentence, without its full stop, about a property of SHACL in a shape that has no path."""
+    word = predicate.short
+    return f"sh:{word} is asked of the values of a property: write sh:property [ sh:path ... ; sh:{word} ... ]"
+
+
+def _lacking(document: Document, shape: Node, predicate: IRI) -> str | None:
+    """What a shape does not say that it has to say beside one of SHACL's properties."""
+    if predicate in ONLY_WITH_A_PATH and not document.values(shape, SH.path):
+        return of_values(predicate)
+    beside = BESIDES.get(predicate, ())
+    if beside and not any(document.values(shape, one) for one in beside):
+        return f"Beside sh:{predicate.short} stands {' or '.join(f'sh:{one.short}' for one in beside)}"
     return None
 
 
@@ -81,7 +111,7 @@ def _fits(document: Document, predicate: IRI, value: Term) -> bool:
     if predicate in SWITCHES:
         return literal is not None and literal.datatype == XSD.boolean
     if predicate in LISTS:
-        return value == NIL or document.value(value, FIRST) is not None
+        return _is_list(document, predicate, value)
     if predicate in NAMES:
         return isinstance(value, IRI)
     if predicate in LIMITS:
@@ -89,8 +119,17 @@ def _fits(document: Document, predicate: IRI, value: Term) -> bool:
     if predicate == SH.nodeKind:
         return value in NODE_KINDS
     if predicate == SH.pattern:
-        return literal is not None and _compiles(literal.lexical)
+        return literal is not None and literal.datatype == XSD.string and _compiles(literal.lexical)
     return literal is None and _fitting_node(document, predicate, value)
+
+
+def _is_list(document: Document, predicate: IRI, value: Term) -> bool:
+    """Whether a term is a list that may be the value of one of SHACL's properties."""
+    if value == NIL:
+        return predicate not in LISTS_OF_SHAPES
+    members = document.items(value) if predicate == SH.languageIn else ()
+    tags = all(isinstance(member, Literal) and member.datatype == XSD.string for member in members)
+    return document.value(value, FIRST) is not None and tags
 
 
 def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:

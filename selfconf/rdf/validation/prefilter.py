@@ -113,6 +113,7 @@ def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.
     found.clear = (
         found.clear
         and SC.template not in found.used  # a composite has that or a command
+        and SC.accepts not in found.used  # a shape that says nothing is none
         and all(_harmless(properties) and advertisements.rated(properties) for properties in statements.values())
         and all(advertisements.clear(component) for component in found.components)
         and _owned(statements)

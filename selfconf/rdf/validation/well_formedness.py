@@ -26,7 +26,7 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
 from selfconf.rdf.positions import Positions
-from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, unfit
+from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, of_values, unfit
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.vocabulary import SC
@@ -133,9 +133,7 @@ def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, s
         statement = positions.triples.get((focus, predicate, value))
         if statement and isinstance(predicate, URIRef) and IRI(predicate) in ONLY_WITH_A_PATH:
             word = predicate.removeprefix(str(SH))
-            message = (
-                f"sh:{word} is asked of the values of a property: write sh:property [ sh:path ... ; sh:{word} ... ]"
-            )
+            message = of_values(IRI(predicate))
             instead = f"; how many play a role is sc:{word}" if word in ("minCount", "maxCount") else ""
             return statement.predicate, f"{message}{instead}."
     return offset, ILL_FORMED

@@ -21,6 +21,9 @@ from tests.lab import PREFIXES, iri
         ("sh:nodeKind :Kind", "nodeKind"),
         ("sh:property [ sh:class :A ]", "property"),
         ("sh:pattern '('", "pattern"),
+        ("sh:pattern 3", "pattern"),
+        ("sh:or ( )", "or"),
+        ("sh:languageIn ( :en )", "languageIn"),
         ("sh:node 'x'", "node"),
     ],
 )
@@ -30,6 +33,26 @@ def test_a_value_that_cannot_stand_there_is_named_with_its_statement(said: str, 
     assert found is not None
     assert found[0][:2] == (iri("r"), SH[predicate])
     assert found[1] == unfit(SH[predicate]).rstrip(".")
+
+
+@pytest.mark.parametrize(
+    ("said", "sentence"),
+    [
+        ("sh:minCount 1", "sh:minCount is asked of the values of a property: write"),
+        ("sh:not [ sh:lessThan :b ]", "sh:lessThan is asked of the values of a property: write"),
+        ("sh:path :a ; sh:qualifiedMinCount 1", "Beside sh:qualifiedMinCount stands sh:qualifiedValueShape"),
+        (
+            "sh:path :a ; sh:qualifiedValueShape [ sh:class :A ]",
+            "Beside sh:qualifiedValueShape stands sh:qualifiedMinCount or sh:qualifiedMaxCount",
+        ),
+        ("sh:ignoredProperties ( :a )", "Beside sh:ignoredProperties stands sh:closed"),
+    ],
+)
+def test_what_a_shape_has_to_say_beside_a_statement_is_named(said: str, sentence: str) -> None:
+    document = parse(f"{PREFIXES}:r {said} .", "r.ttl")
+    found = misfit(document, list(document.triples()), frozenset())
+    assert found is not None
+    assert found[1].startswith(sentence)
 
 
 def test_of_a_constraint_in_sparql_the_query_is_named() -> None:

@@ -96,6 +96,12 @@ def test_a_good_advertisement_is_cleared() -> None:
     assert screened.components == ["https://example.org/home#cap"]
 
 
+def test_an_input_that_accepts_what_says_nothing_is_not_cleared() -> None:
+    nothing = ':b a sc:Component, :Cap ; sc:hasInput [ sc:name "i" ; sc:signalType :T ; sc:accepts [ ] ] .'
+    assert prefilter((HEAD + nothing.replace(" ; sc:accepts [ ]", "")).encode()).clear
+    assert not prefilter((HEAD + nothing).encode()).clear
+
+
 @pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "bad").glob("*.ttl")), ids=lambda path: path.stem)
 def test_no_file_that_breaks_a_shape_is_cleared(path: Path) -> None:
     if any(f"[SC-{letter}" in path.read_text("utf-8").partition("\n")[0] for letter in "STAKCO"):
