@@ -16,7 +16,7 @@ from tests.faults.invariants import ENDS, STEPS
 from tests.faults.replay import account, played, shrink
 from tests.faults.script import KINDS, Action, Script, write
 
-HISTORIES = 10_000 if NIGHTLY else examples(300)
+HISTORIES = 10_000 if NIGHTLY else examples(750)  # 300 for every push
 BATCH = 20
 NOT_YET: tuple[str, ...] = ()
 """Kinds of faults that the programs do not stand yet."""
