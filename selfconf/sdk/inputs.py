@@ -47,6 +47,8 @@ BEGINNING = 20.0
 """Seconds that an output may take to issue its first signal: its component may have to be started by its site."""
 JUST_COME = 0.5
 """Seconds for which the newest signal of an output that stood by counts when the output becomes an input's own."""
+UNSEEN = 1.0
+"""Seconds until the component of an output has to have shown that it lives, unless the output issues something."""
 HANDOVER = 2.0
 """Seconds for which an input follows an output that is to be let go of, while the new one issues nothing."""
 HANDOVER_CHECK = 0.01
@@ -308,6 +310,7 @@ class InputSubscription:
             return
         self._queue.keep(1 if self.heard else 0)
         self.muted = False
+        self._bus.later(UNSEEN, partial(self._look_for_life, self._bus.now()))
         self._expect()
         if self._queue:
             self._code.signal(self._read)
@@ -390,6 +393,11 @@ class InputSubscription:
         self._lives.discard(key)
         if not self._lives:
             self._bus.later(0.0, partial(self._lose, self._heard_at))
+
+    def _look_for_life(self, began: float) -> None:
+        """An output that promises no rate is lost as well if nothing shows that its component lives, or is in reach."""
+        if not self._ended and not self._lives and self._heard_at < began:
+            self._lose(self._heard_at)
 
     def _failed(self, sample: Sample) -> None:
         try:

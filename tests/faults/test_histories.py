@@ -46,6 +46,7 @@ def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
         pytest.param(103267, COMPOSED, id="who calls from inside is told while the task outside looks anew"),
         pytest.param(104138, PAPER, id="a task that waits looks again at the end, with slow components"),
         pytest.param(403221, COMPOSED, id="what was frozen goes on, after another life of it was released"),
+        pytest.param(501893, COMPOSED, id="what an input follows was never in reach, and promises no rate"),
         pytest.param(408769, COMPOSED, id="an inside that has come to rest hears late that a component is released"),
         pytest.param(408360, PAPER, id="a site is back while the others are asked, before lives are followed"),
         pytest.param(403772, PAPER, id="a site is cut off after its answer, while another has not answered"),

@@ -16,7 +16,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Stamp, Wire
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.inputs import BEGINNING, JUST_COME, PATIENCE, InputEvents, Inputs
+from selfconf.sdk.inputs import BEGINNING, JUST_COME, PATIENCE, UNSEEN, InputEvents, Inputs
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.signal_queue import EVENTS
 from selfconf.sdk.supervision import GRACE
@@ -199,6 +199,18 @@ def test_an_input_that_has_lost_its_only_source_says_so_and_again_when_there_is_
     stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(0.1)
     assert stage.recorder.said[2:] == [("unfed", "position"), ("fed", "position"), ("position", 2)]
+
+
+def test_an_input_whose_source_was_never_in_reach_says_so_and_is_fed_when_it_is() -> None:
+    stage = Stage(Watchful())
+    stage.call(follow())
+    stage.let_pass(UNSEEN / 2)
+    assert stage.recorder.said == [("started",)]
+    stage.let_pass(UNSEEN)
+    assert stage.recorder.said == [("started",), ("unfed", "position")]
+    stage.neighbour().component.emit("pose", 1)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[2:] == [("fed", "position"), ("position", 1)]
 
 
 def test_an_input_that_follows_two_outputs_is_fed_while_one_of_them_is_left() -> None:
