@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.template import Interaction, Role
-from selfconf.model.term import IRI, Literal
+from selfconf.model.term import IRI, STRING, Literal
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
@@ -70,7 +70,12 @@ class _InteractionReader(DocumentReader):
         values = self.document.values(node, predicate)
         if not values:
             return None
-        if len(values) > 1 or not isinstance(values[0], Literal) or not values[0].lexical:
+        if (
+            len(values) > 1
+            or not isinstance(value := values[0], Literal)
+            or value.datatype != STRING
+            or not value.lexical
+        ):
             problem = f"sc:{predicate.short} of an interaction is the name of one port, a string"
             raise self.mistake(problem, node, predicate, values[-1])
-        return values[0].lexical
+        return value.lexical

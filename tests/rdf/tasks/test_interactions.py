@@ -62,6 +62,8 @@ def test_an_interaction_between_the_roles_of_another_template_is_passed_over() -
         ("[] a sc:Interaction ; sc:from :a ; sc:to :b .", r"speaks of .*a.*, which is no role of the template"),
         ("[] sc:from :eye ; sc:to :mind .", "is a sc:Interaction; say so with its type"),
         (f"{LONG} ; sc:output :image .", "sc:output of an interaction is the name of one port"),
+        (f"{LONG} ; sc:input 3 .", "sc:input of an interaction is the name of one port"),
+        (f'{LONG} ; sc:output "bild"@de .', "sc:output of an interaction is the name of one port"),
         (f'{LONG} ; sc:input "" .', "sc:input of an interaction is the name of one port"),
         (f'{LONG} ; sc:output "look()" ; sc:input "view" .', r"or an operation with an operation; .* end in \(\)"),
         (f'{LONG} ; sc:input "left" , "right" .', "sc:input of an interaction is the name of one port"),
