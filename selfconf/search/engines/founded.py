@@ -117,9 +117,14 @@ class FoundedSolver(ClauseSolver):
             if self.holds(literal):
                 reach.add(literal)
         unmet = [(need, condition) for need, condition in self._asked() if need not in reach.met]
+        spent = 0
         for need, condition in dict(unmet).items():
             self.add([*condition, *reach.without(need)])
-        budget.spend(reach.looks // INPUTS_PER_STEP)
+            steps = reach.looks // INPUTS_PER_STEP
+            budget.spend(steps - spent)
+            spent = steps
+            if budget.steps == 0:
+                break  # one is enough to exclude the model, and where there are many recruits each takes its time
         return bool(unmet)
 
     def _asked(self) -> Iterator[tuple[int, tuple[int, ...]]]:
