@@ -14,6 +14,8 @@ MANY_VALUES = 10_000
 """From how many new values on it is worth asking what is frozen, which takes longer the more that is."""
 MANY_COMPONENTS = 1_000
 """From how many components on it is worth asking what is frozen."""
+SELDOM = 100_000
+"""After how many new values there is a look at them, while many are made of which most are kept."""
 
 
 @contextmanager
@@ -33,12 +35,15 @@ def collector_at_rest() -> Iterator[None]:
 
 @contextmanager
 def collector_looking_at_new(components: int) -> Iterator[None]:
-    """Garbage collection of what is made meanwhile alone, where many components are there: they are not looked at."""
+    """Garbage collection of what is made meanwhile alone, and seldom, where many components are there."""
     if components < MANY_COMPONENTS or gc.get_freeze_count():
         yield
         return
+    often, *rounds = gc.get_threshold()
+    gc.set_threshold(max(often, SELDOM) if often else often, *rounds)  # 0 says never
     gc.freeze()
     try:
         yield
     finally:
         gc.unfreeze()
+        gc.set_threshold(often, *rounds)

@@ -121,11 +121,10 @@ class Problem:
         found: list[Set[WantedSignal]] = [frozenset()] * len(self.roles)
         if recruiting and self.partition.recruits:
             outputs = {output for some in self.candidates for c in some for output in c.profile.outputs}
-            usable = self.supply.usable(outputs)
+            issued = self.supply.issued(self.supply.usable(outputs))
             for role in recruiting:
-                issued = self.supply.issued(usable, role)
                 wanted = {port.wanted for c in self.candidates[role] for port in c.profile.required}
-                found[role] = frozenset(filter(issued.serves, wanted))
+                found[role] = frozenset(signal for signal in wanted if issued.serves(signal, role))
         return tuple(found)
 
     def _open(self, variable: Variable) -> int:
@@ -398,12 +397,12 @@ class _Extension:
         """Extend what plays the roles, and return the values left to the variables."""
         # Ascending pairs are a heap already.
         self.trying = [(role, number) for role in roles for number in range(len(self.candidates[role]))]
-        while self.trying:
+        full = {role for role in roles if self._is_full(role)}
+        # Thousands may be left when the last role is full, and where those who joined are of no use, again and again.
+        while self.trying and len(full) < len(roles):
             role, number = heappop(self.trying)
-            candidate, maximum = self.candidates[role][number], self.problem.roles[role].maximum
-            if candidate.profile.component in self.taken or (
-                maximum is not None and len(self.playing[role]) >= maximum
-            ):
+            candidate = self.candidates[role][number]
+            if role in full or candidate.profile.component in self.taken:
                 continue
             narrowed = self.problem.narrowed(self.values, candidate)
             if narrowed is None:
@@ -413,10 +412,17 @@ class _Extension:
                 continue
             self.values = narrowed
             self.taken.add(candidate.profile.component)
+            if self._is_full(role):
+                full.add(role)
             if candidate.profile.outputs not in self.offered[role]:
                 self.offered[role].add(candidate.profile.outputs)
                 self._wake_sinks(role)
         return self.values
+
+    def _is_full(self, role: int) -> bool:
+        """Return whether as many play a role as may."""
+        maximum = self.problem.roles[role].maximum
+        return maximum is not None and len(self.playing[role]) >= maximum
 
     def _added(self, role: int, candidate: Candidate) -> bool:
         """Let a candidate play a role, if each of its inputs is then matched, perhaps by an output of its own."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
+from collections import Counter
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import reduce
 from heapq import heapify, heappop, heappush
@@ -24,36 +25,41 @@ from selfconf.search.reduction import (
     Option,
     ReducedProblem,
 )
+from selfconf.search.supply import Issuers
 
 UNSAID = Input("", ())
 """What a choice of suppliers is wanted for, where its number says all."""
-Suppliers = tuple[int, ...]
-"""The numbers of the recruits that could feed an input."""
 
 
-BESIDES_TYPES = Output._fields.index("unit")
-"""From which field of an output on an input may ask for what it says, besides the signal types."""
+class Suppliers:
+    """Those of whom one has to be chosen to feed an input; one object for all inputs that want the same."""
+
+    __slots__ = ("consumers", "issuers")
+
+    def __init__(self, issuers: Iterable[Issuers]) -> None:
+        self.issuers = tuple(issuers)
+        self.consumers: list[int] = []
+        """The numbers of the recruits that need one of them."""
 
 
 class UnfedInput(NamedTuple):
-    """An input that recruits have to feed."""
+    """An input of a player that recruits have to feed."""
 
     component: IRI
     port: Input
-    suppliers: tuple[int, ...]
-    """The numbers of the recruits that could."""
+    suppliers: Suppliers
 
 
 class LeastChains(NamedTuple):
-    """For choices of suppliers a short chain that ends in one of them."""
+    """For suppliers a short chain of recruits that ends in one of them."""
 
-    least: Mapping[int, int]
-    """For a choice, by identity, which recruits are in the chain; bit k is the one at place k of the order."""
+    least: Mapping[Suppliers, int]
+    """Which recruits are in the chain; bit k is the one at place k of the order."""
     order: Sequence[int]
 
     def joined(self, needs: Iterable[UnfedInput]) -> list[int]:
         """The recruits of the chains of some needs, sorted."""
-        whole = reduce(or_, (self.least[id(need.suppliers)] for need in needs), 0)
+        whole = reduce(or_, (self.least[need.suppliers] for need in needs), 0)
         return sorted(number for place, number in enumerate(self.order) if whole >> place & 1)
 
 
@@ -80,28 +86,27 @@ class RecruitChoice:
             looked_at = filter(frozenset(among).__contains__, usable)
         self._issued = problem.supply.issued(looked_at)
         self._known: dict[tuple[WantedSignal, int | None], Suppliers] = {}
+        self._served: dict[Issuers, list[Suppliers]] = {}
+        """For those who issue the same, whose suppliers they are among."""
         self._from_players: dict[WantedSignal, tuple[IRI, Output] | None] = {}
         self.wanted = list(self._wanted())
         self.needs = dict(self._needs_of_recruits())
-        """For each recruit that matters, the inputs that other recruits have to feed."""
+        """For each recruit that matters, of whom one has to be chosen to feed it, for each input no player feeds."""
         self._place = {number: at for at, number in enumerate(self.ordered(self.needs))}
         self._lacking = {number: len(needs) for number, needs in self.needs.items()}
-        self._feeds = self._needs_by_supplier()
-        self._consumers: dict[int, list[int]] = {}
-        """For each choice of suppliers, by identity, the recruits that need one of them."""
         for number, needs in self.needs.items():
-            for need in needs:
-                self._consumers.setdefault(id(need.suppliers), []).append(number)
+            for suppliers in needs:
+                suppliers.consumers.append(number)
 
     @property
     def possible(self) -> bool:
         """Whether each need of the players has a usable supplier; then each need of these has one, too."""
-        return all(need.suppliers for need in self.wanted)
+        return all(need.suppliers.issuers for need in self.wanted)
 
     @property
     def number_of_suppliers(self) -> int:
-        """How many recruits could feed each choice, all choices together."""
-        return sum(map(len, self._feeds.values()))
+        """How many recruits could feed each input, all inputs that want different together."""
+        return sum(len(one.members) for suppliers in self._known.values() for one in suppliers.issuers)
 
     def _undominated(self, ordered: Iterable[int]) -> Iterator[int]:
         """Yield of recruits in their order the first of those that need the same and issue the same for the same roles.
@@ -110,33 +115,30 @@ class RecruitChoice:
         """
         known: set[tuple[object, ...]] = set()
         for number in ordered:
-            recruit = self.recruits[number]
             needed = frozenset([port.wanted for port in self.problem.supply.required[number]])
-            issued = frozenset([(output.signals, output[BESIDES_TYPES:]) for output in recruit.profile.outputs])
-            key = needed, issued, recruit.roles
+            key = needed, frozenset(self.problem.supply.outputs(number)), self.recruits[number].roles
             if key not in known:
                 known.add(key)
                 yield number
 
-    def _suppliers(self, port: Input, role: int | None = None) -> tuple[int, ...]:
-        """The usable recruits that could feed an input, of a player of a role or of a recruit; one tuple for equals."""
-        key = port.wanted, role
-        if key not in self._known:
-            found = set(self._issued.serving(port.wanted))
-            self._known[key] = tuple(sorted(one for one in found if role is None or role in self.recruits[one].roles))
-        return self._known[key]
+    def _suppliers(self, wanted: WantedSignal, role: int | None = None) -> Suppliers:
+        """Those who could feed an input, of a player of a role or of a recruit; one object for equals."""
+        key = wanted, role
+        known = self._known.get(key)
+        if known is None:
+            known = self._known[key] = Suppliers(self._issued.serving(wanted, role))
+            for issuers in known.issuers:
+                self._served.setdefault(issuers, []).append(known)
+        return known
 
-    def _needs_by_supplier(self) -> dict[int, list[Suppliers]]:
-        """For each recruit the choices of suppliers that it is among."""
-        found: dict[int, list[Suppliers]] = {}
-        for suppliers in {id(need.suppliers): need.suppliers for need in self._every_need()}.values():
-            for number in suppliers:
-                found.setdefault(number, []).append(suppliers)
-        return found
+    def _fed_by(self, number: int) -> Iterator[Suppliers]:
+        """Yield whose suppliers a recruit is among, perhaps again."""
+        return chain.from_iterable(self._served.get(issuers, ()) for issuers in self._issued.by_recruit[number])
 
-    def _every_need(self) -> Iterator[UnfedInput]:
-        """The needs of players, then those of recruits."""
-        return chain(self.wanted, *self.needs.values())
+    def _served_by(self, issuers: Iterable[Issuers], known: Container[Suppliers]) -> list[Suppliers]:
+        """Return the suppliers, but for those known, among whom some who issue the same are."""
+        found = dict.fromkeys(chain.from_iterable(self._served.get(one, ()) for one in issuers))
+        return [suppliers for suppliers in found if suppliers not in known]
 
     def _wanted(self) -> Iterator[UnfedInput]:
         """The required inputs of players that no role feeds."""
@@ -144,24 +146,30 @@ class RecruitChoice:
         for component, (role, profile) in self.players.items():
             for port in profile.required:
                 if (component, port.name) not in fed:
-                    yield UnfedInput(component, port, self._suppliers(port, role))
+                    yield UnfedInput(component, port, self._suppliers(port.wanted, role))
 
-    def _needs_of_recruits(self) -> Iterator[tuple[int, list[UnfedInput]]]:
+    def _needs_of_recruits(self) -> Iterator[tuple[int, tuple[Suppliers, ...]]]:
         """The recruits from which a chain of suppliers leads to a player, each with what it needs of others."""
-        waiting = [number for need in self.wanted for number in need.suppliers]
-        seen = set(waiting)
-        looked_at = {id(need.suppliers) for need in self.wanted}
+        required, needs_of = self.problem.supply.required, dict[WantedSignal, tuple[Suppliers, ...]]()
+        waiting = list(dict.fromkeys(issuers for need in self.wanted for issuers in need.suppliers.issuers))
+        seen, numbers = set(waiting), set[int]()
         while waiting:
-            number = waiting.pop()
-            component = self.recruits[number].component
-            ports = [port for port in self.problem.supply.required[number] if self._source_among_players(port) is None]
-            needs = [UnfedInput(component, port, self._suppliers(port)) for port in ports]
-            yield number, needs
-            for suppliers in (need.suppliers for need in needs if id(need.suppliers) not in looked_at):
-                looked_at.add(id(suppliers))
-                more = [one for one in suppliers if one not in seen]
-                seen.update(more)
-                waiting += more
+            for number in waiting.pop().members:
+                if number in numbers:
+                    continue
+                numbers.add(number)
+                needs: list[Suppliers] = []
+                for port in required[number]:
+                    wanted = port.wanted
+                    known = needs_of.get(wanted)
+                    if known is None:
+                        fed = self._source_among_players(port) is not None
+                        known = needs_of[wanted] = () if fed else (self._suppliers(wanted),)
+                        more = [one for some in known for one in some.issuers if one not in seen]
+                        seen.update(more)
+                        waiting += more
+                    needs += known
+                yield number, tuple(dict.fromkeys(needs))
 
     def _source_among_players(self, port: Input) -> tuple[IRI, Output] | None:
         """The first output of a player that could feed an input."""
@@ -181,21 +189,20 @@ class RecruitChoice:
     def placed(self, chosen: Collection[int]) -> list[int]:
         """The chosen recruits that are fed without a cycle among them, each after those that feed it."""
         place = {number: at for at, number in enumerate(self.ordered(chosen))}
-        waiting: dict[int, list[int]] = {}
+        waiting: dict[Suppliers, list[int]] = {}
         lacking: dict[int, int] = {}
         for number in place:
-            choices = {id(need.suppliers) for need in self.needs[number]}
-            lacking[number] = len(choices)
-            for choice in choices:
-                waiting.setdefault(choice, []).append(number)
+            lacking[number] = len(self.needs[number])
+            for suppliers in self.needs[number]:
+                waiting.setdefault(suppliers, []).append(number)
         order = list(place)
         ready = [place[number] for number, count in lacking.items() if not count]
         found: list[int] = []
         while ready:
             number = order[heappop(ready)]
             found.append(number)
-            for suppliers in self._feeds.get(number, ()):
-                for fed in waiting.pop(id(suppliers), ()):
+            for suppliers in self._fed_by(number):
+                for fed in waiting.pop(suppliers, ()):
                     lacking[fed] -= 1
                     if not lacking[fed]:
                         heappush(ready, place[fed])
@@ -203,8 +210,14 @@ class RecruitChoice:
 
     def sufficient(self, chosen: Collection[int]) -> bool:
         """Whether chosen recruits feed all needs, their own included."""
-        placed = set(self.placed(chosen))
-        return len(placed) == len(chosen) and all(placed.intersection(need.suppliers) for need in self.wanted)
+        placed = self.placed(chosen)
+        issuing = self._issuing(placed)
+        return len(placed) == len(chosen) and not any(
+            issuing.isdisjoint(need.suppliers.issuers) for need in self.wanted
+        )
+
+    def _issuing(self, numbers: Iterable[int]) -> set[Issuers]:
+        return {issuers for number in numbers for issuers in self._issued.by_recruit[number]}
 
     def chain(self) -> list[int]:
         """Recruits that are enough: for each need the supplier that takes the fewest, with all that feed it in turn."""
@@ -213,12 +226,10 @@ class RecruitChoice:
     def exchanged(self, chosen: Collection[int], number: int) -> list[int] | None:
         """Recruits that are enough without one of those chosen, of which the others cost nothing; None if none are."""
         chains = self._least_chains(frozenset(chosen) - {number}, number)
-        return chains.joined(self.wanted) if all(id(need.suppliers) in chains.least for need in self.wanted) else None
+        return chains.joined(self.wanted) if all(need.suppliers in chains.least for need in self.wanted) else None
 
     def _least_chains(self, free: Set[int] = frozenset(), without: int | None = None) -> LeastChains:
-        """For choices of suppliers a short chain that ends in one of them.
-
-        For each choice of a player, and for each that is settled before them.
+        """For suppliers a short chain that ends in one of them: for those of players, and those settled before them.
 
         Its length, without those that are free, is the cost of a need; that of a recruit is the number of all in the
         chains of its needs, each counted once (the set-additive heuristic of Keyder and Geffner, ECAI 2008), by the
@@ -233,20 +244,21 @@ class RecruitChoice:
         """For recruits that are not settled, those that feed them."""
         settled = [(0, place[number], number) for number, count in lacking.items() if not count and number != without]
         heapify(settled)
-        least: dict[int, int] = {}
-        unmet = {id(need.suppliers) for need in self.wanted}
+        least: dict[Suppliers, int] = {}
+        unmet = {need.suppliers for need in self.wanted}
+        issued: set[Issuers] = set()
         while settled and unmet:
             number = heappop(settled)[2]
             itself = 1 << len(order)
             order.append(number)
             costly |= 0 if number in free else itself
             whole = feeding.pop(number, 0) | itself
-            for suppliers in self._feeds.get(number, ()):
-                if id(suppliers) in least:
-                    continue
-                least[id(suppliers)] = whole
-                unmet.discard(id(suppliers))
-                for fed in self._consumers.get(id(suppliers), ()):
+            fresh = [issuers for issuers in self._issued.by_recruit[number] if issuers not in issued]
+            issued.update(fresh)
+            for suppliers in self._served_by(fresh, least):
+                least[suppliers] = whole
+                unmet.discard(suppliers)
+                for fed in suppliers.consumers:
                     feeding[fed] = feeding.get(fed, 0) | whole
                     lacking[fed] -= 1
                     if not lacking[fed] and fed != without:
@@ -256,31 +268,39 @@ class RecruitChoice:
 
     def without_spare(self, chosen: Sequence[int]) -> list[int]:
         """Recruits without those that can be spared, the last by preference first."""
-        left, before = self.ordered(chosen), -1
+        left = dict.fromkeys(self.ordered(chosen))
+        feeds = {number: frozenset(self._fed_by(number)) for number in left}
+        feeding = Counter(chain.from_iterable(feeds.values()))
+        needed = Counter(chain((need.suppliers for need in self.wanted), *(self.needs[number] for number in left)))
+        before = -1
         # Again until nothing goes: once one is spared, those that fed it alone can be spared as well.
         while len(left) != before:
             before = len(left)
-            for number in reversed(left):
-                fewer = [other for other in left if other != number]
-                if not self._only_supplier(number, set(fewer)) and self.sufficient(fewer):
-                    left = fewer
-        return left
+            for number in reversed(list(left)):
+                own = self.needs[number]
+                if any(feeding[one] == 1 and needed[one] > (one in own) for one in feeds[number]):
+                    continue  # it alone feeds a need of a player, or of another
+                if self.sufficient([other for other in left if other != number]):
+                    del left[number]
+                    feeding.subtract(feeds[number])
+                    needed.subtract(own)
+        return list(left)
 
     def reduced(self) -> tuple[ReducedProblem, list[int]]:
         """The choice as options of a role without slots, in the order in which they are chosen, and needs of players.
 
-        The needs are the choices of suppliers, by number.
+        Each need stands for suppliers, of whom one has to be chosen.
         """
-        choices = dict.fromkeys(id(need.suppliers) for need in self._every_need())
-        number = {key: place for place, key in enumerate(choices)}
+        every = chain((need.suppliers for need in self.wanted), *self.needs.values())
+        number = {suppliers: place for place, suppliers in enumerate(dict.fromkeys(every))}
         options = [
             Option(
                 one,
                 NO_COMPONENT,
                 InterchangeabilityClass(
                     0,
-                    tuple(dict.fromkeys(number[id(need.suppliers)] for need in self.needs[one])),
-                    tuple(number[id(suppliers)] for suppliers in self._feeds.get(one, ())),
+                    tuple(number[suppliers] for suppliers in self.needs[one]),
+                    tuple(sorted({number[suppliers] for suppliers in self._fed_by(one)})),
                     (),
                     one,
                 ),
@@ -288,40 +308,34 @@ class RecruitChoice:
             for one in self.ordered(self.needs)
         ]
         needs = Needs(Need(NeedScope(0, (Feeder(0),)), UNSAID) for _ in number)
-        wanted = list(dict.fromkeys(number[id(need.suppliers)] for need in self.wanted))
+        wanted = list(dict.fromkeys(number[need.suppliers] for need in self.wanted))
         return ReducedProblem((), (tuple(options),), needs, ()), wanted
-
-    def _only_supplier(self, number: int, others: set[int]) -> bool:
-        """Whether a need of a player, or of others that are chosen, has no supplier but this recruit."""
-        wanted = {id(need.suppliers) for need in self.wanted}
-        return any(
-            others.isdisjoint(suppliers)
-            and (id(suppliers) in wanted or not others.isdisjoint(self._consumers.get(id(suppliers), ())))
-            for suppliers in self._feeds.get(number, ())
-        )
 
     def configuration(self, chosen: Collection[int]) -> Configuration:
         """The configuration with chosen recruits; each input has the first source, players coming before recruits."""
-        placed: list[int] = []
+        placed: dict[Issuers, list[int]] = {}
         found: list[Connection] = []
-        for number in self.placed(chosen):
+        order = self.placed(chosen)
+        for number in order:
             profile = self.recruits[number].profile
             for port in self.problem.supply.required[number]:
                 source = self._source_among_players(port) or self._source(port, placed, None)
                 found.append(Connection(source[0], source[1].name, profile.component, port.name))
-            placed.append(number)
+            for issuers in self._issued.by_recruit[number]:
+                placed.setdefault(issuers, []).append(number)
         for need in self.wanted:
             role, _ = self.players[need.component]
             component, output = self._source(need.port, placed, role)
             found.append(Connection(component, output.name, need.component, need.port.name))
-        recruits = tuple(self.recruits[number].component for number in sorted(placed))
+        recruits = tuple(self.recruits[number].component for number in sorted(order))
         whole = replace(self.plain, recruits=recruits)
         return replace(whole, connections=ordered_connections((*self.plain.connections, *found), whole.components))
 
-    def _source(self, port: Input, placed: Sequence[int], role: int | None) -> tuple[IRI, Output]:
+    def _source(self, port: Input, placed: Mapping[Issuers, Sequence[int]], role: int | None) -> tuple[IRI, Output]:
         """The first recruit of those placed, by preference, that feeds an input, with its output."""
-        suppliers = set(self._suppliers(port, role))
-        profile = self.recruits[self.ordered(suppliers.intersection(placed))[0]].profile
+        serving = self._suppliers(port.wanted, role).issuers
+        first = self.ordered(number for issuers in serving for number in placed.get(issuers, ()))[0]
+        profile = self.recruits[first].profile
         output = next(output for output in profile.outputs if self.problem.hierarchy.pairs(output, port))
         return profile.component, output
 

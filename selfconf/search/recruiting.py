@@ -5,11 +5,11 @@ them, and each required input of a recruit a source among recruits and players, 
 as possible, and of equally few the first by preference and IRI. Whether there are any is a least fixpoint (`supply`);
 the fewest are NP-hard to find, as a minimal set cover is (Karp, 1972).
 
-*How.* Recruits that matter are those that are usable and lead to a need. A literal for each says that it is chosen; an
-input implies one of those that could feed it. The clauses allow cycles, so each answer is checked by forward chaining,
-and a set of chosen recruits that only feed each other is excluded by its loop formula: one of the set is fed from
-outside of it (Lin and Zhao, 2004). The bound on their number is lowered until there is no answer. Without a solver
-library, or where the steps end, the answer is what is left of a chain of suppliers once none of them can be spared.
+*How.* Recruits that matter are those that are usable and lead to a need. A short chain of suppliers for each need is a
+first answer (`recruit_choice`), which local search makes shorter (`fewest_recruits`). Then clauses prove how few are
+enough: a literal for each recruit says that it is chosen, an input implies one of those that could feed it, and a set
+of chosen recruits that only feed each other is excluded by a landmark (`engines.founded`). Without a solver library, or
+where the steps end, the answer is what is left once none of them can be spared.
 """
 
 from __future__ import annotations

@@ -8,7 +8,6 @@ recruits never feeds itself. Forward chaining finds it in time linear in the por
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 from itertools import chain
 
 from selfconf.model.hierarchy import Hierarchy
@@ -16,34 +15,54 @@ from selfconf.model.partition import Recruit
 from selfconf.model.profile import Output, WantedSignal
 from selfconf.model.term import IRI
 
+NO_ROLES: frozenset[int] = frozenset()
+"""Of what players issue: recruits alone supply the players of a role."""
 
-@dataclass(slots=True)
+
+class Issuers:
+    """The recruits that issue outputs among which no input tells a difference, and may supply the same roles."""
+
+    __slots__ = ("members", "output", "roles")
+
+    def __init__(self, output: Output, roles: frozenset[int]) -> None:
+        self.output, self.roles = output, roles
+        self.members: list[int] = []
+        """Their numbers."""
+
+
 class Issued:
-    """The outputs of recruits by each signal that they serve, found once for all outputs of equal types."""
+    """What some recruits issue: a hundred thousand of them differ in far fewer outputs than they have."""
 
-    hierarchy: Hierarchy
-    _by_types: dict[tuple[IRI, ...], list[tuple[int, Output]]] = field(default_factory=dict)
-    _by_signal: dict[IRI, list[list[tuple[int, Output]]]] = field(default_factory=dict)
+    def __init__(self, hierarchy: Hierarchy) -> None:
+        self.hierarchy = hierarchy
+        self.by_recruit: dict[int, tuple[Issuers, ...]] = {}
+        """For each recruit, by number, those among whom its outputs make it."""
+        self._known: dict[tuple[Output, frozenset[int]], Issuers] = {}
+        self._by_signal: dict[IRI, list[Issuers]] = {}
 
-    def add(self, number: int, outputs: Iterable[Output]) -> None:
-        """Note outputs of a recruit, given by its number."""
-        for output in outputs:
-            known = self._by_types.get(output.signals)
-            if known is None:
-                known = self._by_types[output.signals] = []
-                for signal in self.hierarchy.served(output.signals):
-                    self._by_signal.setdefault(signal, []).append(known)
-            known.append((number, output))
+    def add(self, number: int, outputs: Iterable[Output], roles: frozenset[int] = NO_ROLES) -> None:
+        """Note what a recruit, given by its number, issues for the players of some roles and for other recruits."""
+        among = tuple([self._known.get((output, roles)) or self._first(output, roles) for output in outputs])
+        for issuers in among:
+            issuers.members.append(number)
+        self.by_recruit[number] = among
 
-    def serving(self, wanted: WantedSignal) -> Iterator[int]:
-        """Yield the numbers of the recruits with an output that serves an input which wants this, perhaps again."""
+    def _first(self, output: Output, roles: frozenset[int]) -> Issuers:
+        found = self._known[output, roles] = Issuers(output, roles)
+        for signal in self.hierarchy.served(output.signals):
+            self._by_signal.setdefault(signal, []).append(found)
+        return found
+
+    def serving(self, wanted: WantedSignal, role: int | None = None) -> Iterator[Issuers]:
+        """Yield those whose outputs serve an input that wants this, of a player of a role if one is given."""
         signals, condition = wanted
-        for some in chain.from_iterable(self._by_signal.get(signal, ()) for signal in signals):
-            yield from (number for number, output in some if condition is None or condition.met_by(output))
+        for issuers in dict.fromkeys(chain.from_iterable(self._by_signal.get(signal, ()) for signal in signals)):
+            if (role is None or role in issuers.roles) and (condition is None or condition.met_by(issuers.output)):
+                yield issuers
 
-    def serves(self, wanted: WantedSignal) -> bool:
-        """Return whether some output serves an input that wants this."""
-        return any(True for _ in self.serving(wanted))
+    def serves(self, wanted: WantedSignal, role: int | None = None) -> bool:
+        """Return whether some output serves an input that wants this, of a player of a role if one is given."""
+        return any(True for _ in self.serving(wanted, role))
 
 
 class Supply:
@@ -60,6 +79,9 @@ class Supply:
         """The inputs of each recruit that must be fed."""
         self._usable: dict[frozenset[Output], list[int]] = {}
         """What was answered: a search asks again beside the players that it chose, who are mostly all candidates."""
+        self._outputs: dict[int, tuple[Output, ...]] = {}
+        self._alike: dict[Output, Output] = {}
+        """One of all outputs among which no input tells a difference."""
         self._waiting: dict[IRI, list[tuple[int, int]]] = {}
         """For each signal the inputs that wait for it: the number of the recruit, and that of the required input."""
         self._asking: dict[IRI, list[tuple[int, int]]] = {}
@@ -120,11 +142,18 @@ class Supply:
                 if condition is None or condition.met_by(output):
                     yield number, place
 
-    def issued(self, numbers: Iterable[int], role: int | None = None) -> Issued:
-        """Return what some recruits issue; with a role, those that may supply it."""
+    def issued(self, numbers: Iterable[int]) -> Issued:
+        """Return what some recruits issue."""
         found = Issued(self.hierarchy)
         for number in numbers:
-            recruit = self.recruits[number]
-            if role is None or role in recruit.roles:
-                found.add(number, recruit.profile.outputs)
+            found.add(number, self.outputs(number), self.recruits[number].roles)
         return found
+
+    def outputs(self, number: int) -> tuple[Output, ...]:
+        """Return the outputs of a recruit, each as one object with all among which no input tells a difference."""
+        known = self._outputs.get(number)
+        if known is None:
+            plain = [output._replace(name="", rate=None) for output in self.recruits[number].profile.outputs]
+            known = tuple(dict.fromkeys([self._alike.setdefault(output, output) for output in plain]))
+            self._outputs[number] = known
+        return known

@@ -7,7 +7,7 @@ import weakref
 
 import pytest
 
-from selfconf.api.collector import MANY_COMPONENTS, collector_at_rest, collector_looking_at_new
+from selfconf.api.collector import MANY_COMPONENTS, SELDOM, collector_at_rest, collector_looking_at_new
 
 
 class Loop:
@@ -32,7 +32,9 @@ def test_the_collector_rests_and_is_as_it_was_afterwards() -> None:
 def test_what_was_there_is_looked_at_once_all_is_over() -> None:
     loop = Loop()
     gone = weakref.ref(loop)
+    often = gc.get_threshold()
     with collector_looking_at_new(MANY_COMPONENTS):
+        assert gc.get_threshold()[0] >= SELDOM
         new = weakref.ref(Loop())
         del loop
         gc.collect()
@@ -41,6 +43,7 @@ def test_what_was_there_is_looked_at_once_all_is_over() -> None:
     gc.collect()
     assert gone() is None
     assert not gc.get_freeze_count()
+    assert gc.get_threshold() == often
 
 
 def test_what_was_there_is_looked_at_where_there_are_few_components() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from heapq import heappop
 
 import pytest
 
@@ -71,6 +72,20 @@ def test_a_further_candidate_joins_only_if_it_feeds_or_is_fed() -> None:
     played = [[one.short for one in role.components] for role in answer.assignments]
     assert played == [["useful"], ["cap"], ["a", "b"]]  # of a role in no interaction that is not asked
     assert answer == World(given_.task, given_.partition, given_.hierarchy).first()
+
+
+def test_once_all_roles_are_full_no_further_candidate_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Each extra that joins is of no use, and leaves its place to the next: only the last one feeds the cap.
+    extras = [*(component(f"idle{k:03}", outputs="b:Bump") for k in range(200)), component("useful", outputs="p:Pose")]
+    cap = component("cap", "p:Pose")
+    eased = replace(cap, ports=Ports((cap.inputs[0]._replace(optional=True),)))
+    given_ = problem({"extra": extras, "control": [eased]}, "extra>control", {"extra": (0, 1)})
+    looked_at = []
+    monkeypatch.setattr("selfconf.search.problem.heappop", lambda heap: looked_at.append(0) or heappop(heap))
+    answer = first.search(given_)
+    assert isinstance(answer, Configuration)
+    assert [one.short for one in answer.assignments[0].components] == ["useful"]
+    assert len(looked_at) <= 2 * len(extras)
 
 
 @pytest.mark.parametrize("hierarchy", [NOTHING_ABOVE, Hierarchy([(iri("Pose"), iri("Place"))])])

@@ -178,18 +178,54 @@ class Reach:
         self._lacking |= {literal: len(option.kind.needs) for literal, option in every[players:]}
         self._needing = needing
         self._added: set[int] = set()
+        self._fatal: set[int] = set()
+        """The needs that must not be met, and those by each of which one of these would be."""
         self.met: set[int] = set()
         self.looks = 0
         """How many inputs of recruits were looked at."""
 
-    def add(self, literal: int, unless: int = -1) -> bool:
-        """Add an option, unless a need were met then; return whether it was added."""
+    def add(self, literal: int) -> bool:
+        """Add an option, unless a fatal need were met then; return whether it was added."""
+        if not self._lacking[literal] and not self._meet(self._supports[literal]):
+            return False
+        self._added.add(literal)
+        return True
+
+    def without(self, need: int) -> list[int]:
+        """Return options, one of which has to be added for a need to be met: all others are not enough."""
+        reach = copy(self)
+        reach._lacking, reach._added, reach.met = dict(self._lacking), set(self._added), set(self.met)
+        reach._fatal = {need}
+        found = [literal for literal in self._supports if literal not in reach._added and not reach._admitted(literal)]
+        self.looks = reach.looks
+        return found
+
+    def _admitted(self, literal: int) -> bool:
+        """Add an option, or learn which of the needs that it supports are fatal alone; return whether it was added.
+
+        As more is added, what is fatal stays so: each such need is learned once, however many options support it.
+        """
+        if self.add(literal):
+            return True
+        supports = self._supports[literal]
+        if self._fatal.isdisjoint(supports):
+            fresh = [need for need in supports if need not in self.met]
+            self._fatal.update(need for need in fresh if len(fresh) == 1 or not self._meet((need,), trial=True))
+        return False
+
+    def _meet(self, needs: Sequence[int], trial: bool = False) -> bool:
+        """Meet needs, and all that follows from what was added; if that would be fatal, or for a trial, undo it.
+
+        Return whether it is not fatal.
+        """
         met: list[int] = []
         fed: list[int] = []
-        self._added.add(literal)
-        waiting = [literal] if not self._lacking[literal] else []
-        while waiting and unless not in self.met:
-            for need in self._supports[waiting.pop()]:
+        waiting = [needs]
+        fatal = False
+        while waiting and not fatal:
+            supported = waiting.pop()
+            fatal = not self._fatal.isdisjoint(supported)
+            for need in () if fatal else supported:
                 if need in self.met:
                     continue
                 self.met.add(need)
@@ -198,20 +234,10 @@ class Reach:
                     self._lacking[other] -= 1
                     fed.append(other)
                     if not self._lacking[other] and other in self._added:
-                        waiting.append(other)
+                        waiting.append(self._supports[other])
         self.looks += len(fed)
-        if unless not in self.met:
-            return True
-        self._added.remove(literal)
-        self.met.difference_update(met)
-        for other in fed:
-            self._lacking[other] += 1
-        return False
-
-    def without(self, need: int) -> list[int]:
-        """Return options, one of which has to be added for a need to be met: all others are not enough."""
-        reach = copy(self)
-        reach._lacking, reach._added, reach.met = dict(self._lacking), set(self._added), set(self.met)
-        found = [literal for literal in self._supports if literal not in reach._added and not reach.add(literal, need)]
-        self.looks = reach.looks
-        return found
+        if fatal or trial:
+            self.met.difference_update(met)
+            for other in fed:
+                self._lacking[other] += 1
+        return not fatal

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
+from random import Random
+
 import pytest
 
 from selfconf.model.profile import Profile
 from selfconf.search.budget import Budget
 from selfconf.search.engines import FoundedSolver
+from selfconf.search.engines.founded import Reach
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import founded
+from selfconf.search.reduction import InterchangeabilityClass, Option
 from selfconf.search.reduction import with_recruits as reduced_with_recruits
 from tests.search.test_recruiting import with_recruits
 from tests.search.worlds import component, problem
@@ -62,3 +67,35 @@ def test_a_component_is_a_player_or_a_recruit() -> None:
     given = with_recruits(problem({"user": [component("user", "s:S")], "job": [supplier]}), supplier)
     with solver(given) as clauses:
         assert clauses.solve((), Budget()) is False
+
+
+def met_by(every: Sequence[tuple[int, Option]], literals: Collection[int]) -> set[int]:
+    """The needs that some options meet, of which the first, a player, waits for nothing: looked for again and again."""
+    met, before = set[int](), -1
+    while len(met) != before:
+        before = len(met)
+        for literal, option in every:
+            if literal in literals and (literal == 1 or met.issuperset(option.kind.needs)):
+                met.update(option.kind.supports)
+    return met
+
+
+@pytest.mark.parametrize("seed", range(300))
+def test_all_options_but_those_of_a_landmark_are_not_enough_and_each_of_these_would_be(seed: int) -> None:
+    rng = Random(seed)
+    every = []
+    for number in range(10):
+        needs, supports = (tuple(sorted(rng.sample(range(8), rng.randint(least, 2 + least)))) for least in (0, 1))
+        every.append((number + 1, Option(number, 0, InterchangeabilityClass(0, needs, supports, (), number))))
+    needing = {need: [literal for literal, option in every[1:] if need in option.kind.needs] for need in range(8)}
+    reach = Reach(every, needing, players=1)
+    chosen = rng.sample(range(1, 11), rng.randint(0, 4))
+    for literal in chosen:
+        assert reach.add(literal)
+    assert reach.met == met_by(every, chosen)
+    for need in set(range(8)) - reach.met:
+        landmark = reach.without(need)
+        others = [literal for literal, _ in every if literal not in landmark]
+        assert set(chosen).issubset(others)
+        assert need not in met_by(every, others)
+        assert all(need in met_by(every, [*others, literal]) for literal in landmark)
