@@ -391,12 +391,14 @@ def _issues(problem: Problem, role: int, need: InputFed) -> bool:
 def _fewer(problem: Problem, refused: Refusal, budget: Budget) -> Iterator[AskForFewer]:
     """Yield for each role of the conflict the largest number of components that it can ask for."""
     named = [r.role for reason in refused.reasons for r in reason.requirements if isinstance(r, RolePlayed)]
+    recruits = any(role.recruits for role in problem.roles)  # of fewer players there may be none that have recruits
     for iri in list(dict.fromkeys(named))[:MOST_ROLES]:
         role: Role = problem.task.template.role(iri)
         # No role can ask for more than its candidates: the trials begin there, and not at a million.
         enough = min(role.minimum, 1 + len(problem.candidates[problem.roles.index(role)]))
         for minimum in reversed(range(max(0, enough - TRIALS), enough)):
             fewer = AskForFewer(iri, minimum)
-            if _possible(relaxed_by(problem, fewer), budget):
+            changed = relaxed_by(problem, fewer)
+            if _possible(changed, budget) and (not recruits or possible_with_recruits(changed, RECRUIT_TRIAL_STEPS)):
                 yield fewer
                 break

@@ -223,6 +223,16 @@ def test_an_addition_names_a_value_with_which_there_are_recruits() -> None:
     assert words[0] == "add one more component for the role sonar, with robot pippi"
 
 
+def test_a_role_asks_for_so_few_that_there_are_recruits_for_them() -> None:
+    # One could be played, if it were fed; but it needs what itself alone issues.
+    given_ = problem({"drive": [component("first", "x:X", "x:X")]}, counts={"drive": (2, 2)})
+    helped = with_recruits(given_, component("first", "x:X", "x:X"))
+    refused = first.search(helped)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(helped, refused).repairs]
+    assert words == ["let the role drive be optional (sc:minCount 0)"]
+
+
 def test_additions_that_differ_in_what_they_state_are_put_in_order() -> None:
     inches = component("b", "i:S")
     port = inches.inputs[0]._replace(condition=Condition(unit=iri("IN")))
