@@ -247,12 +247,22 @@ def _idle(recruits: Sequence[IRI], connections: Sequence[Connection]) -> Iterato
 def _cycle(recruits: Sequence[IRI], connections: Sequence[Connection]) -> Iterator[str]:
     """Yield that recruits feed each other in a cycle, if they do."""
     left = set(recruits)
-    while left:
-        free = {one for one in left if not any(c.sink == one and c.source in left for c in connections)}
-        if not free:
-            yield f"the recruits {', '.join(sorted(one.short for one in left))} feed each other in a cycle"
-            return
-        left -= free
+    sources: dict[IRI, set[IRI]] = {one: set() for one in left}
+    sinks: dict[IRI, set[IRI]] = {one: set() for one in left}
+    for one in connections:
+        if one.source in left and one.sink in left:
+            sources[one.sink].add(one.source)
+            sinks[one.source].add(one.sink)
+    free = [one for one in left if not sources[one]]
+    while free:
+        source = free.pop()
+        left.remove(source)
+        for sink in sinks[source]:
+            sources[sink].remove(source)
+            if not sources[sink]:
+                free.append(sink)
+    if left:
+        yield f"the recruits {', '.join(sorted(one.short for one in left))} feed each other in a cycle"
 
 
 def _words(connection: Connection) -> str:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 import inspect
 import re
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -158,6 +160,23 @@ BADLY_RECRUITED: dict[str, dict[str, Any]] = {
         "recruits": (iri("maker"), iri("loop")),
     },
 }
+
+
+def test_of_a_long_chain_of_recruits_each_connection_is_looked_at_a_few_times() -> None:
+    class Followed(list[Connection]):
+        """Connections that count how often they are gone through."""
+
+        times = 0
+
+        def __iter__(self) -> Iterator[Connection]:
+            Followed.times += 1
+            return super().__iter__()
+
+    recruits = [iri(f"r{k:03}") for k in range(200)]
+    chain = [Connection(source, "s", sink, "s") for source, sink in pairwise(recruits)]
+    assert not list(certificate._cycle(recruits, Followed(chain)))
+    assert list(certificate._cycle(recruits, [*chain, Connection(recruits[-1], "s", recruits[0], "s")]))
+    assert Followed.times == 1
 
 
 @pytest.mark.parametrize("fault", [*BROKEN, *BADLY_RECRUITED])
