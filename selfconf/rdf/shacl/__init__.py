@@ -1,14 +1,23 @@
 """SHACL without pySHACL: constraints on single values as compiled tests, and the syntax of shapes.
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
-makes tests of the constraints that can be. `misfit`, `unfit`, `of_values`, `LITERAL`, `ONLY_WITH_A_PATH` and
-`ILL_FORMED` say what may stand as a value of SHACL's own properties. `pattern` is a regular expression that a text
-cannot make expensive; where that cannot be, it is `MatchTooCostly`.
+makes tests of the constraints that can be. `misfit`, `unfit`, `of_values`, `said_twice`, `LITERAL`, `ONLY_WITH_A_PATH`,
+`STATED_ONCE` and `ILL_FORMED` say what may stand as a value of SHACL's own properties. `pattern` is a regular
+expression that a text cannot make expensive; where that cannot be, it is `MatchTooCostly`.
 Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, pattern
-from selfconf.rdf.shacl.shape_syntax import ILL_FORMED, LITERAL, ONLY_WITH_A_PATH, misfit, of_values, unfit
+from selfconf.rdf.shacl.shape_syntax import (
+    ILL_FORMED,
+    LITERAL,
+    ONLY_WITH_A_PATH,
+    STATED_ONCE,
+    misfit,
+    of_values,
+    said_twice,
+    unfit,
+)
 from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled
 
 __all__ = [
@@ -16,6 +25,7 @@ __all__ = [
     "LITERAL",
     "ONLY_WITH_A_PATH",
     "PAIRS",
+    "STATED_ONCE",
     "MatchTooCostly",
     "PairTest",
     "ValueTest",
@@ -23,5 +33,6 @@ __all__ = [
     "misfit",
     "of_values",
     "pattern",
+    "said_twice",
     "unfit",
 ]

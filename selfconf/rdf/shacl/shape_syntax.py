@@ -41,6 +41,8 @@ BESIDES: dict[IRI, tuple[IRI, ...]] = {
     SH.ignoredProperties: (SH.closed,),
 }
 """What says nothing without one of others; pySHACL judges no shape with it."""
+STATED_ONCE = COUNTS | _terms("closed", "deactivated", "uniqueLang", "in", "languageIn", "datatype", "nodeKind")
+"""What a shape says once, if it does (SHACL, appendix C); pySHACL judges no shape that says one of them twice."""
 PATH_FORMS = _terms("inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
 """What leads from a path in brackets to the path that it is made of; an alternative leads to a list of paths."""
 DEEPEST_PATH = 50
@@ -84,6 +86,8 @@ def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[T
         lacking = _lacking(document, shape, predicate)
         if lacking is not None:
             return triple, lacking
+        if predicate in STATED_ONCE and value != document.value(shape, predicate):
+            return triple, said_twice(predicate)
     return None
 
 
@@ -91,6 +95,11 @@ def of_values(predicate: IRI) -> str:
     """A sentence, without its full stop, about a property of SHACL in a shape that has no path."""
     word = predicate.short
     return f"sh:{word} is asked of the values of a property: write sh:property [ sh:path ... ; sh:{word} ... ]"
+
+
+def said_twice(predicate: IRI) -> str:
+    """A sentence, without its full stop, about a property of SHACL of which a shape has several values."""
+    return f"A shape has one sh:{predicate.short} at most"
 
 
 def _lacking(document: Document, shape: Node, predicate: IRI) -> str | None:

@@ -24,7 +24,9 @@ def unaccepted_shapes(graph: Graph, positions: Positions) -> Iterator[Diagnostic
     places = {
         tuple(map(from_rdflib, triple)): offsets.object for triple, offsets in positions.triples.items() if shapes
     }
-    document = _document(graph if shapes else (), positions.file)
+    # In the order of the text, so that of two statements that do not go together the later one is blamed.
+    said = sorted(graph, key=lambda one: _offset(positions, one)) if shapes else ()
+    document = _document(said, positions.file)
     wrong: tuple[Triple | None, str] | None
     for shape in shapes:
         try:
@@ -34,6 +36,12 @@ def unaccepted_shapes(graph: Graph, positions: Positions) -> Iterator[Diagnostic
         if wrong is not None:
             statement, message = wrong
             yield at(positions, places.get(statement or (), positions.offset(shape) or 0), "SC-A20", f"{message}.")
+
+
+def _offset(positions: Positions, triple: tuple[rdflib.term.Node, rdflib.term.Node, rdflib.term.Node]) -> int:
+    """Where the object of a statement stands; the beginning, where that is not known."""
+    offsets = positions.triples.get(triple)
+    return 0 if offsets is None else offsets.object
 
 
 def _document(graph: Iterable[tuple[rdflib.term.Node, ...]], source: str) -> Document:

@@ -26,7 +26,7 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
 from selfconf.rdf.positions import Positions
-from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, of_values, unfit
+from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.vocabulary import SC
@@ -129,6 +129,10 @@ def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, s
     offset = positions.offset(focus) or 0
     if (None, SH.property, focus) in shapes and len(set(shapes.objects(focus, SH.path))) != 1:
         return offset, "A property shape has exactly one sh:path, the property that it is about."
+    for once in sorted(STATED_ONCE):
+        stated = [positions.triples.get((focus, URIRef(once), one)) for one in shapes.objects(focus, URIRef(once))]
+        if len(stated) > 1:
+            return max((one.object for one in stated if one), default=offset), f"{said_twice(once)}."
     for predicate, value in shapes.predicate_objects(focus):
         statement = positions.triples.get((focus, predicate, value))
         if statement and isinstance(predicate, URIRef) and IRI(predicate) in ONLY_WITH_A_PATH:

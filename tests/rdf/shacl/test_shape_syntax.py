@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import pytest
+import rdflib
+from rdflib import SH as SHACL
 
 from selfconf.model.term import IRI
-from selfconf.rdf.shacl.shape_syntax import misfit, unfit
+from selfconf.rdf.shacl.shape_syntax import STATED_ONCE, misfit, unfit
 from selfconf.rdf.turtle import parse
+from selfconf.rdf.validation.well_formedness import shape_of_shapes
 from selfconf.rdf.vocabulary import SH
 from tests.lab import PREFIXES, iri
 
@@ -46,6 +49,8 @@ def test_a_value_that_cannot_stand_there_is_named_with_its_statement(said: str, 
             "Beside sh:qualifiedValueShape stands sh:qualifiedMinCount or sh:qualifiedMaxCount",
         ),
         ("sh:ignoredProperties ( :a )", "Beside sh:ignoredProperties stands sh:closed"),
+        ("sh:path :a ; sh:minCount 1 , 2", "A shape has one sh:minCount at most"),
+        ("sh:not [ sh:in ( 1 2 ) ; sh:in ( 1 ) ]", "A shape has one sh:in at most"),
     ],
 )
 def test_what_a_shape_has_to_say_beside_a_statement_is_named(said: str, sentence: str) -> None:
@@ -53,6 +58,12 @@ def test_what_a_shape_has_to_say_beside_a_statement_is_named(said: str, sentence
     found = misfit(document, list(document.triples()), frozenset())
     assert found is not None
     assert found[1].startswith(sentence)
+
+
+@pytest.mark.parametrize("predicate", sorted(STATED_ONCE))
+def test_what_a_shape_says_once_the_shape_of_shapes_wants_once_as_well(predicate: IRI) -> None:
+    shapes = shape_of_shapes().subjects(SHACL.path, rdflib.URIRef(predicate))
+    assert any((shape, SHACL.maxCount, rdflib.Literal(1)) in shape_of_shapes() for shape in shapes)
 
 
 def test_of_a_constraint_in_sparql_the_query_is_named() -> None:

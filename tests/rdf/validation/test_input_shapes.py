@@ -18,6 +18,7 @@ from tests.lab import PREFIXES
         ("[ sh:property [ sh:path :p ; sh:pattern 3 ] ]", ["1:69"]),
         ("[ sh:minCount 1 ]", ["1:43"]),
         ("[ sh:or ( ) ]", ["1:37"]),
+        ("[ sh:property [ sh:path :p ; sh:maxCount 2 , 3 ] ]", ["1:74"]),
         ("[ ]", ["1:29"]),
     ],
 )

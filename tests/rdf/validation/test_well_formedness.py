@@ -53,6 +53,7 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:minCount 1", 16, "how many play a role is sc:minCount"),
         ("sh:hasValue 1 ; sh:lessThan :p", 32, "write sh:property"),
         ("sh:node 'x'", 24, "sh:node"),
+        ("sh:property [ sh:path :p ; sh:minCount 1 , 2 ]", 59, "A shape has one sh:minCount at most."),
         ("sh:property [ sh:path :p ; sh:pattern '(' ]", 54, "This is no regular expression"),
         ("sh:sparql [ sh:select 'SELECT' ]", 38, "This is not SPARQL"),
     ],
