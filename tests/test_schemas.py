@@ -210,22 +210,32 @@ def test_all_answers_that_are_recorded_keep_to_the_schema() -> None:
     assert found.keys() >= codes - {"contradictory-count", "add-recruits"}
 
 
-def test_recruits_to_add_keep_to_the_schema(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("need", "said", "output"),
+    [
+        ('sc:hasInput [ sc:name "light" ; sc:signalType :Light ]', "issues Light", {"signal": "urn:t:Light"}),
+        (
+            'sc:needsOperation [ sc:name "look" ; sc:request :Text ; sc:response :Image ]',
+            "offers an operation Text -> Image",
+            {"request": "urn:t:Text", "response": "urn:t:Image"},
+        ),
+    ],
+)
+def test_recruits_to_add_keep_to_the_schema(
+    need: str, said: str, output: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "t.ttl").write_text(
         "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:t:> .\n"
         ":t a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class :Eye ; sc:recruits true .\n"
     )
     (tmp_path / "ad.ttl").write_text(
-        "@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:t:> .\n"
-        ':e a sc:Component , :Eye ; sc:hasInput [ sc:name "light" ; sc:signalType :Light ] .\n'
+        f"@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:t:> .\n:e a sc:Component , :Eye ; {need} .\n"
     )
     body = printed(capsys, "configure", str(tmp_path / "t.ttl"), "--ads", str(tmp_path / "ad.ttl"))
     validator("configure").validate(body)
     added = next(one for one in body["repairs"] if one["code"] == "add-recruits")
-    assert added["message"] == "add one more component for the role eye to recruit that issues Light"
-    assert added["additions"] == [
-        {"role": "urn:t:eye", "count": 1, "outputs": [{"signal": "urn:t:Light"}], "values": {}}
-    ]
+    assert added["message"] == f"add one more component for the role eye to recruit that {said}"
+    assert added["additions"] == [{"role": "urn:t:eye", "count": 1, "outputs": [output], "values": {}}]
 
 
 @pytest.mark.usefixtures("asked_here")
