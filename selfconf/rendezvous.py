@@ -195,7 +195,7 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
         try:
             site = LocalSite(**json.loads(path.read_text()))
             living = alive(int(site.process)) and _is_the_same(site, path)
-        except (OSError, ValueError, TypeError):
+        except (OSError, ValueError, TypeError, OverflowError):  # no system has processes of such numbers
             continue
         if not living:
             path.unlink(missing_ok=True)

@@ -117,7 +117,10 @@ def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
     assert not path.exists()
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", "7", '{"ecology": "home"}', '{"process": "x"}'])
+HUGE = '{"ecology": "home", "site": "x", "endpoint": "tcp/127.0.0.1:1", "process": 1000000000000000000000000000000}'
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", "7", '{"ecology": "home"}', '{"process": "x"}', HUGE])
 def test_a_file_that_is_no_meeting_is_passed_over(runtime_folder: Path, text: str) -> None:
     (runtime_folder / "home@x.json").write_text(text)
     rendezvous.announce(meeting())
