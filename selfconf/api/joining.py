@@ -200,6 +200,8 @@ class Joining:
     def _look(self) -> None:
         if self._file is None:
             return
+        if not self.bus.link and self._lost_at is None:
+            self._lost_at = self.bus.now()  # when the change was told, the link was not lost yet
         done = self._in_order() or self._looked_in_turn()
         if not done or not self.bus.link:
             self._look_again = self.bus.later(LOOK_AGAIN, self._look)

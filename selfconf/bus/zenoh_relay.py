@@ -15,12 +15,14 @@ not connect to each other, so each tree consists of hubs and uplinks in turn: ev
 from __future__ import annotations
 
 import random
+import socket
 import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import zenoh
@@ -44,6 +46,8 @@ LINGER = 3.0
 """Seconds for which an uplink that was replaced stays, up to twice that by chance."""
 MOST_LINGERING = 3
 """How many replaced uplinks stay at most, however fast the links change."""
+DESCRIPTORS = Path("/proc/self/fd")
+"""Where Linux lists what a process has open."""
 
 
 class Hub:
@@ -90,8 +94,12 @@ class Hub:
         return self.endpoint.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
 
     def close(self) -> None:
-        """Leave the network."""
+        """Leave the network, and have nobody stay connected, the client of the same process included.
+
+        A router that has broken inside lets go of no connection when it is closed.
+        """
         _close(self._session)
+        _cut_connections(self.endpoint)
 
 
 class Relay:
@@ -199,6 +207,19 @@ class _Uplink:
         """Leave the network."""
         for session in self._sessions:
             _close(session)
+
+
+def _cut_connections(endpoint: str) -> None:
+    """End what is left of the connections of this process that were made to an endpoint of it."""
+    port = int(endpoint.rpartition(":")[2])
+    for path in list(DESCRIPTORS.iterdir()) if DESCRIPTORS.is_dir() else ():
+        with suppress(OSError):  # it was closed meanwhile, or is not connected any more
+            if not path.is_socket():
+                continue
+            with socket.fromfd(int(path.name), socket.AF_INET, socket.SOCK_STREAM) as connection:
+                address = connection.getsockname()  # a path where it is of another family
+                if isinstance(address, tuple) and address[1] == port:
+                    connection.shutdown(socket.SHUT_RDWR)
 
 
 def _close(session: Any) -> None:

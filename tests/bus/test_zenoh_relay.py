@@ -11,9 +11,11 @@ import pytest
 from selfconf.bus import zenoh_relay
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
+from selfconf.bus.zenoh_bus import client
 from selfconf.bus.zenoh_relay import Hub, Relay
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, Security, with_port
 from selfconf.errors import NetworkError
+from tests.bus.test_zenoh_bus import until
 
 NOBODY = with_port(ANYWHERE_ON_LOOPBACK)
 """An endpoint on which nothing listens: an uplink does not wait for it."""
@@ -63,6 +65,20 @@ def test_a_hub_on_all_addresses_is_reached_from_its_own_host_by_loopback() -> No
     hub = Hub("tcp/0.0.0.0:0")
     assert hub.from_here == hub.endpoint.replace("0.0.0.0", "127.0.0.1")
     hub.close()
+
+
+def test_nobody_stays_connected_to_a_hub_that_has_broken_inside_and_was_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    hub = Hub(ANYWHERE_ON_LOOPBACK)
+    connected = client([hub.endpoint])
+    try:
+        assert until(lambda: bool(connected.link), connected)
+        with monkeypatch.context() as broken:
+            broken.setattr(zenoh_relay, "_close", lambda _: None)
+            hub.close()
+        assert until(lambda: not connected.link, connected)
+    finally:
+        connected.close()
+        hub.close()
 
 
 def test_a_hub_whose_keys_are_gone_stays_as_it_is(tmp_path: Path) -> None:
