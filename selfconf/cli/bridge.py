@@ -7,7 +7,7 @@ import importlib.util
 from pathlib import Path
 
 from selfconf.cli.options import add_keys_argument, domain
-from selfconf.cli.terminal import complain
+from selfconf.cli.terminal import complaining_aside
 from selfconf.errors import InstallationError
 
 WOT_EXAMPLE = """  selfconf bridge wot examples/imports/lamp.td.json --ecology home
@@ -117,10 +117,11 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.api.bridge_program import BridgeSite, serve_nodes, serve_things
 
     site = BridgeSite(given.ecology, given.name, given.listen, given.sites, given.keys, given.insecure)
-    if given.world == "ros2":
-        serve_nodes(given.connect, given.domain, given.definitions, site, complain)
-    else:
-        serve_things(given.sources, given.rate, given.credentials, given.host, site, complain)
+    with complaining_aside() as complain:
+        if given.world == "ros2":
+            serve_nodes(given.connect, given.domain, given.definitions, site, complain)
+        else:
+            serve_things(given.sources, given.rate, given.credentials, given.host, site, complain)
     return 0
 
 

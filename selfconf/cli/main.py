@@ -15,6 +15,7 @@ from keyword import iskeyword
 from types import ModuleType
 from typing import NoReturn
 
+from selfconf.aside_writer import AsideHandler
 from selfconf.cli.settings import Settings, found_settings
 from selfconf.cli.terminal import complain, for_programs, guard, silence
 from selfconf.errors import SelfconfError, SiteMisusedError, reason
@@ -118,7 +119,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         given.misused(f"unrecognized arguments: {' '.join(unknown)}{_advice(unknown)}")
     if getattr(given, "format", "text") not in FOR_PEOPLE:
         for_programs()
-    logging.basicConfig(format="%(name)s: %(message)s", level=logging.DEBUG if given.debug else logging.ERROR)
+    told = AsideHandler("%(name)s: %(message)s")
+    logging.basicConfig(level=logging.DEBUG if given.debug else logging.ERROR, handlers=[told])
     code: int = 0
     try:
         if broken is not None and settings.concerned and given.command != "validate":  # which reports it

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from selfconf.cli.options import add_keys_argument, add_ontology_argument, add_reasoning_argument
-from selfconf.cli.terminal import complain
+from selfconf.cli.terminal import complaining_aside
 
 EXAMPLE = """  selfconf site examples/peis-home --ecology home
   selfconf site restart person-tracker"""
@@ -72,20 +72,21 @@ def run(given: argparse.Namespace) -> int:
     paths = [Path(path) for path in given.paths] or given.project.values.get("ads")
     if not paths:
         given.misused("there is nothing to serve; name files or folders, or give `ads` in selfconf.toml")
-    serve(
-        paths,
-        given.ecology,
-        given.name,
-        given.listen,
-        given.connect,
-        complain,
-        given.state,
-        given.log,
-        given.keys,
-        given.insecure,
-        ontologies=given.ontology,
-        reasoning=given.reasoning,
-    )
+    with complaining_aside() as complain:
+        serve(
+            paths,
+            given.ecology,
+            given.name,
+            given.listen,
+            given.connect,
+            complain,
+            given.state,
+            given.log,
+            given.keys,
+            given.insecure,
+            ontologies=given.ontology,
+            reasoning=given.reasoning,
+        )
     return 0
 
 

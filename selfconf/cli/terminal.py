@@ -14,8 +14,11 @@ import os
 import re
 import secrets
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TextIO
 
+from selfconf.aside_writer import AsideWriter, write_text
 from selfconf.model.wording import plain
 
 COLOURS = {"bold": "1", "dim": "2", "red": "1;31", "green": "32", "yellow": "1;33", "cyan": "36"}
@@ -34,8 +37,12 @@ class Terminal(io.TextIOBase):
 
     def write(self, text: str) -> int:
         """Write text that steers nothing."""
-        self._stream.write(_MARKED.sub("\x1b[\\1m", plain(text)))
+        self._stream.write(self.shown(text))
         return len(text)
+
+    def shown(self, text: str) -> str:
+        """A text that steers nothing, with the sequences of its colours."""
+        return _MARKED.sub("\x1b[\\1m", plain(text))
 
     def renew(self, text: str) -> None:
         """Show a text in place of all that is on the screen."""
@@ -111,11 +118,25 @@ def display(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
 
 
 def complain(sentence: str) -> None:
-    """Say something on stderr that is not a result; where that cannot be written, that is all that can be done."""
+    """Say something on stderr that is not a result; where that cannot be written, that is all that can be done.
+
+    A thread that a held terminal keeps here keeps no lock that the end of the program waits for.
+    """
+    stream, line = sys.stderr, f"{sentence}\n"
     try:
-        print(sentence, file=sys.stderr, flush=True)
+        write_text(stream, stream.shown(line) if isinstance(stream, Terminal) else line)
     except OSError:
         silence(sys.stderr)
+
+
+@contextmanager
+def complaining_aside() -> Iterator[Callable[[str], None]]:
+    """What complains on a thread of its own: a program that serves others waits for no terminal."""
+    said = AsideWriter(complain, str)
+    try:
+        yield said.put
+    finally:
+        said.close()
 
 
 def silence(stream: TextIO) -> None:

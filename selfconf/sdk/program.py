@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from selfconf import rendezvous
+from selfconf.aside_writer import AsideHandler, AsideWriter, write_line
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import SelfconfError
 from selfconf.model.wording import plain
@@ -37,9 +38,7 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     add_connection_arguments(parser)
     given, _ = parser.parse_known_args(arguments)
     life = os.environ.pop(rendezvous.LIFE_VARIABLE, "")  # it is this process's own: what it starts shall not have it
-    handler = logging.StreamHandler()
-    handler.setFormatter(_PlainFormatter("%(name)s: %(message)s"))
-    logging.basicConfig(level=logging.WARNING, handlers=[handler])
+    logging.basicConfig(level=logging.WARNING, handlers=[AsideHandler("%(name)s: %(message)s")])
     try:
         host = open_host(given.ecology, given.connect, given.keys, kinds)
         for kind in kinds:
@@ -49,14 +48,6 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
         print(plain(str(error)), file=sys.stderr)
         raise SystemExit(2) from None
     raise SystemExit(0)
-
-
-class _PlainFormatter(logging.Formatter):
-    """Words what is logged so that nothing in it steers a terminal: it quotes strangers."""
-
-    def format(self, record: logging.LogRecord) -> str:
-        """A record in words."""
-        return plain(super().format(record))
 
 
 def add_connection_arguments(parser: argparse.ArgumentParser) -> None:
@@ -94,10 +85,12 @@ def open_host(
         introduce(bus, name, shown)
         CertificateWatch(bus, name, shown)
 
+    said = AsideWriter(write_line, str)
+
     def hung(what: str) -> None:
-        print(plain(what), file=sys.stderr, flush=True)
         if started_by_another():
             bus.later(HUNG_ENDS, lambda: os._exit(HUNG_EXIT_CODE))
+        said.put(what)
 
     return Host(bus, name, hung)
 

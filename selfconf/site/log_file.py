@@ -57,7 +57,7 @@ class LogFile:
             self._failing = False
         except OSError as error:
             if not self._failing:
-                log.warning("cannot write %s: %s", self.path, error.strerror)
+                log.error("cannot write %s: %s", self.path, error.strerror)
             self._failing = True
 
     def close(self) -> None:

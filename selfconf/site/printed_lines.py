@@ -22,7 +22,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timezone
+from functools import partial
 
+from selfconf.aside_writer import AsideWriter, write_bytes
 from selfconf.model.log_line import LONGEST_LINE
 from selfconf.model.wording import plain
 from selfconf.site.log_file import LogFile
@@ -69,7 +71,7 @@ class PrintedLines:
         self._selector.register(self._woken, selectors.EVENT_READ)
         self._resting: dict[int, _Pipe] = {}
         """The pipes that are not read for the rest of their second."""
-        self._shown = _Shown()
+        self._shown = AsideWriter(partial(write_bytes, STDERR), _left_out, SHOWN_AT_ONCE, LAST_LINES)
         self._reading = threading.Thread(target=self._read, name="printed lines", daemon=True)
         self._reading.start()
 
@@ -170,7 +172,7 @@ class PrintedLines:
         pipe.rest = rest
         if whole:
             self._keep(_worded(pipe.stream, pipe.source, whole.split(b"\n")))
-            self._shown.show(whole + newline)
+            self._shown.put(whole + newline)
 
     def _keep(self, lines: bytes) -> None:
         if self._log is not None:
@@ -190,36 +192,5 @@ def _worded(stream: str, source: str, lines: list[bytes]) -> bytes:
     return "".join(f"{head}{text}\n" for text in said).encode()
 
 
-class _Shown:
-    """A thread that writes to stderr, and leaves out what that does not take in time."""
-
-    def __init__(self) -> None:
-        self._waiting: queue.Queue[bytes | None] = queue.Queue(SHOWN_AT_ONCE)
-        self._left_out = 0
-        self._stream = STDERR
-        self._writing = threading.Thread(target=self._write, name="shown lines", daemon=True)
-        self._writing.start()
-
-    def show(self, text: bytes) -> None:
-        """Have a piece of text shown soon."""
-        try:
-            if self._left_out:
-                self._waiting.put_nowait(f"({self._left_out} pieces of output were left out here)\n".encode())
-                self._left_out = 0
-            self._waiting.put_nowait(text)
-        except queue.Full:
-            self._left_out += 1
-
-    def close(self) -> None:
-        """Show what is waiting, unless that takes too long."""
-        with contextlib.suppress(queue.Full):
-            self._waiting.put(None, timeout=LAST_LINES)
-            self._writing.join(LAST_LINES)
-
-    def _write(self) -> None:
-        while (text := self._waiting.get()) is not None:
-            try:
-                while text:
-                    text = text[os.write(self._stream, text) :]
-            except OSError:  # nobody reads it any more; the log does
-                continue
+def _left_out(sentence: str) -> bytes:
+    return f"{sentence}\n".encode()

@@ -5,6 +5,9 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
+import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -247,3 +250,28 @@ def test_an_ontology_that_cannot_be_read_is_one_sentence(home: Home, capsys: pyt
     given = "site", str(home.folder / "ads"), "--ecology", home.ecology, "--ontology"
     assert run(capsys, *given, str(words)).is_one_sentence("words.ttl:1:")
     assert run(capsys, *given, "nowhere").is_one_sentence("there is no file or folder nowhere")
+
+
+def test_a_site_whose_terminal_is_held_goes_on_and_ends_when_it_is_told(home: Home) -> None:
+    """As with Ctrl-S, or with a pipe that nobody reads."""
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+    with suppress(BlockingIOError):
+        while os.write(writing, b"x" * 4096):
+            pass
+    os.set_blocking(writing, True)
+    command = (sys.executable, "-m", "selfconf", "site", "ads", "--ecology", home.ecology, "--name", "s1")
+    site = subprocess.Popen(command, cwd=home.folder, env=home.environment, stdin=subprocess.DEVNULL, stderr=writing)
+    try:
+        assert home.until(lambda: (home.runtime / f"{home.ecology}@s1.json").exists())
+        (home.folder / "ads" / "broken.ttl").write_text("this is no Turtle")
+        (home.folder / "ads" / "lamp.ttl").write_text(PREFIXES + ":lamp a sc:Component, :Lamp .")
+        served = home.keys.advertisements("s1")
+        assert home.until(lambda: len(home.ask(served, seconds=1.0).samples) > len(ADVERTISEMENTS), 10.0)
+        site.send_signal(signal.SIGTERM)
+        assert site.wait(10.0) == 0
+    finally:
+        site.kill()
+        site.wait()
+        os.close(reading)
+        os.close(writing)

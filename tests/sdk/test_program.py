@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bus.zenoh_bus import client
+from selfconf.protocol.messages import Reserve
 from selfconf.sdk import Component, main, parent_environment
 from selfconf.sdk.program import HUNG_EXIT_CODE, TIME_TO_END
 from tests.lab import write_advertisements
@@ -186,3 +188,55 @@ def test_a_program_that_a_site_has_started_ends_when_its_code_hangs_so_that_it_c
     assert process.wait(PATIENCE) == HUNG_EXIT_CODE
     assert until(lambda: programs.stage.fails)
     assert programs.stage.fails[0][1].detail == "`every` has not returned within 0.3 s"
+
+
+# A terminal that is held: whatever the program has to say of what it does, nobody reads it.
+
+HOLDING = """
+import os, sys
+from pathlib import Path
+from selfconf.sdk import Component, main
+
+class Motor(Component):
+    advertisement = Path(__file__).parent / "motor.ttl"
+
+    def stopped(self):
+        print("at rest", flush=True)
+
+while True:  # nobody has read what it said before
+    os.set_blocking(2, False)
+    try:
+        os.write(2, b"x" * 4096)
+    except BlockingIOError:
+        os.set_blocking(2, True)
+        break
+main(Motor)
+"""
+
+
+@pytest.mark.process
+def test_an_actuator_whose_configurator_is_gone_comes_to_rest_though_its_terminal_is_held(programs: Programs) -> None:
+    folder = programs.stage.folder
+    (folder / "motor.ttl").write_text(f"{PREFIXES}:motor a sc:Component, :Motor .")
+    (folder / "lamp.py").write_text(HOLDING)
+    process = programs.start()
+    assert until(programs.lives, 2 * PATIENCE)
+    reserved = programs.stage.call("urn:c:motor", "reserve", Reserve(1, programs.stage.supervisor, "task~1"))
+    assert until(lambda: reserved)
+    answers = programs.stage.apply("urn:c:motor")
+    assert until(lambda: answers)
+    programs.stage.leave()
+    assert process.stdout is not None
+    assert select.select([process.stdout], [], [], PATIENCE)[0]
+    assert process.stdout.readline() == "at rest\n"
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(PATIENCE) == 0
+
+
+@pytest.mark.process
+def test_a_program_that_a_site_has_started_ends_when_its_code_hangs_though_nobody_reads_what_it_says(
+    programs: Programs,
+) -> None:
+    (programs.stage.folder / "lamp.py").write_text(HOLDING.split("main(")[0] + PROGRAM)
+    process = programs.acting("hang", **parent_environment())
+    assert process.wait(PATIENCE) == HUNG_EXIT_CODE

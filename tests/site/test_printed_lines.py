@@ -103,7 +103,6 @@ def test_it_is_shown_besides_and_a_terminal_that_is_held_holds_up_nothing(
     terminal, stderr = os.pipe()
     monkeypatch.setattr(printed_lines, "STDERR", stderr)
     monkeypatch.setattr(printed_lines, "LAST_LINES", 0.1)
-    monkeypatch.setattr(printed_lines, "SHOWN_AT_ONCE", 4)
     printed = PrintedLines(LogFile(tmp_path / "home.log"))
     say(printed, b"first\n")
     assert os.read(terminal, 100) == b"first\n"
