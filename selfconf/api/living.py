@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -540,7 +541,12 @@ class LivingEcology(Ecology):
         wanted = task_name(record.task)
         if any(task_name(status.task) == wanted for status in self.tasks) or self._kept(wanted):
             raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
-        self._keep(record)
+        try:
+            self._keep(record)
+        except NetworkError:
+            with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
+                self._keep(replace(record, revision=record.revision + 1, ended=True))
+            raise
         return wanted
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from contextlib import suppress
 from pathlib import Path
 
 from selfconf.errors import PeerError
@@ -33,7 +34,8 @@ class TaskFolder:
     def learn(self, record: TaskRecord) -> bool:
         """Keep a record, unless a newer one of the same task is kept; whether it was new.
 
-        Raises PeerError where too many tasks are kept already, and OSError.
+        Raises PeerError where too many tasks are kept already, and OSError for a new task that cannot be written: it
+        is kept until this site ends, for other sites may have it on their disks, and count on this one to run it.
         """
         known = self.records.get(record.task)
         if known is not None and known.revision >= record.revision:
@@ -44,12 +46,32 @@ class TaskFolder:
             raise PeerError(f"{MOST_RECORDS} tasks are kept already; end some with `selfconf stop TASK`")
         self.records[record.task] = record
         if self._folder is not None:
-            self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            path = self._folder / f"{record.task}.json"
-            temporary = path.with_suffix(".new")
+            try:
+                self._write(self._folder, record)
+            except OSError as error:
+                if known is None:
+                    raise
+                log.error("cannot write what has become of the task %s: %s", record.task, error.strerror)
+                if record.ended:  # to be gone takes no room, and what has ended may not begin again
+                    with suppress(OSError):
+                        self._path(self._folder, record.task).unlink(missing_ok=True)
+        return True
+
+    @staticmethod
+    def _path(folder: Path, task: str) -> Path:
+        return folder / f"{task}.json"
+
+    def _write(self, folder: Path, record: TaskRecord) -> None:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        path = self._path(folder, record.task)
+        temporary = path.with_suffix(".new")
+        try:
             temporary.write_bytes(encode(record))
             temporary.replace(path)
-        return True
+        except OSError:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            raise
 
     def _forget_ended(self) -> None:
         """Forget the older half of the tasks that have ended: only a site that was away for long may not know it."""
@@ -57,4 +79,4 @@ class TaskFolder:
         for record in ended[: (len(ended) + 1) // 2]:
             del self.records[record.task]
             if self._folder is not None:
-                (self._folder / f"{record.task}.json").unlink(missing_ok=True)
+                self._path(self._folder, record.task).unlink(missing_ok=True)

@@ -59,6 +59,16 @@ def test_a_detached_task_runs_without_the_command_that_began_it(
     assert phases() == []
 
 
+def test_a_detached_task_that_no_site_can_keep_does_not_run(house: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    """As on a disk that is full: here a file stands where the folder of the tasks is to be."""
+    (house.folder / "state").touch()
+    house.site("kitchen", CLOCK, options=("--state", "state"))
+    where = house.arguments()
+    assert run(capsys, "run", TEMPLATE, "--detach", *where).is_one_sentence("site kitchen cannot keep the task")
+    # A site looks every second what it is to run.
+    assert not house.until(lambda: "tell-the-time" in run(capsys, "tasks", *where).out, 2.5)
+
+
 def test_a_detached_task_needs_sites_that_are_there_already(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "run", TEMPLATE, "--ads", CLOCK, "--detach").is_one_sentence(
         "a detached task lives in the sites"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import logging
+import os
 from pathlib import Path
 
 import pytest
@@ -71,3 +73,47 @@ def test_of_too_many_tasks_those_that_have_ended_go_and_then_none_is_taken(tmp_p
         folder.learn(TaskRecord("late~3", 1))
     assert folder.learn(TaskRecord("late~1", 2))
     assert len(folder.records) == MOST_RECORDS
+
+
+@pytest.fixture
+def full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From now on there is no room on the disk."""
+
+    def write_bytes(path: Path, data: bytes) -> int:
+        path.touch()
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", write_bytes)
+
+
+def test_a_new_task_that_finds_no_room_is_refused_and_leaves_nothing_behind(tmp_path: Path, full: None) -> None:
+    folder = TaskFolder(tmp_path)
+    with pytest.raises(OSError, match="No space"):
+        folder.learn(FIRST)
+    assert list(tmp_path.iterdir()) == []
+    assert folder.records == {"navigate~1": FIRST}  # another site may have it on its disk
+    assert folder.learn(SECOND)
+    assert TaskFolder(tmp_path).records == {}
+
+
+def test_what_becomes_of_a_task_counts_though_there_is_no_room_for_it(
+    tmp_path: Path, request: pytest.FixtureRequest, caplog: pytest.LogCaptureFixture
+) -> None:
+    folder = TaskFolder(tmp_path)
+    folder.learn(FIRST)
+    request.getfixturevalue("full")
+    later = TaskRecord("navigate~1", revision=2)
+    assert folder.learn(later)
+    assert folder.records == {"navigate~1": later}
+    assert "cannot write what has become of the task navigate~1: No space left on device" in caplog.text
+    assert TaskFolder(tmp_path).records == {"navigate~1": FIRST}
+
+
+def test_a_task_that_has_ended_does_not_come_back_though_there_was_no_room_to_say_so(
+    tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    folder = TaskFolder(tmp_path)
+    folder.learn(FIRST)
+    request.getfixturevalue("full")
+    assert folder.learn(SECOND)
+    assert TaskFolder(tmp_path).records == {}
