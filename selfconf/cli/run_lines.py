@@ -72,11 +72,20 @@ class TextLines:
             print(line, file=sys.stderr, flush=True)
 
     def _lines(self, event: RunEvent) -> Iterator[str]:
-        from selfconf.model.run_event import CallDeclined, ComponentLost, ComponentUnreachable, TaskStopped, TaskWaiting
-        from selfconf.render.run_events import details, log_hint, sentence
+        from selfconf.model.run_event import (
+            CallDeclined,
+            ComponentLost,
+            ComponentUnreachable,
+            TaskRefused,
+            TaskStopped,
+            TaskWaiting,
+        )
+        from selfconf.render.run_events import details, log_hint, owed_sentences, sentence
 
         assert self._began is not None
         yield from details(event, self._names, self.told) if isinstance(event, TaskWaiting | TaskStopped) else ()
+        if isinstance(event, TaskRefused):  # why is explained once everything is down
+            yield from owed_sentences(event.owed, self._names)
         hint = ""
         if isinstance(event, CallDeclined | ComponentUnreachable):
             self._trouble[event.component] = event.detail

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -88,7 +88,12 @@ def details(event: RunEvent, name: Name, told: Collection[IRI] = ()) -> Iterator
             yield refusal_text(event.refusal, name)
         yield from lost_sentences(event.lost, name, told)
     if isinstance(event, TaskRefused | TaskStopped):
-        yield from (f"  out of control: {name(one)} was turned off and has not obeyed" for one in event.owed)
+        yield from owed_sentences(event.owed, name)
+
+
+def owed_sentences(owed: Iterable[IRI], name: Name) -> Iterator[str]:
+    """Which components do not obey, a line each."""
+    return (f"  out of control: {name(one)} was turned off and has not obeyed" for one in owed)
 
 
 def lost_sentences(losses: Mapping[IRI, str], name: Name, told: Collection[IRI] = ()) -> Iterator[str]:

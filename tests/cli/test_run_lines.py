@@ -19,6 +19,7 @@ from selfconf.model.run_event import (
     EcologyDiscovered,
     RunEvent,
     SearchEnded,
+    TaskRefused,
     TaskRunning,
     TaskStopped,
     TaskWaiting,
@@ -69,3 +70,9 @@ def test_a_failure_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
     declines = CallDeclined(SCREEN, "the cable is out")
     lines = told(capsys, [declines, ComponentLost(SCREEN, "refused", "the cable is out")])
     assert sum("the cable is out" in line for line in lines) == 1
+
+
+@pytest.mark.parametrize("end", [TaskRefused(REFUSAL, owed=(SCREEN,)), TaskStopped(owed=(SCREEN,))])
+def test_what_is_out_of_control_at_the_end_is_named(capsys: pytest.CaptureFixture[str], end: RunEvent) -> None:
+    lines = told(capsys, [*LOOK[:3], end])
+    assert "  out of control: <urn:c:screen> was turned off and has not obeyed" in lines
