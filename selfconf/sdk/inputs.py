@@ -9,7 +9,8 @@ promised periods, and again as long as none comes.
 
 *Blindness.* An input is unfed when the life of the last of its outputs has ended, or that output's component has raised
 FAIL, has fallen silent, or has let go of a task and acts for no other, or another output has taken its place and has
-not issued anything yet. It is fed again by the first signal that comes.
+not issued anything yet. It is fed again by the first signal that comes; what still waits of a lost output is dropped,
+or a slow component would take it for news.
 
 *Latching.* An input asks each output that it begins to follow for its last signal, whoever else follows that output.
 """
@@ -345,6 +346,7 @@ class InputSubscription:
 
     def _read(self) -> None:
         """Deliver the oldest signal that waits; none may be left, as the queue keeps the newest only."""
+        lost = self.lost
         sample = None if self.muted else self._queue.pop()
         if sample is None:
             return
@@ -355,6 +357,8 @@ class InputSubscription:
             log.warning("passed over a signal on %s: %s", sample.key, error)
             return
         if stamp.component != self._wire.component:
+            return
+        if self.muted or (self.lost and not lost):  # while it was read
             return
         if stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE:
             return  # late, doubled, or a latched signal that was issued again for another input
@@ -425,6 +429,7 @@ class InputSubscription:
     def _lose(self, heard: float) -> None:
         """The output is lost, unless it has issued a signal after that time."""
         if not self.lost and not self.muted and self._heard_at <= heard:
+            self._queue.keep(0)  # before the input is told: what comes after that is news, and feeds it
             self.lost = True
             self._report_lost(self._port)
 

@@ -11,7 +11,8 @@ into a stamp.
 
 *At most once.* A call is made once. If it comes to nothing, the caller may not know whether the component was about to
 do what it was asked: so it is told what is known, and nothing is repeated on its behalf. A request that comes twice is
-served once.
+served once. One that nobody waits for any more when the code has time for it, or whose caller is connected no more, is
+not served at all.
 
 *Later.* The code of a component may return a future in the place of an answer: it then goes on with other things, and
 the request is answered when the future comes to something. A future is cancelled when nobody waits for it any more: the
@@ -25,6 +26,7 @@ from __future__ import annotations
 
 import itertools
 import logging
+import math
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -151,8 +153,7 @@ class Operations:
                 request, f"not a request: it is stamped by {signal.source.short}, and asked by another component"
             )
         elif signal.source not in self._callers(name + CALL_MARK):
-            who = f"{signal.source.short} is not connected to the operation {name!r} of {self._profile.component.short}"
-            self._refuse(request, who)
+            self._refuse(request, self._not_connected(name, signal.source))
         elif self._requests >= MOST_CALLS:
             self._refuse(request, f"{self._profile.component.short} is busy: {MOST_CALLS} requests wait for it")
         else:
@@ -164,12 +165,22 @@ class Operations:
             return
         self._seen.append(number)
         self._requests += 1
-        self._thread.signal(partial(self._serve, request, name, signal, patience))
+        waits_until = self._bus.now() + (patience or math.inf)
+        self._thread.signal(partial(self._serve, request, name, signal, waits_until))
 
-    def _serve(self, request: Request, name: str, signal: Signal, patience: float) -> None:
-        """Have the code answer a request; on its thread."""
+    def _not_connected(self, name: str, caller: IRI) -> str:
+        return f"{caller.short} is not connected to the operation {name!r} of {self._profile.component.short}"
+
+    def _serve(self, request: Request, name: str, signal: Signal, waits_until: float) -> None:
+        """Have the code answer a request, if it is still wanted; on its thread."""
 
         def served() -> Any:
+            if signal.source not in self._callers(name + CALL_MARK):
+                raise Refused(self._not_connected(name, signal.source))
+            patience = waits_until - self._bus.now()
+            if patience <= 0.0:
+                who = self._profile.component.short
+                raise Refused(f"{who} was busy for longer than {signal.source.short} waits for {name!r}")
             try:
                 value = self._read_value(signal.value, signal.media)
             except ValueError as error:
@@ -178,8 +189,8 @@ class Operations:
             if isinstance(answer, Future):
                 self._promised[answer] = name, signal.source
                 answer.add_done_callback(partial(self._kept, request, name))
-                if patience:
-                    self._then(self._limit, answer, patience)
+                if patience < math.inf:
+                    self._then(self._limit, answer, max(0.0, waits_until - self._bus.now()))
                 if not self._code.active:  # it was stopped while it returned the future
                     answer.cancel()
             return answer

@@ -9,12 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from selfconf.bus.port import Replies
+from selfconf.bus.port import Replies, Sample
 from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, CallAnswer, Fail, Release, Reserve
+from selfconf.protocol.messages import Apply, CallAnswer, Cause, Fail, Release, Reserve
 from selfconf.sdk import Component, Host
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
@@ -38,15 +38,19 @@ class LivingStage:
         self.caller.run_aside()
         self.leave = self.caller.announce(self.supervisor)
         self.fails: list[tuple[float, Fail]] = []
-        self.caller.subscribe(
-            self.keys.any_fail(), lambda sample: self.fails.append((time.monotonic(), decode(sample.payload, Fail)))
-        )
+        """What configurators heed, with the time: that a component has obeyed a release is no FAIL."""
+        self.caller.subscribe(self.keys.any_fail(), self._heard_fail)
         self._lives: set[str] = set()
         self.caller.watch(self.keys.any_life(), lambda key, here: self._lives.add(key) if here else None)
         self.hangs: list[str] = []
         self._hosts: list[Callable[[], None]] = []
         self.release_code = threading.Event()
         """What code that hangs waits for; set at the end of the test."""
+
+    def _heard_fail(self, sample: Sample) -> None:
+        fail = decode(sample.payload, Fail)
+        if fail.epoch or fail.cause is not Cause.LET_GO:
+            self.fails.append((time.monotonic(), fail))
 
     def node(self) -> ZenohBus:
         """A client of the router."""

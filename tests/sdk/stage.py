@@ -14,6 +14,7 @@ from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
+    Cause,
     Fail,
     Free,
     Release,
@@ -55,12 +56,17 @@ class Stage:
         self.component = component or self.recorder
         self.profile = profile
         self.runtime = ComponentRuntime(self.network.node(), KEYS, profile, self.component, "life-1")
-        self.fails: list[Fail] = []
-        self.caller.subscribe(KEYS.any_fail(), lambda sample: self.fails.append(decode(sample.payload, Fail)))
+        self.said: list[Fail] = []
+        self.caller.subscribe(KEYS.any_fail(), lambda sample: self.said.append(decode(sample.payload, Fail)))
         self.freed: list[str] = []
         """The tasks to which the component was offered, in order."""
         self.caller.subscribe(KEYS.any_free(), lambda sample: self.freed.append(decode(sample.payload, Free).task))
         self.let_pass(0.1)
+
+    @property
+    def fails(self) -> list[Fail]:
+        """What configurators heed: that a component has obeyed a release is no FAIL."""
+        return [fail for fail in self.said if fail.epoch or fail.cause is not Cause.LET_GO]
 
     def let_pass(self, seconds: float) -> None:
         """Simulated time passes."""

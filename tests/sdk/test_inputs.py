@@ -238,6 +238,16 @@ def test_an_input_is_unfed_when_its_source_has_let_go_of_its_only_task() -> None
     assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
 
 
+def test_an_input_is_unfed_when_its_source_is_released_and_it_is_not_told() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", 1)
+    stage.caller.ask(KEYS.call(TRACKER, "release"), encode(release(2, US)), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
+
+
 def test_an_input_is_fed_by_a_source_that_lets_go_of_a_task_and_acts_for_another() -> None:
     stage = Stage(Watchful())
     tracker = stage.neighbour()
@@ -314,8 +324,9 @@ class Slow:
     def __init__(self, period: float | None = None, depth: int | None = None) -> None:
         self.network, self.code = Network(), CodeThread(inline=False)
         self.heard: list[Any] = []
+        self.unfed: list[str] = []
         profile = replace(CAP_PROFILE, ports=Ports((Input("position", (IRI("urn:s:Pose"),), depth),)))
-        events = InputEvents(lambda port, signal: self.heard.append(signal.value), lambda *_: None, lambda _: None)
+        events = InputEvents(lambda port, signal: self.heard.append(signal.value), lambda *_: None, self.unfed.append)
         self.inputs = Inputs(self.network.node(), KEYS, self.code, profile, events)
         self.inputs.follow(follow(period=period))
         self._source = self.network.node().publisher(KEYS.output(TRACKER, "pose"), Urgency.SIGNAL)
@@ -405,3 +416,17 @@ def test_a_component_may_read_values_in_a_way_of_its_own() -> None:
         tracker.component.emit("pose", value, media="text/plain")
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("position", (b"whole", "text/plain"))]
+
+
+def test_what_waits_when_an_output_is_lost_is_not_delivered_after_its_loss_and_feeds_nothing() -> None:
+    """A slow component acts on what has come since it was unfed, not on what its dead source had said before."""
+    slow = Slow()
+    leave = slow.network.node().announce(KEYS.life(TRACKER, "l"))
+    slow.issue(10)
+    leave()
+    slow.network.run(lambda: False, 0.1)
+    slow.code.poll()
+    assert (slow.unfed, slow.heard) == (["position"], [])
+    slow.issue(1)
+    slow.code.poll()
+    assert slow.heard == [11]

@@ -21,8 +21,10 @@ from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import ComponentLost
 from selfconf.model.signal_fields import SignalField, SignalFields
 from selfconf.model.term import IRI, XSD_NAMESPACE
-from selfconf.protocol.messages import Cause, Reserve, Verdict, Wire
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Apply, Cause, Reserve, Verdict, Wire
 from selfconf.protocol.stamps import StampWriter
+from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import CallStatus, Component, Refused, Response, Signal
 from selfconf.sdk.operations import MOST_CALLS, MOST_PAYLOAD
 from selfconf.sdk.runtime import ComponentRuntime
@@ -413,6 +415,35 @@ def test_an_answer_that_nobody_waits_for_is_cancelled(ended: str) -> None:
         served.stage.call(apply(3, callers={"takePhoto" + CALL_MARK: (DIARY,)}))
     served.stage.let_pass(1.0)
     assert [promise.cancelled() for promise in promises] == [True, False]
+
+
+@pytest.mark.parametrize("ended", ["the caller is connected no more", "the caller waits no longer"])
+def test_a_request_that_has_waited_for_the_code_until_nobody_wanted_it_is_not_served(ended: str) -> None:
+    stage, code, camera = Stage(profile=ALBUM_PROFILE), CodeThread(inline=False), Camera()
+    ComponentRuntime(stage.network.node(), KEYS, CAMERA_PROFILE, camera, "life-c", code)
+
+    def call(message: Apply) -> None:
+        stage.caller.ask(KEYS.call(CAMERA, "apply"), encode(message), 5.0, lambda replies: None)
+        stage.let_pass(0.1)
+
+    def poll() -> None:
+        code.poll()
+        stage.let_pass(0.1)
+
+    call(apply(callers={"takePhoto" + CALL_MARK: (ALBUM,)}))
+    poll()
+    replies: list[Replies] = []
+    stage.caller.ask(KEYS.operation(CAMERA, "takePhoto", ALBUM), request_of(ALBUM), 9.0, replies.append, b"1.5")
+    stage.let_pass(0.1)  # the code is busy
+    if "connected" in ended:
+        call(apply(2, callers={"takePhoto" + CALL_MARK: (DIARY,)}))
+    else:
+        stage.let_pass(2.0)
+    poll()
+    assert camera.requests == []
+    connected = "album is not connected to the operation 'takePhoto' of camera"
+    waited = "camera was busy for longer than album waits for 'takePhoto'"
+    assert replies[0].errors == (connected if "connected" in ended else waited,)
 
 
 @pytest.mark.parametrize("patience", [b"long", b"-1", b"inf", b"nan", b"\xff"])
