@@ -359,14 +359,27 @@ class Calls:
     # One call.
 
     def _call(
-        self, component: IRI, call: Call, message: Reserve | Apply | Release, attempts: int = CALL_ATTEMPTS
+        self,
+        component: IRI,
+        call: Call,
+        message: Reserve | Apply | Release,
+        attempts: int = CALL_ATTEMPTS,
+        first: float | None = None,
     ) -> None:
+        """`first` is when the call was made for the first time."""
         began = self.bus.now()
+        since = began if first is None else first
         if call is not Call.RELEASE:
             self._called.add(component)
 
-        def answered(replies: Replies) -> None:
+        def said(replies: Replies) -> CallAnswer | None:
+            """What the life that is meant has answered; what another one says does not count while it may answer."""
             answer = self._answer_in(replies, message.life)
+            other = answer is not None and message.life not in ("", answer.life) and not replies.complete
+            return None if other and self.ecology.lives_on(component, message.life) else answer
+
+        def answered(replies: Replies) -> None:
+            answer = said(replies)
             if answer is not None:
                 self._answered(component, call, message, answer)
                 self._outlived(component, message.life, replies)
@@ -386,19 +399,23 @@ class Calls:
         hasty = call is Call.RELEASE
 
         def seen(replies: Replies) -> None:
-            answer = self._answer_in(replies, message.life)
+            answer = said(replies)
             current = message.epoch == self._state().epoch
-            silent = not replies.samples and not replies.errors
+            silent = answer is None and not replies.errors
             if answer is not None and self._obeyed(answer, call, message):
                 self._answered(component, call, message, answer)
             elif answer is not None and current and self.bus.now() - began < min(answer.patience, MOST_PATIENCE):
                 self.bus.later(PAUSE, inspect)  # its inside is being started
             elif attempts > 1 and answer is not None and current and not hasty:
-                self._call(component, call, message, attempts - 1)
+                self._call(component, call, message, attempts - 1, since)
+            elif answer is not None and current and not hasty and self._works_on(answer, message, since):
+                self._call(component, call, message, 1, since)
             elif silent and current and not hasty and self.bus.now() - began < STARTING:
                 self.bus.later(PAUSE, inspect)  # it may be in `started`; if its life ends, it is lost at once
             elif current or hasty:
-                self._unreachable(component, call, message.epoch, "it does not answer")
+                stopping = answer is not None and answer.stopping
+                detail = "its code has not come to rest" if stopping else "it does not answer"
+                self._unreachable(component, call, message.epoch, detail)
 
         self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
 
@@ -407,7 +424,19 @@ class Calls:
         if answer.epoch != message.epoch:
             return False
         mine = answer.task == message.task and answer.supervisor == message.supervisor
-        return not mine if call is Call.RELEASE else mine and answer.active == (call is Call.APPLY)
+        if call is Call.RELEASE:
+            return not mine and not answer.stopping
+        return mine and answer.active == (call is Call.APPLY)
+
+    def _works_on(self, answer: CallAnswer, message: Reserve | Apply | Release, since: float) -> bool:
+        """Whether a component that has not obeyed a call may do so yet: its code starts, or has not come to rest.
+
+        Code that takes longer than it may is a failure, of which the component speaks itself.
+        """
+        found = self.ecology.discovery.found.get(answer.component)
+        deadline = found.advertisement.profile.deadline if found is not None else None
+        came = answer.epoch == message.epoch and answer.task == message.task
+        return (came or answer.stopping) and self.bus.now() - since < max(STARTING, deadline or 0.0) + CALL
 
     def _answered(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
         detail = answer.detail or answer.verdict.value

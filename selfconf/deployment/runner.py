@@ -143,6 +143,8 @@ class TaskRunner:
         self._events: deque[Event] = deque()
         self._stepping = False
         self._unreported: list[RunEvent] = []
+        self._asked = 0
+        """How often the ecology was asked."""
         self._look_again: Undo = lambda: None
         self._pause = TRY_AGAIN
         self._improve: Undo = lambda: None
@@ -387,13 +389,18 @@ class TaskRunner:
             self.request.ended(effect.refusal)
 
     def _discover(self) -> None:
-        """Ask the sites what they advertise, and meanwhile the other tasks what they hold."""
+        """Ask the sites what they advertise, and meanwhile the other tasks what they hold.
+
+        One question counts at a time: where an earlier one is not answered yet, its answer is older than this question.
+        """
         self._report(EcologyAsked())
+        self._asked += 1
+        number = self._asked
         found: list[Discovery] = []
         held: list[Mapping[IRI, Holder]] = []
 
         def both() -> None:
-            if found and held:
+            if found and held and number == self._asked:
                 self._discovered(found[0], held[0])
 
         def discovered(discovery: Discovery) -> None:
@@ -459,18 +466,25 @@ class TaskRunner:
             return
         own = sample.key == self.keys.fail(fail.component)
         reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
-        held = self.state.held.get(fail.component)
-        if fail.task not in ("", self.identity.task):
+        if not self._heeds(fail):
             return
-        if fail.cause is Cause.YIELD and (held is None or not held.reserved):
-            return  # an older component names no task, and this one may be the one that asks
-        if fail.cause is Cause.LET_GO and held is not None:
+        if fail.cause is Cause.LET_GO and fail.component in self.state.held:
             log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
         around = self._calls.composite_around(fail.component) if reported else None
         if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
         elif around is not None and around in self._watched:
             self._step(Failed(around, "", fail.cause, f"{fail.component.short} inside of it: {fail.detail}"))
+
+    def _heeds(self, fail: Fail) -> bool:
+        """Whether a FAIL may be about this task, as far as it says itself."""
+        if fail.task not in ("", self.identity.task):
+            return False
+        if fail.cause is Cause.LET_GO:
+            return fail.epoch > 0  # else it has obeyed a release, which those need to know that follow its outputs
+        held = self.state.held.get(fail.component)
+        # An older component names no task with a yield, and this one may be the one that asks.
+        return fail.cause is not Cause.YIELD or (held is not None and held.reserved)
 
     def _received_moved(self, sample: Sample) -> None:
         try:

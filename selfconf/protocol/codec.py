@@ -351,6 +351,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (Moved, "outputs"): _inputs,
     (CallAnswer, "verdict"): _verdict,
     (CallAnswer, "active"): _truth,
+    (CallAnswer, "stopping"): _truth,
     (Fail, "cause"): _cause,
     (Page, "index"): _whole,
     (Page, "total"): _whole,

@@ -213,8 +213,9 @@ class ComponentRuntime:
         """What `fail` leaves for the bus's thread."""
         self._become(*table.fail(self.activation))
 
-    def _put_fail(self, cause: Cause, detail: str, task: str = "") -> None:
-        self._fail.put(encode(Fail(self.profile.component, self.life, self.activation.epoch, cause, detail, task)))
+    def _put_fail(self, cause: Cause, detail: str, task: str = "", epoch: int | None = None) -> None:
+        epoch = self.activation.epoch if epoch is None else epoch
+        self._fail.put(encode(Fail(self.profile.component, self.life, epoch, cause, detail, task)))
 
     # Control calls.
 
@@ -281,6 +282,9 @@ class ComponentRuntime:
         if isinstance(message, Apply):
             self._apply(message, step, reply)
         elif isinstance(message, Release):
+            if step is ActivationStep.STOP and self.profile.signal_outputs:
+                # For inputs that follow it all the same; it may be held by now for a task that was reserved.
+                self._put_fail(Cause.LET_GO, "it was released", epoch=0)
             self._when_at_rest(lambda: reply(self._verdict(Verdict.DONE, message.task)))
             self._when_at_rest(self._offer)
         else:
@@ -352,6 +356,7 @@ class ComponentRuntime:
             outputs=self.inputs.issued,
             callers=self.inputs.callers,
             patience=self.inputs.patience,
+            stopping=self.code.stopping or self.inputs.ending,
         )
 
     def _busy(self, task: str) -> CallAnswer:

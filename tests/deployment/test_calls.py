@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
@@ -19,9 +21,11 @@ from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Reser
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk.component import Refused
+from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.supervision import GRACE
 from tests.deployment.tasks import TASK
-from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, iri
+from tests.faults.simulated_code import SimulatedCodeThread, SimulatedComponentCode
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
 
 
 def busy_in_started(lab: Lab, name: str, seconds: float) -> None:
@@ -54,6 +58,73 @@ def test_a_component_that_takes_long_to_start_is_waited_for_as_long_as_it_lives(
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, STARTING + CALL)
     assert lab.active() == TASK | {"tracker"}
     assert lab.components["tracker"].said == [("started",)]
+
+
+def slow_code(lab: Lab, name: str) -> SimulatedCodeThread:
+    """Have a component begin again, with code on a thread of its own; what hangs there is told, and goes on."""
+    lab.crash(name)
+    node, recorder = lab.network.node(), Recorder()
+    thread = SimulatedCodeThread(node, lambda what, limit: runtime.hung(what, limit))
+    runtime = ComponentRuntime(node, lab.keys, lab.profile(name), recorder, f"{name}-slow", thread)
+    SimulatedComponentCode.simulate(runtime.code, node, thread)
+    recorder.spend = thread.spend
+    lab.runtimes[name], lab.components[name] = runtime, recorder
+    lab.let_pass(1.0)
+    return thread
+
+
+@pytest.mark.parametrize(
+    ("deadline", "seconds"),
+    [
+        pytest.param("", STARTING - 0.5, id="by default"),
+        pytest.param("; sc:deadline [ sc:value 20 ; sc:unit unit:SEC ]", 19.0, id="with a deadline of its own"),
+    ],
+)
+def test_code_may_take_to_start_as_long_as_its_deadline_says(tmp_path: Path, deadline: str, seconds: float) -> None:
+    tracker = ADVERTISEMENTS["tracker"].rstrip(" .") + f"{deadline} ."
+    lab = Lab(tmp_path, advertised={**ADVERTISEMENTS, "tracker": tracker})
+    lab.navigation()
+    slow_code(lab, "tracker")
+    lab.components["tracker"].slow = seconds
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, seconds + 1.0)
+    assert lab.active() == TASK | {"tracker"}
+    assert lab.components["tracker"].said == [("started",)]
+
+
+def test_code_that_takes_longer_to_start_than_it_may_is_said_to_hang(lab: Lab) -> None:
+    slow_code(lab, "tracker")
+    lab.components["tracker"].slow = STARTING + 30.0
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, STARTING + CALL)
+    assert lab.active() == TASK | {"odometry"}
+    loss = agent.state.lost[iri("person-tracker")]
+    assert (loss.cause, loss.detail) == (Cause.HUNG, "`started` has not returned within 8 s")
+
+
+def test_a_component_whose_code_does_not_come_to_rest_is_out_of_control_until_it_does(lab: Lab) -> None:
+    """It lives, and says that it is held by no task; but it may still act."""
+    thread = slow_code(lab, "drive")
+    agent = lab.agent()
+    assert lab.running(agent)
+    thread.spend(60.0)
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended), 3 * CALL)
+    assert lab.acts("stopped")[0].owed == (iri("astrid-drive"),)
+    assert iri("astrid-drive") not in [event.component for event in lab.acts("released")]
+    assert {event.detail for event in lab.acts("unreachable")} == {"its code has not come to rest"}
+
+
+def test_a_component_whose_code_comes_to_rest_late_owes_nothing_any_more(lab: Lab) -> None:
+    thread = slow_code(lab, "tracker")
+    agent = lab.agent()
+    assert lab.running(agent)
+    thread.spend(2 * CALL)
+    lab.components["tracker"].fail("lost")
+    assert lab.until(lambda: lab.active() == TASK | {"odometry"}, 1.0)
+    assert agent.status().owed == (iri("person-tracker"),)
+    assert lab.until(lambda: agent.status().owed == (), 4 * CALL)
+    assert lab.components["tracker"].said[-1] == ("stopped",)
 
 
 def test_a_component_that_dies_while_it_takes_long_to_start_is_replaced_at_once(lab: Lab) -> None:

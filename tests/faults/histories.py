@@ -18,6 +18,7 @@ from __future__ import annotations
 import traceback
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,7 @@ from selfconf.sdk.program import HUNG_ENDS
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Site
 from tests.faults.script import Action, Script
-from tests.faults.simulated_code import ReportsLate, SimulatedCodeThread
+from tests.faults.simulated_code import SimulatedCodeThread, SimulatedComponentCode
 from tests.faults.simulated_processes import SimulatedProcesses
 from tests.lab import Lab, Recorder
 
@@ -239,6 +240,8 @@ class History:
 
         def hung(what: str, limit: float) -> None:
             runtime.hung(what, limit)
+            if self.script.hangs_on and name not in self.script.startable:
+                return
             for share in (0.25, 0.75):  # so that it is looked what has become of it
                 self.network.after(share * HUNG_ENDS, lambda: None)
             self.network.after(HUNG_ENDS, node.close)
@@ -254,8 +257,7 @@ class History:
             thread,
             superseded=lambda reason: node.close(),
         )
-        late: Any = ReportsLate(node, thread)
-        runtime.code._bus = late
+        SimulatedComponentCode.simulate(runtime.code, node, thread)
         recorder.served = lambda operation, caller: self.watch.served(runtime, operation, caller)
         self.processes.append(Life(name, runtime, recorder, node, thread))
         self._joined(name, node)
@@ -361,6 +363,14 @@ class History:
         if life is None:
             return False
         life.recorder.slow = action.seconds
+        return True
+
+    def _busy(self, action: Action) -> bool:
+        """The code of a component is busy with a timer of its own, if it acts."""
+        life = self.life(action.who)
+        if life is None or not life.awake:
+            return False
+        life.runtime.code.tick(partial(life.thread.spend, action.seconds))
         return True
 
     def _crash_site(self, action: Action) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from selfconf.bus.memory import Faults
 from tests.faults.ecologies import PAPER, FaultyEcology
@@ -57,6 +57,8 @@ class Script:
     startable: frozenset[str] = frozenset()
     """The components that their sites start on demand, and again when they crash."""
     actions: tuple[Action, ...] = ()
+    hangs_on: bool = False
+    """Whether a process whose code hangs, and that no site has started, goes on; else it ends as all others do."""
 
     def __str__(self) -> str:
         lines = [f"seed {self.seed} in the ecology {self.ecology.name}: {self.faults}"]
@@ -93,6 +95,8 @@ PAIRED = ("cut", "mute", "mend")
 """The kinds that are done to a link between two."""
 PAUSES = (0.5, 2.0, 10.0)
 SLOWNESS = (0.3, 3.0, 6.0, 12.0)
+BUSYNESS = (0.05, 1.0, 1.9, 3.0, 12.0, 30.0)
+"""For how many seconds the code of a component may be busy while it acts; it hangs if that is longer than it may."""
 MOMENTS = (0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)
 
 
@@ -138,3 +142,15 @@ def write(seed: int, without: tuple[str, ...] = (), ecology: FaultyEcology = PAP
         seconds = chance.choice(PAUSES if kind == "pause" else SLOWNESS) if kind in ("pause", "slow") else 0.0
         actions.append(Action(time, kind, who, other, seconds))
     return Script(seed, ecology, faults, clocks, tasks, starts, tuple(actions))
+
+
+def with_busy_code(script: Script) -> Script:
+    """The same script, in which code is also busy while it acts, so that calls and signals wait for it."""
+    chance = random.Random(f"busy {script.seed}")
+    more = []
+    for _ in range(chance.randint(1, 4)):
+        time = chance.choice(script.actions).time + chance.choice(MOMENTS)
+        who = chance.choice(script.ecology.processes)
+        more.append(Action(time, "busy", who, seconds=chance.choice(BUSYNESS)))
+    actions = sorted((*script.actions, *more), key=lambda action: action.time)
+    return replace(script, actions=tuple(actions), hangs_on=True)

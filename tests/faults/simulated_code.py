@@ -13,6 +13,7 @@ from typing import Any
 
 from selfconf.bus.memory import MemoryBus
 from selfconf.sdk.code_thread import Action, CodeThread
+from selfconf.sdk.component_code import ComponentCode
 
 
 class SimulatedCodeThread(CodeThread):
@@ -23,6 +24,7 @@ class SimulatedCodeThread(CodeThread):
         self._node, self._network, self._hung = node, node.network, hung
         self._due = False
         self.busy_until = 0.0
+        self._starting_until = 0.0
         self.limit_until = math.inf
         """When code that spends more than it may would have to have returned."""
 
@@ -56,13 +58,38 @@ class SimulatedCodeThread(CodeThread):
             action()
         self._schedule()
 
+    @property
+    def starting(self) -> bool:
+        """Whether the code is in `started`."""
+        return self._network.time < self._starting_until
+
     def limited(self, owner: object, what: str, limit: float, action: Callable[[], object]) -> None:
         """Run code of a component; note when it would have to have returned."""
         began = self._free()
+        # One that wakes from rest has started before, and has acted since.
+        starts = what == "started" and isinstance(owner, ComponentCode) and owner._started_turn != owner.turn
         action()
+        if starts:
+            self._starting_until = self.busy_until
+        self.limit_until = math.inf
         if self.busy_until - began > limit:
             self.limit_until = began + limit
             self._network.at(self.limit_until, self._node, lambda: self._hung(what, limit))
+
+
+class SimulatedComponentCode(ComponentCode):
+    """Code that has not started before the time is over that it spends in `started`."""
+
+    @classmethod
+    def simulate(cls, code: ComponentCode, node: MemoryBus, thread: SimulatedCodeThread) -> None:
+        """Have the code of a runtime spend time as a thread of its own does."""
+        late: Any = ReportsLate(node, thread)
+        code.__class__, code._bus = cls, late
+
+    @property
+    def started(self) -> bool:
+        """Whether the component acts, and `started` has returned."""
+        return super().started and not (isinstance(self._thread, SimulatedCodeThread) and self._thread.starting)
 
 
 class ReportsLate:

@@ -14,7 +14,7 @@ from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import History
 from tests.faults.invariants import ENDS, STEPS
 from tests.faults.replay import account, played, shrink
-from tests.faults.script import KINDS, Action, Script, write
+from tests.faults.script import KINDS, Action, Script, with_busy_code, write
 
 HISTORIES = 10_000 if NIGHTLY else examples(750)  # 300 for every push
 BATCH = 20
@@ -38,6 +38,16 @@ def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
         assert not history.broken, f"{replay}\n{account(history)}"
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("batch", range(0, HISTORIES // 5, BATCH))
+def test_no_history_in_which_code_is_busy_or_hangs_on_breaks_an_invariant(batch: int, folder: Path) -> None:
+    """As components do that somebody has started by hand: nothing ends them."""
+    for seed in range(batch, batch + BATCH):
+        ecology = COMPOSED if seed % 4 == 3 else PAPER
+        history = played(with_busy_code(write(seed, NOT_YET, ecology)), folder / ecology.name)
+        assert not history.broken, account(history)
+
+
 @pytest.mark.parametrize(
     ("seed", "ecology"),
     [
@@ -48,6 +58,9 @@ def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
         pytest.param(403221, COMPOSED, id="what was frozen goes on, after another life of it was released"),
         pytest.param(501893, COMPOSED, id="what an input follows was never in reach, and promises no rate"),
         pytest.param(408769, COMPOSED, id="an inside that has come to rest hears late that a component is released"),
+        pytest.param(615203, COMPOSED, id="an answer of before the task began anew comes just before that of after"),
+        pytest.param(618476, PAPER, id="a source is released that was thought to be dead, and its sink is kept"),
+        pytest.param(704721, PAPER, id="a slow component is called, and another life of it answers at once"),
         pytest.param(408360, PAPER, id="a site is back while the others are asked, before lives are followed"),
         pytest.param(403772, PAPER, id="a site is cut off after its answer, while another has not answered"),
     ],

@@ -29,6 +29,7 @@ from tests.sdk.stage import (
     TASKS,
     THEM,
     TRACKER,
+    TRACKER_PROFILE,
     US,
     XSD,
     Stage,
@@ -453,6 +454,16 @@ def test_a_task_of_lower_priority_yields_when_it_is_asked_to() -> None:
     stage.let_pass(2 * YIELDING)
     assert stage.component.active
     assert len(stage.fails) == 1
+
+
+def test_what_is_released_while_another_task_has_reserved_it_says_nothing_that_configurators_heed() -> None:
+    stage = Stage(profile=TRACKER_PROFILE)
+    stage.others.announce(THEM)
+    stage.call(apply(1, US))
+    assert stage.call(reserve(5, THEM)).verdict is Verdict.DONE
+    assert not stage.call(release(2, US)).active
+    stage.let_pass(0.1)
+    assert [(fail.cause, fail.epoch, fail.task) for fail in stage.said] == [(Cause.LET_GO, 0, "")]
 
 
 def test_a_task_of_lower_priority_that_does_not_yield_is_preempted() -> None:
