@@ -23,7 +23,7 @@ making it irreducible ends, the reason is the smallest set that was met until th
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 
 from selfconf.model import requirement as model
 from selfconf.model.refusal import (
@@ -227,27 +227,26 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
         return known, False
     budget = oracle.budget.part(SMALLEST_STEPS)
     with ClauseSolver(given, guarded=True) as clauses:
-        universe = [one for one in all_of(given) if one in clauses.guards]
+        constraint_of = {clauses.guards[one]: one for one in all_of(given) if one in clauses.guards}
         clauses.prefer(clauses.guards.values())
 
-        def held(wanted: Collection[Constraint]) -> Collection[Constraint] | Undecided | None:
-            """Return a maximal set of constraints that hold together with those that are wanted."""
+        def held(wanted: Collection[int]) -> Collection[int] | Undecided | None:
+            """Return the guards of a maximal set of constraints that hold together with those that are wanted."""
             together = set(wanted)
-            for one in (None, *universe):
+            for one in (None, *constraint_of):
                 if one in together:
                     continue
-                asked = together if one is None else {*together, one}
-                answer = clauses.solve([clauses.guards[other] for other in universe if other in asked], budget)
+                answer = clauses.solve([guard for guard in constraint_of if guard in together or guard == one], budget)
                 if isinstance(answer, Undecided):
                     return answer
                 if answer:
-                    together = {other for other in universe if clauses.holds(clauses.guards[other])}
+                    together = {guard for guard in constraint_of if clauses.holds(guard)}
                 elif one is None:
                     return None
             return together
 
-        found, proved = smallest_core(known, universe, held, budget)
-    return tuple(found), proved
+        found, proved = smallest_core([clauses.guards[one] for one in known], [*constraint_of], held, budget)
+        return tuple(constraint_of[guard] for guard in found), proved
 
 
 def _core_by_deletion(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
@@ -355,6 +354,8 @@ class _Wording:
         self.played = [one.role for one in found if isinstance(one, Played)]
         self.roles = tuple(problem.roles[role].iri for role in self.played)
         self.requirements = tuple(map(self._requirement, found))
+        self._alike: dict[int, Counter[Hashable]] = {}
+        """How many candidates of a role have each signature, for the roles that were asked about."""
 
     def reason(self) -> Reason:
         """Return the reason by its kind: too few components, an input that is not fed, or else a conflict."""
@@ -412,8 +413,10 @@ class _Wording:
         feeding = [problem.roles[source] for source in dict.fromkeys(source.role for source in need.sources)]
         sources = tuple(feeder.iri for feeder in feeding)
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
-        signatures = {one for kind in kinds for one in kind.signatures}
-        others = sum(map(signatures.__contains__, map(signature, problem.candidates[role]))) - 1
+        if role not in self._alike:
+            self._alike[role] = Counter(map(signature, problem.candidates[role]))
+        alike = self._alike[role]
+        others = sum(alike[one] for one in {one for kind in kinds for one in kind.signatures}) - 1
         asked = problem.roles[role]
         return DerivationStep(
             asked.iri, profile.component, others, unfed, need.wanted, sources, optional, asked.recruits

@@ -49,6 +49,7 @@ from selfconf.search.recruiting import first_recruited, possible_with_recruits
 from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
 from selfconf.search.reduction import Fed, LazyReduction, Played, reduced
 from selfconf.search.strategies import possible, solution
+from selfconf.search.supply import Issued
 
 TRIALS = 24
 """How many changed problems are tried for each sort of relaxation."""
@@ -366,6 +367,10 @@ def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction
     """Yield interactions that do not exist, from roles with a candidate that issues a signal which is lacking."""
     index = {role.iri: number for number, role in enumerate(problem.roles)}
     tried: set[tuple[IRI, IRI]] = set()
+    issued = [Issued(problem.hierarchy) for _ in problem.roles]
+    for candidates, some in zip(problem.candidates, issued, strict=True):
+        for number, candidate in enumerate(candidates):
+            some.add(number, candidate.profile.outputs)
     for need in _unfed(refused):
         # An interaction that names a port is another one than the plain one, which also feeds what that does not.
         plain = {link.source for link in problem.links[index[need.role]] if link.output is None and link.input is None}
@@ -373,19 +378,9 @@ def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction
             pair = role.iri, need.role
             if number in plain or pair in tried or len(tried) == TRIALS:
                 continue
-            if _issues(problem, number, need):
+            if issued[number].serves(need.wanted):
                 tried.add(pair)
                 yield AddInteraction(*pair)
-
-
-def _issues(problem: Problem, role: int, need: InputFed) -> bool:
-    """Return whether a candidate of a role issues what an input needs."""
-    wanted = Input("", need.wanted.signals, condition=need.wanted.condition)
-    return any(
-        problem.hierarchy.pairs(output, wanted)
-        for candidate in problem.candidates[role]
-        for output in candidate.profile.outputs
-    )
 
 
 def _fewer(problem: Problem, refused: Refusal, budget: Budget) -> Iterator[AskForFewer]:

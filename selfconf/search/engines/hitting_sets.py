@@ -28,7 +28,8 @@ def smallest_core(
     `held` returns a set that can hold together and that nothing can join, with the members asked for; None if these
     cannot.
     """
-    corrections: list[list[Member]] = []
+    place = {one: number for number, one in enumerate(universe)}
+    corrections: list[frozenset[int]] = []
     size = 1
     while size < len(known):
         hitting = _hitting_set(corrections, size, budget)
@@ -37,32 +38,50 @@ def smallest_core(
         if hitting is None:
             size += 1
             continue
-        answer = held(hitting)
+        answer = held([universe[number] for number in hitting])
         if isinstance(answer, Undecided):
             return known, False
         if answer is None:
-            return [one for one in universe if one in hitting], True
-        corrections.append([one for one in universe if one not in answer])
+            return [universe[number] for number in sorted(hitting)], True
+        corrections.append(frozenset(range(len(universe))) - {place[one] for one in answer})
         corrections.sort(key=len)
     return known, True
 
 
-def _hitting_set(sets: Sequence[Sequence[Member]], size: int, budget: Budget) -> list[Member] | Undecided | None:
-    """Return a set of at most this size that has a member of each set, depth first; None if there is none."""
-    chosen: list[Member] = []
-    trying: list[list[Member]] = []
+def _hitting_set(sets: Sequence[frozenset[int]], size: int, budget: Budget) -> set[int] | Undecided | None:
+    """Return a set of at most this size that has a member of each set, depth first; None if there is none.
+
+    The sets are sorted by size, so those of one member come first: these members are in every such set.
+    """
+    chosen = set[int]().union(*(some for some in sets if len(some) == 1))
+    rest = [some for some in sets if some.isdisjoint(chosen)]
+    if len(chosen) + _disjoint(rest) > size:
+        return None
+    trying: list[tuple[int, list[int]]] = []
+    """For each set that was open: its member that is chosen, and those to be tried after it, the next one last."""
     while True:
         if budget.steps == 0:
             return Undecided(0)
         budget.spend(1)
-        open_ = next((some for some in sets if not any(one in chosen for one in some)), None)
+        open_ = next((some for some in rest if some.isdisjoint(chosen)), None)
         if open_ is None:
             return chosen
-        trying.append(list(open_) if len(chosen) < size else [])
-        while trying and not trying[-1]:
-            trying.pop()
-            if trying:
-                chosen.pop()
-        if not trying:
-            return None
-        chosen.append(trying[-1].pop(0))
+        left = sorted(open_, reverse=True) if len(chosen) < size else []
+        while not left:
+            if not trying:
+                return None
+            member, left = trying.pop()
+            chosen.discard(member)
+        chosen.add(left[-1])
+        trying.append((left.pop(), left))
+
+
+def _disjoint(sets: Sequence[frozenset[int]]) -> int:
+    """Return how many sets have no member in common, taken one after the other: so many members hit them at least."""
+    met: set[int] = set()
+    found = 0
+    for some in sets:
+        if met.isdisjoint(some):
+            met |= some
+            found += 1
+    return found
