@@ -21,6 +21,9 @@ demo: $(VENV)/with-sim
 # one is said in tests/schedule.py.
 PARALLEL := --numprocesses $(shell echo $$((1 + $$(nproc 2>/dev/null || echo 2))))
 
+# A test that hangs for five minutes has failed: it says where each thread is, and its process is replaced.
+BOUNDED := -o faulthandler_timeout=300 -o faulthandler_exit_on_timeout=true
+
 # What tests write lies in memory, where there are 2 GiB for it and programs may be in it: the tests of one run make and
 # remove ten thousand folders, for which some disks take half a minute and more.
 MEMORY := $(shell df --output=avail /dev/shm 2>/dev/null | awk '$$1 >= 2097152 { print "/dev/shm" }')
@@ -29,13 +32,13 @@ IN_MEMORY := $(if $(MEMORY),$(shell awk '$$2 == "/dev/shm" && $$4 !~ /noexec/ { 
 # A test that starves among others on a busy machine is run once more, alone; more than five failures stand.
 test: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
-	$(IN_MEMORY) $(BIN)/python -m pytest $(PARALLEL) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.alone $(VENV)/tests.xml
+	$(IN_MEMORY) $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.alone $(VENV)/tests.xml
 
 # The tests that start programs once more, each ecology with keys: a job of its own, as it takes as long as the others.
 # One that starves among others is run once more, alone, as by `make test`.
 test-keys: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
-	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) -m process --junitxml $(VENV)/tests.xml \
+	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) -m process --junitxml $(VENV)/tests.xml \
 		tests/access tests/cli tests/api tests/serve/test_page.py || SELFCONF_TEST_KEYS=1 $(BIN)/python -m tests.alone $(VENV)/tests.xml
 
 # The inner loop: without tests that start processes or are slow, and a tenth of the examples of each property.

@@ -59,4 +59,24 @@ def scheduler(config: Any, log: Any) -> Any:
         def _split_scope(self, nodeid: str) -> str:
             return group_of(nodeid)
 
+        def remove_node(self, node: Any) -> str | None:
+            """Return the test in which a process has died, which is not run again; others take over what is left."""
+            groups = self.assigned_work.pop(node)
+            left = [test for tests in groups.values() for test, done in tests.items() if not done]
+            if not left:
+                return None
+            for group, tests in groups.items():
+                if left[0] in tests:
+                    tests[left[0]] = True
+                if not all(tests.values()):
+                    self.workqueue[group] = tests
+            for other in self.assigned_work:
+                self._reschedule(other)
+            return left[0]
+
+        def _reschedule(self, node: Any) -> None:
+            super()._reschedule(node)
+            if not self.workqueue and not node.shutting_down:
+                node.shutdown()  # else it keeps its last test for a further one to come after, which never does
+
     return Grouped(config, log)

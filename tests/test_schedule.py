@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -28,3 +30,29 @@ def test_the_groups_are_of_modules_and_tests_that_exist() -> None:
     assert [module for module in (*schedule.INHABITED, schedule.RECORDED) if not (ROOT / module).exists()] == []
     text = "\n".join(path.read_text() for path in (ROOT / "tests").rglob("test_*.py"))
     assert [name for name in schedule.BAD_FILES if f"\ndef {name}" not in text] == []
+
+
+@pytest.mark.slow
+def test_a_test_that_hangs_has_failed_and_the_others_go_on(tmp_path: Path) -> None:
+    (tmp_path / "conftest.py").write_text(
+        "from tests.schedule import scheduler\n"
+        "def pytest_xdist_make_scheduler(config, log):\n    return scheduler(config, log)\n"
+    )
+    (tmp_path / "test_some.py").write_text(
+        "import threading, pytest\ndef test_hangs():\n    threading.Event().wait()\n"
+        "@pytest.mark.parametrize('number', range(8))\ndef test_passes(number):\n    pass\n"
+    )
+    bounded = "-o", "faulthandler_timeout=0.3", "-o", "faulthandler_exit_on_timeout=true"
+    quiet = "-q", "-p", "no:cacheprovider", "-p", "no:hypothesispytest"
+    ended = subprocess.run(
+        [sys.executable, "-m", "pytest", *quiet, "-n2", *bounded, "-c", "/dev/null", "--rootdir", tmp_path, tmp_path],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert ended.returncode == 1, ended.stderr
+    assert "1 failed, 8 passed" in ended.stdout
+    assert "crashed while running 'test_some.py::test_hangs'" in ended.stdout
+    assert "in test_hangs" in ended.stderr + ended.stdout, "it says where it was"
