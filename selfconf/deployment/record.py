@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from selfconf.bus.port import Bus, Request
+from selfconf.bus.port import Bus, Request, Urgency
 from selfconf.deployment.run_request import RunRequest
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
@@ -35,26 +35,40 @@ class DeploymentRecord:
         """The configuration before the deployed one; earlier ones are not kept."""
         self._failures: dict[IRI, tuple[IRI, str, str, float]] = {}
         """The newest failure of each component, the newest last: a task that runs for months has many of each."""
+        self._heard = False
+        """Whether somebody wants to have each configuration told: who asks may ask too late."""
+        self._publisher = bus.publisher(keys.configuration(name), Urgency.SIGNAL, self._matched)
         self._served = [
             bus.serve(keys.configuration(name), self._serve_configuration),
             bus.serve(keys.configurator_call(name), self._serve_call),
         ]
 
     def close(self) -> None:
-        """Answer no question any more."""
+        """Tell nothing and answer no question any more."""
         for undo in self._served:
             undo()
+        self._publisher.undeclare()
 
     def deployed(self, configuration: Configuration, epoch: int, time: float) -> None:
         """Note a configuration that is complete."""
         if self._deployed is not None:
             self._revises = self._deployed[:2]
         self._deployed = configuration_iri(configuration, epoch), configuration, epoch, time
+        self._tell()
 
     def lost(self, component: IRI, cause: str, detail: str, time: float) -> None:
         """Note a component that was lost."""
         self._failures.pop(component, None)
         self._failures[component] = component, cause, detail, time
+
+    def _matched(self, heard: bool) -> None:
+        self._heard = heard
+        self._tell()
+
+    def _tell(self) -> None:
+        """Tell those who listen what is deployed."""
+        if self._heard and self._deployed is not None:
+            self._publisher.put(self.turtle().encode())
 
     def _serve_configuration(self, request: Request) -> None:
         try:

@@ -20,7 +20,7 @@
     selfconf/{ecology}/c/{shard}/{component}/@op/{name}/{caller}  an operation that it offers (call)
     selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    reserve, apply, release, state (call)
     selfconf/{ecology}/conf/{name}/live/{life}              a configurator is alive (liveliness token)
-    selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (queryable)
+    selfconf/{ecology}/conf/{name}/cfg                      what it has deployed, as Turtle (put; queryable)
     selfconf/{ecology}/conf/{name}/events                   what it does and notices (put; queryable: the latest)
     selfconf/{ecology}/conf/{name}/@ctl/{call}              status, task, stop (call)
 

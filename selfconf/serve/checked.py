@@ -15,6 +15,8 @@ _FACTS = {
     "repairs": ("code", "role", "message"),
 }
 """The lists of a refusal, and the texts of each of their members."""
+LARGEST_EPOCH = 2.0**53
+"""Above this a browser does not tell one integer from the next; epochs are milliseconds of the clock, and above."""
 
 
 def checked_event(event: Any) -> Body:
@@ -24,7 +26,7 @@ def checked_event(event: Any) -> Body:
     if body["act"] == "running":
         body |= {
             "configuration": checked_configuration(event.get("configuration")),
-            "epoch": finite_number(event.get("epoch")),
+            "epoch": finite_number(event.get("epoch"), LARGEST_EPOCH),
         }
     if body["act"] in ("waiting", "refused"):
         body["refusal"] = checked_refusal(event.get("refusal"))
@@ -74,9 +76,9 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
-def finite_number(value: Any) -> float:
-    """A number that can be a time or a count; zero for what is none."""
-    return value if isinstance(value, int | float) and math.isfinite(value) and abs(value) < 1e12 else 0.0
+def finite_number(value: Any, most: float = 1e12) -> float:
+    """A number that can be a time in seconds, or a count up to some limit; zero for what is none."""
+    return value if isinstance(value, int | float) and math.isfinite(value) and abs(value) < most else 0.0
 
 
 def _list(value: Any) -> list[Any]:

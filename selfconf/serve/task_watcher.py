@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections import deque
 from collections.abc import Callable, Iterable
 
 from selfconf.api.deployed import deployed_body
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError, TurtleError
+from selfconf.model.term import Literal
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.rdf import turtle
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import SC
 from selfconf.serve.change import Body
 from selfconf.serve.watched_task import WatchedTask
 
 log = logging.getLogger(__name__)
+_EPOCH = re.compile("[0-9]{1,18}")
 
 LOOK_ANEW = 10.0
 """Seconds between two looks at all configurators."""
@@ -54,6 +59,7 @@ class TaskWatcher:
     def follow(self) -> None:
         """Follow every configurator from now on, those that are there first."""
         self.bus.subscribe(self.keys.notices(), self._noticed)
+        self.bus.subscribe(self.keys.configuration(), lambda sample: self._take_deployed(Replies((sample,))))
         self.bus.subscribe(self.keys.task(), lambda sample: self._take_kept(Replies((sample,))))
         self.bus.watch(self.keys.any_configurator_life(), self._configurator_changed)
         self._audit()
@@ -132,7 +138,7 @@ class TaskWatcher:
             if event["act"] == "waiting":  # what was deployed is taken down, though its configurator still tells it
                 self._put_graph(task.configurator, b"")
         if notice.event.get("act") == "running":
-            self._ask(self.keys.configuration(task.configurator), self._deployed)
+            self._ask(self.keys.configuration(task.configurator), self._take_deployed)
 
     def _hear_all(self, replies: Replies) -> None:
         notices = []
@@ -157,7 +163,7 @@ class TaskWatcher:
     def _ask_all(self, configurator: str) -> None:
         self._ask(self.keys.notices(configurator), self._hear_all)
         self._ask(self.keys.configurator_call(configurator, "status"), self._take_statuses)
-        self._ask(self.keys.configuration(configurator), self._deployed)
+        self._ask(self.keys.configuration(configurator), self._take_deployed)
 
     def _ask_task(self, configurator: str) -> None:
         """Ask a configurator for its task at once: one that is refused does not live long."""
@@ -200,7 +206,7 @@ class TaskWatcher:
                 self._task(status.configurator).take_status(status)
         self._changed()
 
-    def _deployed(self, replies: Replies) -> None:
+    def _take_deployed(self, replies: Replies) -> None:
         for sample in replies.samples:
             name = sample.key.split("/")[3] if sample.key.count("/") == 4 else ""
             task = self._tasks.get(name)
@@ -214,7 +220,10 @@ class TaskWatcher:
             except TurtleError as error:
                 log.warning("passed over a configuration: %s", error)
                 continue
-            if task.refusal is None:
+            epoch = _epoch(document)
+            # An answer may come after what was put later, and what was put before the notice that the task runs again.
+            if epoch > task.deployed or (epoch == task.deployed and task.refusal is None):
+                task.deployed, task.refusal = epoch, None
                 self._put_graph(name, turtle.ntriples(document.triples()))
                 task.configuration = deployed_body(document)
         self._changed()
@@ -229,3 +238,9 @@ class TaskWatcher:
             if known is None or known.revision < record.revision:
                 self._kept[record.task] = record
         self._changed()
+
+
+def _epoch(document: Document) -> int:
+    """The epoch of the configuration that a document tells; 0 if it does not say."""
+    told = (document.value(name, SC.epoch) for name in document.instances(SC.Configuration))
+    return next((int(one.lexical) for one in told if isinstance(one, Literal) and _EPOCH.fullmatch(one.lexical)), 0)

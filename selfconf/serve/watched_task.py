@@ -32,6 +32,8 @@ class WatchedTask:
         self.sequence = 0
         """The number of the last event that was heard."""
         self.configuration: Body | None = None
+        self.deployed = 0
+        """The epoch of the newest configuration that it has told."""
         self.refusal: Body | None = None
         self.lost: dict[str, Body] = {}
         self.ended = ""
@@ -60,7 +62,9 @@ class WatchedTask:
             why = {fact: event.get(fact) for fact in ("cause", "detail", "time")}
             self.lost[str(event.get("component"))] = why
         if act == "running":
-            self.configuration, self.refusal = event["configuration"] or self.configuration, None
+            self.refusal = None
+            if event["epoch"] != self.deployed:  # what is told of what is deployed says more
+                self.configuration = event["configuration"] or self.configuration
         if act in ("waiting", "refused"):
             self.configuration, self.refusal = None, event["refusal"]
         self.ended = ENDED.get(act, self.ended)

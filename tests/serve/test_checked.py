@@ -55,3 +55,9 @@ def test_what_a_configurator_tells_goes_on_as_it_is(tmp_path: Path) -> None:
 
 def test_what_is_no_object_is_none() -> None:
     assert checked_refusal([]) is checked_configuration("x") is None
+
+
+def test_the_epoch_of_a_configuration_goes_on_to_the_page() -> None:
+    epoch = 1_795_487_845_161
+    assert checked_event({"act": "running", "time": 1.0, "epoch": epoch})["epoch"] == epoch
+    assert checked_event({"act": "running", "time": 1.0, "epoch": 1e300})["epoch"] == 0.0

@@ -72,6 +72,33 @@ def test_a_configuration_that_is_replaced_before_it_is_handed_on_is_handed_on_be
     ]
 
 
+def test_a_configuration_that_is_replaced_before_anybody_can_ask_for_it_is_handed_on(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(TaskWatcher, "_ask", lambda *_: None)
+    tasks = Tasks(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    told = [next(iter(graphs.values())) for graphs in tasks.watcher.take_graphs()]
+    assert [iri("absolute-odometry").encode() in graph for graph in told] == [False, True]
+
+
+def test_a_configuration_that_is_told_late_takes_the_place_of_no_later_one(lab: Lab) -> None:
+    tasks = Tasks(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    first = agent._record.turtle().encode()
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    tasks.watcher.take_graphs()
+    tasks.watcher._take_deployed(Replies((Sample(lab.keys.configuration(agent.name), first),)))
+    assert tasks.watcher.take_graphs() == [{}]
+    ((_, body),) = tasks.watcher.bodies()
+    assert iri("absolute-odometry") in str(body["configuration"])
+
+
 def test_what_a_configurator_tells_of_its_task_is_handed_on_once_the_identity_is_known(lab: Lab) -> None:
     watcher = Tasks(lab).watcher
     record, key = TaskRecord("tidy~1", 1), lab.keys.configurator_call("c1", "task")
