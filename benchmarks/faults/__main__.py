@@ -23,6 +23,8 @@ from benchmarks.faults.ecology import Ecology
 from benchmarks.faults.trial import PROMISES, ROUTED_VICTIMS, VICTIMS, Outcome, Trial, plan
 from benchmarks.machine import described, table
 
+TOLD = 10
+"""After how many trials it is told how many are done."""
 LEFT = "no process is left when its site has ended"
 
 
@@ -39,6 +41,8 @@ def measure(seed: int, numbers: list[int], longest: float, minutes: float, route
             victims = ROUTED_VICTIMS if routed else VICTIMS
             outcome = Trial(ecology, plan(seed, number, longest, victims)).carry_out()
             outcomes.append(outcome)
+            if len(outcomes) % TOLD == 0:
+                print(f"{len(outcomes)} of {len(numbers)} trials", file=sys.stderr, flush=True)
             for promise, detail in outcome.broken.items():
                 print(f"{outcome.trial} {outcome.fault}: broken: {promise}: {detail}", file=sys.stderr, flush=True)
             if outcome.broken or number == numbers[-1]:
