@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
+from operator import is_
 
 from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import LEASE, MemoryBus
@@ -389,7 +391,7 @@ class Watch:
         self._bounds = {invariant.name: invariant.bound(history) for invariant in STEPS}
         self._since: dict[tuple[str, str], float] = {}
         self._noted: set[tuple[str, str]] = set()
-        self._seen: object = None
+        self._seen: list[int] = []
         self._kept: list[object] = []
         self.broken: list[str] = []
         self.names: set[str] = set()
@@ -403,9 +405,7 @@ class Watch:
 
     def look(self) -> None:
         """Look at the ecology as it is now; conditions need a second look only if something has changed."""
-        seen = self._fingerprint()
-        if seen != self._seen:
-            self._seen = seen
+        if self._is_changed():
             self._note_composed()
             self._compare()
         now = self._history.network.time
@@ -482,25 +482,29 @@ class Watch:
         self.names.add(name)
         self.broken.append(f"{self._history.network.time:8.3f}  {name}: {what}")
 
-    def _fingerprint(self) -> object:
-        """What the conditions depend on; values that are replaced when they change are compared by identity.
+    def _is_changed(self) -> bool:
+        """Whether anything that the conditions depend on is another than at the last look.
 
-        They are kept until the next look, or another value might come to lie at the same place.
+        Values that are replaced when they change are compared by identity; they are kept, or another value might come
+        to lie at the same place.
         """
         history, network = self._history, self._history.network
-        lives, agents = history.lives, [*history.agents, *history.living()]
-        kept: list[object] = [agent.state for agent in agents]
-        seen = [*map(id, kept), len(lives)]
-        for life in lives:
+        insides = list(history.insides())
+        runners = [inside.runner for inside in insides if inside.runner is not None]
+        kept: list[object] = [agent.state for agent in chain(history.agents, runners)]
+        seen: list[int] = [len(history.processes), len(insides)]
+        for life in history.processes:
             if life.node.open:
-                runtime, activation = life.runtime, life.runtime.activation
-                kept.append(activation)
-                seen += id(activation), life.node.paused, life.thread.hangs, runtime.active, len(life.recorder.said)
+                kept.append(life.runtime.activation)
+                seen += life.node.paused, life.thread.hangs, life.runtime.code.active, len(life.recorder.said)
             else:
                 seen.append(-1)
-        self._kept = kept
-        for agent in agents:
-            node = node_of(agent)
-            seen += (node.open, node.paused)
-        expelled = [node.expelled for node in network.nodes].count(True)
-        return seen, len(network._cut), expelled, len(network._events) > MOST_WAITING
+        for inside in insides:
+            kept.append(inside.runtime.activation)
+            seen.append(inside.runtime.code.active)
+        for node in network.nodes:
+            seen.append(4 * node.open + 2 * node.paused + node.expelled)
+        seen += len(network._cut), len(network._events) > MOST_WAITING
+        changed = seen != self._seen or len(kept) != len(self._kept) or not all(map(is_, kept, self._kept))
+        self._seen, self._kept = seen, kept
+        return changed
