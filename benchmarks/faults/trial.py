@@ -125,8 +125,8 @@ class Trial:
         self._stopped: list[tuple[float, int]] = []
         """The processes that stand still, with the time at which they go on."""
         self._restart: list[tuple[float, str]] = []
-        self._still: list[tuple[float, float]] = []
-        """The times between which anybody stood still: whoever did could not keep a promise."""
+        self._still: list[tuple[str, float, float]] = []
+        """Who stood still, and from when to when: whoever did could not keep a promise."""
         self.began = time.monotonic()
 
     def carry_out(self) -> Outcome:
@@ -173,7 +173,7 @@ class Trial:
             os.kill(process, signal.SIGSTOP)
             now = time.monotonic()
             self._stopped.append((now + seconds, process))
-            self._still.append((now, now + seconds))
+            self._still.append((fault.victim, now, now + seconds))
             return
         os.kill(process, signal.SIGKILL if fault.kind == "kill" else signal.SIGTERM)
         if fault.victim in ("site", "router"):
@@ -205,23 +205,19 @@ class Trial:
         """If the configurator is gone, or stands still, everybody must be off after a while."""
         hit = [fault for fault in self.plan.faults if fault.victim == "configurator"]
         promise = "without its configurator nobody acts"
-        if not hit or KINDS[hit[0].kind] == 0.5:
-            return
+        if not hit or any(KINDS[fault.kind] in (0.5, 2.0) for fault in hit):
+            return  # it is back just when they would be off, or before
         fell = time.monotonic()
         bound = PROMISES[promise]
-        if KINDS[hit[0].kind] == 2.0:
-            return  # it is back just when they would be off
         self._wait(bound + 0.3)
-        if self.plan.faults[0] is not hit[0] or len(self.plan.faults) > 1:
-            late = [sign for sign in self.ecology.witnesses.acting(fell + bound) if not self._was_still(sign.time)]
-        else:
-            late = self.ecology.witnesses.acting(fell + bound)
         acting = self.ecology.witnesses.acting(fell)
+        acting = [sign for sign in acting if not self._was_still(sign.time, "configurator")]
         last = max((sign.time for sign in acting), default=fell) - fell
-        self.outcome.judge(promise, last if not late else max(last, bound + 0.01), _names(late))
+        self.outcome.judge(promise, last, _names([sign for sign in acting if sign.time > fell + bound]))
 
-    def _was_still(self, moment: float) -> bool:
-        return any(begin <= moment <= end + LEASE + GRACE for begin, end in self._still)
+    def _was_still(self, moment: float, but: str = "") -> bool:
+        """Whether somebody stood still then, or shortly before, other than the one that is left out."""
+        return any(begin <= moment <= end + LEASE + GRACE for who, begin, end in self._still if who != but)
 
     def _heal(self) -> None:
         """Wait until the task runs again; where its configurator is gone, another one is begun."""
