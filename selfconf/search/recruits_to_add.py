@@ -22,18 +22,18 @@ NEWCOMER = "urn:selfconf:recruit:"
 """What the names of added recruits begin with, which do not exist yet."""
 
 
-def recruits_to_add(problem: Problem, possible: Callable[[Problem], bool]) -> AddRecruits | None:
+def recruits_to_add(problem: Problem, possible: Callable[[AddRecruits], bool]) -> AddRecruits | None:
     """Return recruits that make a problem possible, none of whose outputs can be spared; None if there are none.
 
-    `possible` says whether a problem with more recruits has a solution.
+    `possible` says whether the problem with them has a solution.
     """
     issued = {number: _wanted(problem, number) for number, role in enumerate(problem.roles) if role.recruits}
     looked_at = [(number, output) for number, outputs in issued.items() for output in outputs]
-    if not 0 < len(looked_at) <= MOST_LACKING or not possible(with_more_recruits(problem, _asked(problem, issued))):
+    if not 0 < len(looked_at) <= MOST_LACKING or not possible(_asked(problem, issued)):
         return None
     for number, output in looked_at:
         fewer = {**issued, number: tuple(other for other in issued[number] if other is not output)}
-        if possible(with_more_recruits(problem, _asked(problem, fewer))):
+        if possible(_asked(problem, fewer)):
             issued = fewer
     found = _asked(problem, issued)
     return found if found.additions else None

@@ -5,8 +5,8 @@ most helpful that could be added for a role; an output that an interaction names
 choice of these. Wherever there is no solution, an irreducible set of constraints cannot
 hold; only a component for one of its roles, or for a role that may feed one of its inputs, changes that. So
 breadth-first search over sets of such additions, each extended by these roles alone, finds the fewest; then outputs are
-taken away again one by one, as long as there is a solution without them. Recruits are added likewise
-(`recruits_to_add`).
+taken away again one by one, as long as there is a solution without them. Where there are players, but none that have
+recruits, one more component for any role may help. Recruits are added likewise (`recruits_to_add`).
 
 *Things to change.* A role that asks for fewer, or for one where it asked for none and others need what it would
 issue; one interaction more, where some candidate issues what is lacking; a near miss accepted. Each alone.
@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from selfconf.model.configuration import Configuration
@@ -47,7 +47,7 @@ from selfconf.search.explain import FeasibilityOracle, core
 from selfconf.search.problem import Link, Problem
 from selfconf.search.recruiting import first_recruited, possible_with_recruits
 from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
-from selfconf.search.reduction import Fed, LazyReduction, Played, reduced
+from selfconf.search.reduction import Fed, LazyReduction, Played, recruits_that_matter, reduced
 from selfconf.search.strategies import possible, solution
 from selfconf.search.supply import Issued
 
@@ -120,11 +120,18 @@ def _relaxations(
     """Yield changes that make a refused problem possible if all recruits were there at once."""
     budget = Budget(RELAXATION_STEPS if steps is None else min(steps, RELAXATION_STEPS))
     near_misses = near_misses[:NEAR]
-    small = _reduced(problem, {miss.component for miss, _ in near_misses})
+    matter = recruits_that_matter(problem) if problem.supply.recruits else ()
+    recruitable = {problem.supply.recruits[number].component for number in matter}
+    small = _reduced(problem, recruitable.union(miss.component for miss, _ in near_misses))
+
+    def works(one: AddComponents) -> bool:
+        """Whether an addition makes the task possible, once it would if all recruits were there at once."""
+        return _recruits_found(relaxed_by(problem, one), budget)
+
     accepted = itertools.starmap(AcceptNearMiss, near_misses)
     yield from (one for one in accepted if _possible(relaxed_by(small, one), budget))
-    recruits = recruits_to_add(small, lambda more: _possible(more, budget))
-    added = _additions(small, budget)
+    recruits = recruits_to_add(small, lambda one: _possible(relaxed_by(small, one), budget) and works(one))
+    added = _additions(small, budget, works)
     yield from (one for one in (recruits, added) if one is not None)
     yield from (one for one in _interactions(small, refused) if _possible(relaxed_by(small, one), budget))
     yield from _fewer(small, refused, budget)
@@ -171,6 +178,15 @@ def _possible(problem: Problem, budget: Budget) -> bool:
         return possible(problem, part)
 
 
+def _recruits_found(problem: Problem, budget: Budget) -> bool:
+    """Return whether some players have recruits, in a problem that has a solution if these are there at once."""
+    if not any(role.recruits for role in problem.roles):
+        return True
+    supplying = sum(len(r.profile.inputs) + len(r.profile.outputs) for r in problem.supply.recruits)
+    budget.spend((_ports(problem) + supplying) // PORTS_PER_TRIAL_STEP)
+    return budget.steps != 0 and possible_with_recruits(problem, RECRUIT_TRIAL_STEPS)
+
+
 def _reduced(problem: Problem, distinguished: Collection[IRI]) -> Problem:
     """Return the problem with only the candidates that its reduction keeps."""
     kept = reduced(problem, distinguished).options
@@ -197,31 +213,42 @@ Added = Counter[tuple[int, tuple[Output, ...]]]
 """How many components are added for each role and choice of outputs."""
 
 
-def _additions(problem: Problem, budget: Budget) -> AddComponents | None:
+Works = Callable[[AddComponents], bool]
+"""Whether an addition works in the end, which is possible if all recruits are there at once."""
+
+
+def _additions(problem: Problem, budget: Budget, works: Works) -> AddComponents | None:
     """Return the fewest components to add, if a few are enough: breadth-first search over sets of additions."""
     lacking = _lacking(problem)
     if lacking is None:
         return None
+    recruiting = any(role.recruits for role in problem.roles)
     choices = [wanted_of(problem, role) for role in range(len(problem.roles))]
     waiting = _lacked(lacking, choices)
-    seen = {frozenset(added.items()) for added in waiting}
-    for trial in range(TRIALS):
-        if trial >= len(waiting):
+    seen = {frozenset[object](added.items()) for added in waiting}
+    for added in itertools.islice(waiting, TRIALS):  # which grows meanwhile
+        asked = _asked(problem, added)
+        changed = relaxed_by(problem, asked)
+        playing = _solution(changed, budget) if added or recruiting else None
+        if isinstance(playing, Undecided):
+            # What comes later in the queue may be possible, and would not be known to be the fewest.
             return None
-        added = waiting[trial]
-        changed = relaxed_by(problem, _asked(problem, added))
-        playing = _solution(changed, budget) if added else None
-        if isinstance(playing, list):
-            return _trimmed(problem, added, playing, budget)
-        if playing is not None:
-            # Undecided: what comes later in the queue may be possible, and would not be known to be the fewest.
-            return None
-        for one in [(role, outputs) for role in _helpful(changed, budget) for outputs in choices[role]]:
-            further = added + Counter({one: 1})
-            if frozenset(further.items()) not in seen:
-                seen.add(frozenset(further.items()))
-                waiting.append(further)
+        if playing is not None and added and works(asked):
+            return _trimmed(problem, added, playing, budget, works)
+        helpful = _helpful(changed, budget) if playing is None else _feeding_first(changed)
+        waiting += _with_one_more(added, [(role, outputs) for role in helpful for outputs in choices[role]], seen)
     return None
+
+
+def _with_one_more(
+    added: Added, ones: Iterable[tuple[int, tuple[Output, ...]]], seen: set[frozenset[object]]
+) -> Iterator[Added]:
+    """Yield additions with one component more, given by its role and outputs, that were not seen, and note them."""
+    for one in ones:
+        further = added + Counter({one: 1})
+        if frozenset(further.items()) not in seen:
+            seen.add(frozenset(further.items()))
+            yield further
 
 
 def _lacked(lacking: Counter[int], choices: Sequence[Sequence[tuple[Output, ...]]]) -> list[Added]:
@@ -288,6 +315,15 @@ def _helpful(problem: Problem, budget: Budget) -> list[int]:
     return [role for role in found if role in played]
 
 
+def _feeding_first(problem: Problem) -> list[int]:
+    """Return the roles that ask for components, those first that feed others.
+
+    Where players lack recruits alone, one more component for any role may leave another free to be recruited.
+    """
+    asked = [number for number, role in enumerate(problem.roles) if role.minimum]
+    return sorted(asked, key=lambda number: not problem.sinks[number])
+
+
 def _in_order(added: tuple[int, tuple[Output, ...]]) -> tuple[int, str]:
     """Return what additions are sorted by: the role, then the outputs, some of which say more than others."""
     return added[0], repr(added[1])
@@ -309,7 +345,9 @@ def _named(problem: Problem, role: int) -> frozenset[str]:
     return frozenset(link.output for link in links if link.source == role and link.output is not None)
 
 
-def _trimmed(problem: Problem, added: Added, playing: list[list[Candidate]], budget: Budget) -> AddComponents:
+def _trimmed(
+    problem: Problem, added: Added, playing: list[list[Candidate]], budget: Budget, works: Works
+) -> AddComponents:
     """Return additions with only the outputs that are needed for a solution; `playing` is a solution with all."""
     for one in sorted(added, key=_in_order):
         role, left = one
@@ -326,6 +364,8 @@ def _trimmed(problem: Problem, added: Added, playing: list[list[Candidate]], bud
                 if not isinstance(found, list):
                     continue
                 changed = found
+            if not works(_asked(problem, trial)):
+                continue
             left, playing, added = fewer, changed, trial
     return _with_values(problem, _asked(problem, added), playing)
 

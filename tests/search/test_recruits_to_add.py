@@ -22,7 +22,7 @@ def possible(changed: Problem) -> bool:
 
 def advice(given: Problem) -> AddRecruits | None:
     """What to add, seen to be enough."""
-    found = recruits_to_add(given, possible)
+    found = recruits_to_add(given, lambda one: possible(with_more_recruits(given, one)))
     if found is not None:
         assert possible(with_more_recruits(given, found))
     return found

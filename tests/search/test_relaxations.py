@@ -15,10 +15,11 @@ from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition
 from selfconf.search import relaxations
 from selfconf.search.problem import Problem
+from selfconf.search.recruit_refusal import refusal_of_recruits
 from selfconf.search.relaxations import relaxed_by, wanted_of, with_relaxations
 from selfconf.search.strategies import first
 from tests.search.oracle import World
-from tests.search.test_recruiting import with_recruits
+from tests.search.test_recruiting import RecruitingWorld, recruiting, with_recruits
 from tests.search.worlds import agreement, component, iri, problem, problems
 
 OF_PIPPI = PropertyUnmet(iri("support"), (NotAmong(frozenset((iri("Pippi"),)), frozenset((iri("Astrid"),))),))
@@ -230,7 +231,35 @@ def test_a_role_asks_for_so_few_that_there_are_recruits_for_them() -> None:
     refused = first.search(helped)
     assert isinstance(refused, Refusal)
     words = [str(one) for one in with_relaxations(helped, refused).repairs]
-    assert words == ["let the role drive be optional (sc:minCount 0)"]
+    assert words == [
+        "add 2 more components for the role drive",
+        "let the role drive be optional (sc:minCount 0)",
+    ]
+
+
+@given(recruiting())
+@agreement(0.3)
+def test_a_refusal_of_roles_that_recruit_says_what_to_add(problem: Problem) -> None:
+    pytest.importorskip("pysat")
+    if problem.unvalued or RecruitingWorld(problem).answer() is not None:
+        return
+    outcome = first.search(problem)
+    refused = outcome if isinstance(outcome, Refusal) else refusal_of_recruits(problem)
+    found = with_relaxations(problem, refused).repairs
+    for one in found:
+        assert RecruitingWorld(relaxed_by(problem, one)).answer() is not None, str(one)
+    # Where more would have to be added, the trials may end before.
+    if sum(role.minimum for role in problem.roles) < 3:
+        assert any(isinstance(one, AddComponents) for one in found)
+
+
+def test_what_a_player_cannot_be_recruited_for_is_to_be_issued_by_a_recruit_that_is_added() -> None:
+    given_ = problem({"boat": [component("boat", "s:S t:T")], "eye": [component("camera", outputs="t:T")]})
+    helped = with_recruits(given_, component("camera", outputs="t:T"))
+    refused = first.search(helped)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(helped, refused).repairs]
+    assert words[0] == "add one more component for the role boat to recruit that issues S and T"
 
 
 def test_additions_that_differ_in_what_they_state_are_put_in_order() -> None:
