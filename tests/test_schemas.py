@@ -219,6 +219,14 @@ def test_all_answers_that_are_recorded_keep_to_the_schema() -> None:
             "offers an operation Text -> Image",
             {"request": "urn:t:Text", "response": "urn:t:Image"},
         ),
+        (
+            'sc:hasInput [ sc:name "i" ; sc:signalType :Light ; sc:accepts [ sh:class :Lamp ] ]',
+            "issues Light as the sc:accepts of its input asks",
+            {
+                "signal": "urn:t:Light",
+                "accepts": "[ <http://www.w3.org/ns/shacl#class> <urn:t:Lamp> ]",
+            },
+        ),
     ],
 )
 def test_recruits_to_add_keep_to_the_schema(
@@ -229,7 +237,8 @@ def test_recruits_to_add_keep_to_the_schema(
         ":t a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class :Eye ; sc:recruits true .\n"
     )
     (tmp_path / "ad.ttl").write_text(
-        f"@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:t:> .\n:e a sc:Component , :Eye ; {need} .\n"
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:t:> .\n"
+        f":e a sc:Component , :Eye ; {need} .\n"
     )
     body = printed(capsys, "configure", str(tmp_path / "t.ttl"), "--ads", str(tmp_path / "ad.ttl"))
     validator("configure").validate(body)

@@ -80,15 +80,33 @@ class LivingTask:
     configurator: str
     """The name of the configurator that runs it; empty if no site has begun to."""
     detached: bool
-    """Whether it lives in the sites: else in the command that runs it."""
+    """Whether it lives in the sites."""
     components: tuple[IRI, ...] = ()
+    inside_of: IRI | None = None
+    """The composite of which it is the inside, if it is one: its site runs it."""
 
     @classmethod
     def of(cls, status: Status, detached: bool) -> LivingTask:
         """A task that a configurator runs."""
         name = task_name(status.task)
-        phase, template, components = status.phase, status.template, status.components
-        return cls(name, status.priority, status.beginning, phase, template, status.configurator, detached, components)
+        return cls(
+            name,
+            status.priority,
+            status.beginning,
+            status.phase,
+            status.template,
+            status.configurator,
+            detached,
+            status.components,
+            status.outside,
+        )
+
+    @property
+    def lives_in(self) -> str:
+        """What goes on with it: the sites, the command that runs it, or the composite of which it is the inside."""
+        if self.inside_of is not None:
+            return f"composite {self.inside_of.short}"
+        return "sites" if self.detached else "command"
 
     @classmethod
     def kept(cls, record: TaskRecord) -> LivingTask:
@@ -105,6 +123,7 @@ class LivingTask:
             "beginning": self.beginning,
             "phase": self.phase,
             "template": self.template,
+            "inside_of": self.inside_of,
             "configurator": self.configurator,
             "detached": self.detached,
             "components": list(self.components),

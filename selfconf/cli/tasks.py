@@ -36,7 +36,7 @@ def run(given: argparse.Namespace) -> int:
                 task.phase,
                 f"{max(0.0, time.time() - task.beginning):.0f} s",
                 task.configurator or "-",
-                "sites" if task.detached else "command",
+                task.lives_in,
                 ", ".join(component.short for component in task.components),
             ]
             for task in found

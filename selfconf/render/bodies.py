@@ -153,6 +153,7 @@ def _additions(repair: Relaxation) -> dict[str, Any]:
                         **_carried(o),
                         **({"unit": o.unit} if o.unit else {}),
                         **({"frame": value_body(o.frame)} if o.frame else {}),
+                        **({"accepts": " ".join(sorted(o.conforms))} if o.conforms else {}),
                     }
                     for o in one.outputs
                 ],

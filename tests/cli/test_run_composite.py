@@ -57,6 +57,9 @@ def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_b
     assert {one["task"]: one["inside_of"] for one in status} == {"approach": None, "lookout": HARBOUR + "lookout"}
     shown = run_command(capsys, "status", *where[:4]).out.splitlines()
     assert [line for line in shown if line.startswith("    inside of :lookout: :look-out: running")]
+    tasks = run_command(capsys, "tasks", "--format", "json", *where[:4]).body
+    assert {one["task"]: one["inside_of"] for one in tasks} == {"approach": None, "lookout": HARBOUR + "lookout"}
+    assert "composite lookout" in run_command(capsys, "tasks", *where[:4]).out
     within = run_command(capsys, "query", INSIDE_OF, "--format", "json", *where[:4]).body
     assert [one["composite"]["value"] for one in within["results"]["bindings"]] == [HARBOUR + "lookout"]
     kill(home, "pier-camera")
