@@ -64,7 +64,7 @@ class Searches:
                 yield answer
                 continue
             steps = RECRUIT_STEPS if self.steps is None else self.steps
-            whole = recruited(problem, answer, () if running is None else running.recruits, steps)
+            whole = recruited(problem, answer, running, steps)
             other = first_recruited(problem, steps, running) if whole is None else whole[0]
             yield refusal_of_recruits(problem) if other is None else other
 

@@ -215,15 +215,18 @@ class Problem:
         """
         if any(role.recruits for role in self.roles):
             return self.configuration(playing, self._values_of(playing))
-        preferred: list[Playing] = [self.candidates]
-        if running is not None:
-            played = {a.role: a.components for a in running.assignments}
-            kept = [
-                [c for c in candidates if c.profile.component in played.get(role.iri, ())]
-                for role, candidates in zip(self.roles, self.candidates, strict=True)
-            ]
-            preferred.insert(0, kept)
-        return self._extended(playing, preferred)
+        return self._extended(playing, self._preferred(running))
+
+    def _preferred(self, running: Configuration | None) -> list[Playing]:
+        """Return the candidates that are tried one after the other: those that run in the same role, and all."""
+        if running is None:
+            return [self.candidates]
+        played = {a.role: a.components for a in running.assignments}
+        kept = [
+            [c for c in candidates if c.profile.component in played.get(role.iri, ())]
+            for role, candidates in zip(self.roles, self.candidates, strict=True)
+        ]
+        return [kept, self.candidates]
 
     def _values_of(self, playing: Playing) -> tuple[int, ...]:
         """Return the values that are left to the variables beside all that plays."""
@@ -263,21 +266,40 @@ class Problem:
             if component not in joined
         }
 
-    def with_further_players(self, configuration: Configuration) -> Configuration:
+    def with_further_players(self, configuration: Configuration, running: Configuration | None = None) -> Configuration:
         """Return a configuration that has its recruits, extended by every further candidate that fits.
 
-        No recruit becomes a player; and where a further candidate would feed what recruits feed, none is added.
+        No recruit becomes a player, nor a candidate that would feed what recruits feed. Components that play the same
+        role in a running configuration are tried before all others.
         """
         playing = [
             [c for one in a.components for c in candidates if c.profile.component == one]
             for a, candidates in zip(configuration.assignments, self.candidates, strict=True)
         ]
-        extended = self._extended(playing, [self.candidates], configuration.recruits)
-        whole = replace(extended, recruits=configuration.recruits)
         brought = [c for c in configuration.connections if not {c.source, c.sink}.isdisjoint(configuration.recruits)]
-        if not {(c.sink, c.input) for c in brought}.isdisjoint((c.sink, c.input) for c in whole.connections):
-            return configuration
+        supplied = {(connection.sink, connection.input) for connection in brought}
+        preferred = [self._not_feeding(candidates, playing, supplied) for candidates in self._preferred(running)]
+        extended = self._extended(playing, preferred, configuration.recruits)
+        whole = replace(extended, recruits=configuration.recruits)
         return replace(whole, connections=ordered_connections((*whole.connections, *brought), whole.components))
+
+    def _not_feeding(self, candidates: Playing, playing: Playing, inputs: Collection[tuple[IRI, str]]) -> Playing:
+        """Return the candidates that would feed none of some inputs, given by component and name, of what plays."""
+        asked: dict[int, list[tuple[Link, Input]]] = {}
+        for role, some in enumerate(playing):
+            for component, port in ((c.profile.component, port) for c in some for port in c.profile.inputs):
+                for link in self.links[role] if (component, port.name) in inputs else ():
+                    asked.setdefault(link.source, []).append((link, port))
+        return [
+            [
+                c
+                for c in some
+                if not any(self.matches(o, link, port) for link, port in asked[role] for o in c.profile.outputs)
+            ]
+            if role in asked
+            else some
+            for role, some in enumerate(candidates)
+        ]
 
     def _extend(
         self,

@@ -14,13 +14,11 @@ where the steps end, the answer is what is left once none of them can be spared.
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import replace
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
-from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.engines import CandidateSearch, FoundedSolver, least_of_clauses, solver_available
 from selfconf.search.fewest_recruits import fewest
@@ -40,20 +38,20 @@ RECRUIT_STEPS = 5_000
 
 
 def recruited(
-    problem: Problem, configuration: Configuration, running: Collection[IRI] = (), steps: int = RECRUIT_STEPS
+    problem: Problem, configuration: Configuration, running: Configuration | None = None, steps: int = RECRUIT_STEPS
 ) -> tuple[Configuration, bool] | None:
     """Return a configuration with the recruits that it needs, and whether they are proved to be the fewest.
 
-    None where its players have inputs that no recruits can feed. Of equally few recruits those that are `running` come
-    before all others.
+    None where its players have inputs that no recruits can feed. Of equally few recruits those of the `running`
+    configuration come before all others; so do its players, of the further ones.
     """
     if not any(role.recruits for role in problem.roles):
         return configuration, True
-    choice = RecruitChoice(problem, configuration, running)
+    choice = RecruitChoice(problem, configuration, () if running is None else running.recruits)
     if not choice.possible:
         return None
     chosen, proved = fewest(choice, Budget(steps))
-    return problem.with_further_players(choice.configuration(chosen)), proved
+    return problem.with_further_players(choice.configuration(chosen), running), proved
 
 
 def first_recruited(
@@ -70,7 +68,7 @@ def first_recruited(
         return Undecided(steps)
     if playing is None:
         return None
-    found = recruited(problem, problem.solved(playing), () if running is None else running.recruits, steps)
+    found = recruited(problem, problem.solved(playing), running, steps)
     assert found is not None
     return found[0]
 

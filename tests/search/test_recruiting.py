@@ -215,9 +215,42 @@ def test_a_further_player_joins_what_has_its_recruits() -> None:
 def test_of_equally_few_recruits_those_that_run_are_kept() -> None:
     user = problem({"user": [component("user", "s:S")]})
     helped = with_recruits(user, component("a", "", "s:S"), component("b", "", "s:S"))
-    found = recruited(helped, first.search(helped), running=[iri("b")])
+    fresh = first.search(helped)
+    assert isinstance(fresh, Configuration)
+    found = recruited(helped, fresh, running=replace(fresh, recruits=(iri("b"),)))
     assert found is not None
     assert found[0].recruits == (iri("b"),)
+
+
+def test_of_further_players_those_that_run_are_kept() -> None:
+    given_ = problem({"sink": [component("a", "i:S"), component("b"), component("c")]}, counts={"sink": (1, 2)})
+    helped = with_recruits(given_, component("mic", outputs="o:S"), component("phone", outputs="o:S"))
+    found = recruited(helped, first.search(helped))
+    assert found is not None
+    assert found[0].assignments[0].components == (iri("a"), iri("b"))
+    ran = replace(found[0], assignments=(replace(found[0].assignments[0], components=(iri("a"), iri("c"))),))
+    left = Problem(helped.task, helped.partition.without(frozenset((iri("mic"),))), helped.hierarchy)
+    repaired = recruited(left, first.search(left), ran)
+    assert repaired is not None
+    assert repaired[0].recruits == (iri("phone"),)
+    assert repaired[0].assignments[0].components == (iri("a"), iri("c"))
+
+
+def test_a_further_player_that_would_feed_what_a_recruit_feeds_keeps_no_other_out() -> None:
+    eyes = [component("blind"), component("seeing", outputs="o:S"), component("looking", outputs="o:T")]
+    given_ = problem(
+        {"eye": eyes, "mind": [component("mind", "s:S"), component("more", "t:T")]},
+        "eye>mind",
+        counts={"eye": (1, None), "mind": (1, None)},
+    )
+    helped = with_recruits(given_, component("mic", outputs="o:S"))
+    found = recruited(helped, first.search(helped))
+    assert found is not None
+    assert [[one.short for one in a.components] for a in found[0].assignments] == [
+        ["blind", "looking"],
+        ["mind", "more"],
+    ]
+    assert not certificate.broken_conditions(helped.task, helped.partition, found[0])
 
 
 def busy(unrelated: int) -> Problem:

@@ -82,7 +82,7 @@ def best_with_recruits(
     tight = least[:LEADING_LEVELS] == spent[:LEADING_LEVELS]
     bounds = least if tight else costs.levels_of(_lowest(costs), len(part.slots))
     return Optimum(
-        problem.with_further_players(choice.configuration(brought)),
+        problem.with_further_players(choice.configuration(brought), running),
         spent[LEADING_LEVELS:],
         bounds[LEADING_LEVELS:],
         tuple(_missing(problem, found.players, [problem.supply.recruits[n].profile for n in brought])),
@@ -178,7 +178,7 @@ def with_priced_recruits(
     For when there is no solver library: then nothing is proved that recruits could make cheaper.
     """
     steps = min(steps, RECRUIT_STEPS)
-    whole = recruited(problem, optimum.configuration, () if running is None else running.recruits, steps)
+    whole = recruited(problem, optimum.configuration, running, steps)
     if whole is not None:
         return priced(problem, optimum, whole[0])
     other = first_recruited(problem, steps, running)
