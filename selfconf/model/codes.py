@@ -253,12 +253,12 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-A21", "An operation has one name of its own, and at most one type of request and one of response.",
-        "Types of requests and responses are IRIs; only an operation that is needed may be optional.",
+        "Types of requests and responses are IRIs; only one that is needed may be optional, and none sc:accepts.",
         ':camera a sc:Component, :Camera ; sc:hasOperation [ sc:name "takePhoto" ; sc:response "photo" ] .',
         ':camera a sc:Component, :Camera ; sc:hasOperation [ sc:name "takePhoto" ; sc:response rob:Image ] .',
         (
             "OperationNode", "OperationNameOnce", "OperationNameText", "OperationRequest", "OperationResponse",
-            "OptionalOffer", "OptionalNeed", "OperationNamesDistinct",
+            "OptionalOffer", "OptionalNeed", "AcceptingOperation", "OperationNamesDistinct",
         ),
     ),
     Code(

@@ -215,8 +215,10 @@ OUTPUT = Subject(
 )
 PARAMETER = Subject((PORT_NAME, PARAMETER_TYPE), SC.OperationalParameter)
 REQUEST, RESPONSE = Field(SC.request, RESOURCE), Field(SC.response, RESOURCE)
-OPERATION = Subject((PORT_NAME, REQUEST, RESPONSE, Field(SC.optional, TRUE_OR_FALSE, most=0)), SC.Operation)
-NEEDED_OPERATION = Subject((PORT_NAME, REQUEST, RESPONSE, Field(SC.optional, TRUE_OR_FALSE)), SC.Operation)
+OPERATION_FIELDS = (PORT_NAME, REQUEST, RESPONSE, Field(SC.accepts, ACCEPTED_SHAPE, most=0))
+"""What an operation that is offered and one that is needed may both say."""
+OPERATION = Subject((*OPERATION_FIELDS, Field(SC.optional, TRUE_OR_FALSE, most=0)), SC.Operation)
+NEEDED_OPERATION = Subject((*OPERATION_FIELDS, Field(SC.optional, TRUE_OR_FALSE)), SC.Operation)
 GROUNDING = Subject(
     (Field(SC.command, COMMAND_LINE), Field(SC.template, RESOURCE), Field(SC.binding, NODE, most=None)), SC.Grounding
 )

@@ -54,6 +54,7 @@ _COUNTERPARTS = {
     SC.hasInput: ("an input", "an output"),
     SC.hasOutput: ("an output", "an input"),
     SC.hasOperation: ("an operation that is offered", "one that is needed"),
+    SC.needsOperation: ("an operation that is needed", "one that is offered"),
 }
 """What a link leads to, and what says what it may not say."""
 
@@ -152,6 +153,8 @@ class _Reader:
         for field in link.into.fields:
             if field.most == 0 and self.document.values(node, field.predicate):
                 here, there = _COUNTERPARTS[link.predicate]
+                if field.predicate == SC.accepts:
+                    there = "an input"
                 self._problem(f"only {there} has a {_word(field.predicate)}, and {name!r} is {here}")
 
     def _parameter_type(self, name: str, node: Term) -> IRI | None:
