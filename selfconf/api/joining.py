@@ -12,7 +12,9 @@ writes into its file that it relays no more; when it goes on it reads that, and 
 
 A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
 and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
-its own hub who lives, again and again, and opens another one when it does not answer.
+its own hub who lives, again and again, and opens another one when it does not answer. The others ask theirs, more
+seldom: a client that was connected to a hub of its own process may go to another one and be deaf there, as nothing
+reads what comes over its connection. It is heard, so it seems to live; that connection is cut, and made anew.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ from pathlib import Path
 from selfconf import rendezvous
 from selfconf.bus.port import Undo
 from selfconf.bus.zenoh_bus import ZenohBus, client, router
-from selfconf.bus.zenoh_relay import Hub
+from selfconf.bus.zenoh_relay import Hub, cut_connections
 from selfconf.bus.zenoh_session import Security
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys
@@ -44,8 +46,10 @@ MEETING = 0.6
 """Seconds that it may take to see the sites of other hosts after connecting to them."""
 STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
+STILL_HEARD = 3
+"""How many of these times pass between two looks of other sites whether their hub answers them."""
 HUB_ANSWER = 2.0
-"""Seconds that a hub may take to answer its own site; one that works answers within milliseconds."""
+"""Seconds that a hub may take to answer a site; one that works answers within milliseconds."""
 UNANSWERED = 3
 """How many questions in a row it may leave unanswered."""
 BUSY = 0.5
@@ -78,7 +82,7 @@ class Joining:
         self._lost_at: float | None = None
         self._look_again: Undo = lambda: None
         self._unanswered = 0
-        """How many questions in a row the hub of this site has not answered."""
+        """How many questions in a row the hub has not answered."""
         self._asking = False
         self.bus.watch_link(self._link_changed)
         self.bus.later(STILL_MINE, self._look_from_time_to_time)
@@ -163,16 +167,16 @@ class Joining:
         self._look_again = self.bus.later(random.uniform(0.0, HASTE), self._look)
 
     def _look_from_time_to_time(self) -> None:
-        self.bus.later(STILL_MINE, self._look_from_time_to_time)
-        if self._file is None or not self.bus.endpoint:
+        self.bus.later(STILL_MINE * (1 if self.bus.endpoint else STILL_HEARD), self._look_from_time_to_time)
+        if self._file is None:
             return
-        if not rendezvous.relays(self._file):
+        if self.bus.endpoint and not rendezvous.relays(self._file):
             self._look()
-        elif not self._asking:
+        elif not self._asking and (self.bus.endpoint or self.bus.link):
             self._ask_hub()
 
     def _ask_hub(self) -> None:
-        """Ask the hub of this site who lives; what counts is that it answers, and not only after the time is over."""
+        """Ask the hub who lives; what counts is that it answers, and not only after the time is over."""
         self._asking, asked = True, self.bus.now()
 
         def answered(_: tuple[str, ...]) -> None:
@@ -184,9 +188,18 @@ class Joining:
                 self._unanswered += 1
             if self._unanswered >= UNANSWERED:
                 self._unanswered = 0
-                self._replace_hub()
+                if self.bus.endpoint:
+                    self._replace_hub()
+                else:
+                    self._connect_anew()
 
         self.bus.roll_call(Keys(self._ecology).site_life(self._name, "*"), HUB_ANSWER, answered)
+
+    def _connect_anew(self) -> None:
+        """Cut the connection to a hub that is there, but seems to answer nothing; the bus makes another one."""
+        log.error("nothing is heard from the hub; connecting to it anew")
+        for endpoint in dict.fromkeys([self._reached_at, *self._relays(), *self._usual, *self._elsewhere]):
+            cut_connections(endpoint, from_here=True)
 
     def _replace_hub(self) -> None:
         """Open another hub in the place of one that has broken: where that was, if it lets go of its port."""

@@ -99,7 +99,7 @@ class Hub:
         A router that has broken inside lets go of no connection when it is closed.
         """
         _close(self._session)
-        _cut_connections(self.endpoint)
+        cut_connections(self.endpoint)
 
 
 class Relay:
@@ -209,16 +209,19 @@ class _Uplink:
             _close(session)
 
 
-def _cut_connections(endpoint: str) -> None:
-    """End what is left of the connections of this process that were made to an endpoint of it."""
+def cut_connections(endpoint: str, *, from_here: bool = False) -> None:
+    """End what is left of the connections that others have made to an endpoint of this process.
+
+    `from_here`: those that this process has made to an endpoint of another one.
+    """
     port = int(endpoint.rpartition(":")[2])
     for path in list(DESCRIPTORS.iterdir()) if DESCRIPTORS.is_dir() else ():
         with suppress(OSError):  # it was closed meanwhile, or is not connected any more
             if not path.is_socket():
                 continue
             with socket.fromfd(int(path.name), socket.AF_INET, socket.SOCK_STREAM) as connection:
-                address = connection.getsockname()  # a path where it is of another family
-                if isinstance(address, tuple) and address[1] == port:
+                address = connection.getpeername() if from_here else connection.getsockname()
+                if isinstance(address, tuple) and address[1] == port:  # it is a path where it is of another family
                     connection.shutdown(socket.SHUT_RDWR)
 
 

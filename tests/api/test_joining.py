@@ -178,6 +178,29 @@ def test_a_site_whose_own_hub_has_broken_opens_another(machine: Machine, monkeyp
     assert machine.until(machine.united)
 
 
+def test_a_site_that_hears_nothing_from_a_hub_connects_to_it_anew(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    monkeypatch.setattr(joining, "HUB_ANSWER", 0.3)
+    machine.join("a")
+    site = machine.join("b")
+    links: list[str] = []
+    site.bus.watch_link(lambda: links.append(site.bus.link))
+    answers = site.bus.roll_call
+
+    def deaf(key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        """Until it is connected anew, nothing is heard."""
+        if links:
+            answers(key, seconds, done)
+        else:
+            site.bus.later(seconds, lambda: done(()))
+
+    monkeypatch.setattr(site.bus, "roll_call", deaf)
+    assert machine.until(lambda: bool(links) and bool(site.bus.link))
+    assert machine.until(machine.united)
+
+
 def test_the_place_of_one_that_hangs_is_taken_and_it_joins_the_others_when_it_goes_on(home: Home) -> None:
     sites = {name: home.site(name, "ads/drive.ttl") for name in "abc"}
     before = home.endpoint("a")
