@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import weakref
+from collections.abc import Iterator
 
 import pytest
 
@@ -17,6 +18,16 @@ class Loop:
         self.itself = self
 
 
+@pytest.fixture
+def unfrozen() -> Iterator[None]:
+    """Nothing is frozen, as a program begins, though the one that runs the tests may have frozen what it has."""
+    frozen = gc.get_freeze_count() > 0
+    gc.unfreeze()
+    yield
+    if frozen:
+        gc.freeze()
+
+
 def test_the_collector_rests_and_is_as_it_was_afterwards() -> None:
     def fail() -> None:
         with collector_at_rest():
@@ -28,7 +39,7 @@ def test_the_collector_rests_and_is_as_it_was_afterwards() -> None:
     assert gc.isenabled()
 
 
-@pytest.mark.skipif(gc.get_freeze_count() > 0, reason="the program that runs the tests has frozen what it has")
+@pytest.mark.usefixtures("unfrozen")
 def test_what_was_there_is_looked_at_once_all_is_over() -> None:
     loop = Loop()
     gone = weakref.ref(loop)
@@ -46,6 +57,7 @@ def test_what_was_there_is_looked_at_once_all_is_over() -> None:
     assert gc.get_threshold() == often
 
 
+@pytest.mark.usefixtures("unfrozen")
 def test_what_was_there_is_looked_at_where_there_are_few_components() -> None:
     loop = Loop()
     gone = weakref.ref(loop)
