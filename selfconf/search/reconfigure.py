@@ -256,6 +256,11 @@ class _LossBoundedSearch(CandidateSearch):
         self.eligible, self.losses = eligible, losses
         self.home = {c.profile.component: role for role, some in enumerate(eligible) for _, c in some}
         """For each running component the role that it plays."""
+        self._at: dict[IRI, int] = {}
+        """For each component that was chosen its role."""
+        self._away, self._new = [0] * len(eligible), [0] * len(eligible)
+        """For each role how many of its running components were chosen for another one, and how many others for it."""
+        self._lost = sum(map(self._lost_by, range(len(eligible))))
 
     def candidates(self, role: int, start: int) -> Iterator[tuple[int, Candidate]]:
         if self._displaced(role) > self.losses:
@@ -266,17 +271,45 @@ class _LossBoundedSearch(CandidateSearch):
             if home in (None, role) or self._displaced(role, candidate.profile.component) <= self.losses:
                 yield number, candidate
 
-    def _displaced(self, newcomer: int, moved: str | None = None) -> int:
+    def _fill(self, place: int, start: int) -> int | None:
+        number = super()._fill(place, start)
+        if number is not None:
+            role = self.slots[place]
+            self._move(self.playing[role][-1].profile.component, role, 1)
+        return number
+
+    def _empty(self, place: int) -> None:
+        role = self.slots[place]
+        component = self.playing[role][-1].profile.component
+        super()._empty(place)
+        self._move(component, role, -1)
+
+    def _move(self, component: IRI, role: int, by: int) -> None:
+        """Count a component that is chosen for a role, or with -1 for by is chosen no more."""
+        if by > 0:
+            self._at[component] = role
+        else:
+            del self._at[component]
+        home = self.home.get(component)
+        if home == role:
+            return
+        for changed, counts in ((role, self._new), (home, self._away)):
+            if changed is not None:
+                self._lost -= self._lost_by(changed)
+                counts[changed] += by
+                self._lost += self._lost_by(changed)
+
+    def _lost_by(self, role: int, away: int = 0, new: int = 0) -> int:
+        """Count the running components that lose a role, if so many more went away, or so many more were new to it."""
+        here, maximum = len(self.eligible[role]), self.problem.roles[role].maximum
+        stay = here - self._away[role] - away
+        if maximum is not None:
+            stay = min(stay, maximum - self._new[role] - new)
+        return here - max(0, stay)
+
+    def _displaced(self, newcomer: int, moved: IRI | None = None) -> int:
         """Count the running components that lose their roles once a role takes a newcomer, perhaps one that moves."""
-        total = 0
-        for role, some in enumerate(self.eligible):
-            maximum = self.problem.roles[role].maximum
-            playing = [c.profile.component for c in self.playing[role]]
-            here = {c.profile.component for _, c in some}
-            away = sum(c == moved or (c in self.taken and c not in playing) for c in here)
-            stay = len(here) - away
-            if maximum is not None:
-                new = sum(c not in here for c in playing) + (role == newcomer)
-                stay = min(stay, maximum - new)
-            total += len(here) - max(0, stay)
-        return total
+        lost = self._lost + self._lost_by(newcomer, new=1) - self._lost_by(newcomer)
+        if moved is not None and self._at.get(moved, self.home[moved]) == self.home[moved]:
+            lost += self._lost_by(self.home[moved], away=1) - self._lost_by(self.home[moved])
+        return lost
