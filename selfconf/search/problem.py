@@ -221,7 +221,7 @@ class Problem:
         """Return the candidates that are tried one after the other: those that run in the same role, and all."""
         if running is None:
             return [self.candidates]
-        played = {a.role: a.components for a in running.assignments}
+        played = {a.role: set(a.components) for a in running.assignments}
         kept = [
             [c for c in candidates if c.profile.component in played.get(role.iri, ())]
             for role, candidates in zip(self.roles, self.candidates, strict=True)

@@ -31,7 +31,8 @@ def _consequence(
 ) -> Consequence:
     if isinstance(after, Refusal):
         return Consequence(component, role, after)
-    before, now = running.components, after.components
+    before, now = dict.fromkeys(running.components), dict.fromkeys(after.components)
+    played = {one: assignment.role for assignment in running.assignments for one in assignment.components}
     playing = [(one, assignment.role) for assignment in after.assignments for one in assignment.components]
     return Consequence(
         component,
@@ -39,5 +40,5 @@ def _consequence(
         after,
         started=tuple(one for one in now if one not in before),
         stopped=tuple(one for one in before if one not in now and one != component),
-        moved=tuple((one, new) for one, new in playing if one in before and running.role_of(one) != new),
+        moved=tuple((one, new) for one, new in playing if one in before and played.get(one) != new),
     )
