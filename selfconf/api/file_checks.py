@@ -1,6 +1,7 @@
 """The full checks of `validate` over many files: shared among processes, and remembered from one run to the next.
 
-Processes are forked: a validating program has no other threads, and what is loaded is loaded once.
+Processes are forked, so that what is loaded is loaded once; but not where the program has other threads. What these
+hold at that moment, such as a lock of a library, would be held for ever in a forked process, which then never ends.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import multiprocessing
 import os
 import signal
 import tempfile
+import threading
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
@@ -28,9 +30,9 @@ _checker: FileChecker | None = None
 
 
 def shared(checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
-    """Check each suspect, in as many processes as there are processors to use, where that pays."""
+    """Check each suspect, in as many processes as there are processors to use, where that pays and can be."""
     processes = min(os.cpu_count() or 1, len(suspects) // WORTH)
-    if processes < 2:
+    if processes < 2 or _threads() > 1:
         yield from map(checker, suspects)
         return
     yield checker(suspects[0])  # loads what each process will need
@@ -39,6 +41,14 @@ def shared(checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[
         # They end by themselves: a program may have a handler of SIGTERM, which they have, too, until they begin.
         pool.close()
         pool.join()
+
+
+def _threads() -> int:
+    """How many threads this program has; where the system does not tell, those of Python."""
+    try:
+        return len(list(Path("/proc/self/task").iterdir()))
+    except OSError:
+        return threading.active_count()
 
 
 def _begin(checker: FileChecker) -> None:

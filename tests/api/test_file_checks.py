@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import selfconf as sc
-from selfconf.api.file_checks import Remembered, shared
+from selfconf.api.file_checks import Remembered
 from selfconf.api.validation import check
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
@@ -51,24 +51,37 @@ def files(tmp_path: Path) -> Path:
     return folder
 
 
-@pytest.mark.slow
-def test_processes_give_the_verdicts_of_one(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("selfconf.api.file_checks.WORTH", 2)
-    assert check([str(files)], each=shared) == check([str(files)])
+PROGRAM = """
+import os, signal, sys, threading
+signal.signal(signal.SIGTERM, lambda *_: None)
+from selfconf.api import file_checks, validation
+forked = []
+os.register_at_fork(before=lambda: forked.append(1))
+file_checks.WORTH = 1
+os.cpu_count = lambda: 8
+stopped = threading.Event()
+if sys.argv[1] == "threads":
+    threading.Thread(target=stopped.wait).start()
+for found in validation.check(sys.argv[2:], each=file_checks.shared).diagnostics:
+    print(found)
+stopped.set()
+print(len(forked))
+"""
+"""Validates files in eight processes, in a program with a handler of SIGTERM, which these inherit."""
 
 
 @pytest.mark.slow
-def test_processes_end_in_a_program_that_has_a_handler_of_sigterm(files: Path) -> None:
-    program = (
-        "import os, signal, sys; signal.signal(signal.SIGTERM, lambda *_: None)\n"
-        "from selfconf.api import file_checks, validation\n"
-        "file_checks.WORTH = 1; os.cpu_count = lambda: 8\n"
-        "print(len(validation.check(sys.argv[1:], each=file_checks.shared).diagnostics))"
-    )
+@pytest.mark.parametrize(("threads", "forks"), [("none", 8), ("threads", 0)])
+def test_processes_give_the_verdicts_of_one_and_are_forked_where_there_are_no_threads(
+    threads: str, forks: int, files: Path
+) -> None:
     ended = subprocess.run(
-        [sys.executable, "-c", program, str(files)], capture_output=True, text=True, timeout=60, check=True
+        [sys.executable, "-c", PROGRAM, threads, str(files)], capture_output=True, text=True, timeout=60, check=True
     )
-    assert int(ended.stdout) > 0
+    *found, forked = ended.stdout.splitlines()
+    assert found == [str(one) for one in check([str(files)]).diagnostics]
+    assert len(found) > 5
+    assert int(forked) == forks
 
 
 @pytest.mark.slow
