@@ -75,6 +75,8 @@ def scheduler(config: Any, log: Any) -> Any:
             return left[0]
 
         def _reschedule(self, node: Any) -> None:
+            if node not in self.registered_collections:
+                return  # it takes the place of one that has died, and does not know the tests yet
             super()._reschedule(node)
             if not self.workqueue and not node.shutting_down:
                 node.shutdown()  # else it keeps its last test for a further one to come after, which never does
