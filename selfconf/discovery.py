@@ -34,6 +34,9 @@ LARGEST_SITE = 1 << 26
 """How many bytes the advertisements of one site can have together; what comes after that is left out."""
 MOST_COMPLAINTS = 20
 """How many things that are wrong with the answer of one site are told one by one; the rest is counted."""
+MANY_LIVES = 2_000
+"""From how many lives on they are followed in parts: a router of Zenoh says nothing else until it has told a watch all
+lives, which takes it a second for 10,000, and then whoever watches takes it for dead."""
 MOST_LIVES = 16
 """How many lives of one component are followed: there should be one, and two where processes clash."""
 BETWEEN_DISCOVERIES = 0.2
@@ -174,8 +177,9 @@ class EcologyView:
         """
         if not self._followed:
             self._followed = True
+            lives = self.keys.parts_of_lives() if len(self.lives) > MANY_LIVES else (self.keys.any_life(),)
             self._undo = [
-                self.bus.watch(self.keys.any_life(), changed),
+                *(self.bus.watch(key, changed) for key in lives),
                 self.bus.watch(self.keys.any_site_life(), site_changed),
             ]
 

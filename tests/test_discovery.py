@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf import discovery
 from selfconf.bus.memory import Faults, Network, _Request
 from selfconf.bus.port import Request
 from selfconf.discovery import DISCOVERY, LARGEST_ADVERTISEMENT, Discovery, EcologyView
@@ -394,3 +395,26 @@ def test_a_note_of_beliefs_that_cannot_be_read_is_told_and_believes_nobody(field
     found = field.discover()
     assert TRACKER not in found.found
     assert "believed.json: is no object of components" in found.complaints
+
+
+@pytest.mark.parametrize("many", [0, 1_000], ids=["in parts", "all together"])
+def test_each_life_is_told_once_however_it_is_followed(
+    field: Field, monkeypatch: pytest.MonkeyPatch, many: int
+) -> None:
+    monkeypatch.setattr(discovery, "MANY_LIVES", many)
+    lamps = field.network.node()
+    undos = [lamps.announce(KEYS.life(iri(f"lamp{number}"), "1")) for number in range(100)]
+    field.discover()
+    told: list[tuple[str, bool]] = []
+    field.ecology.follow(lambda key, alive: told.append((key, alive)), lambda key, alive: None)
+    assert field.network.run(lambda: len(told) >= len(undos), 1.0)
+    undos.append(lamps.announce(KEYS.life(iri("lamp100"), "1")))
+    undos[0]()
+    assert field.network.run(lambda: len(told) >= len(undos) + 1, 1.0)
+    begun = sorted(KEYS.life(iri(f"lamp{number}"), "1") for number in range(101))
+    assert sorted(key for key, alive in told if alive) == begun
+    assert [key for key, alive in told if not alive] == [KEYS.life(iri("lamp0"), "1")]
+    field.ecology.unfollow()
+    undos[1]()
+    field.network.run(lambda: False, 1.0)
+    assert len(told) == 102

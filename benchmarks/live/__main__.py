@@ -43,6 +43,8 @@ from selfconf.sdk import Host
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "live.md"
 SIZES = ((100, 1), (1_000, 1), (1_000, 5), (1_000, 20), (10_000, 1), (10_000, 5), (10_000, 20))
 SMOKE = ((20, 2),)
+BY_HAND = "## Many sites\n"
+"""From this heading on the page is written by hand, and is kept."""
 PATIENCE = 60.0
 IDLE = 3.0
 
@@ -264,7 +266,9 @@ def main() -> None:
     text = report(found)
     print(text)
     if given.write:
-        PAGE.write_text(text)
+        written = PAGE.read_text() if PAGE.exists() else ""
+        _, head, kept = written.partition(BY_HAND)
+        PAGE.write_text(text + ("\n" + head + kept).rstrip("\n") * bool(head) + "\n" * bool(head))
 
 
 if __name__ == "__main__":

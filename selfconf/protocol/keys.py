@@ -139,6 +139,10 @@ class Keys:
     def lives(self, component: IRI) -> str:
         return self._component(component, "live/*")
 
+    def parts_of_lives(self) -> tuple[str, ...]:
+        """Sixteen key expressions that together mean `any_life`, and each about as many lives as another."""
+        return tuple(self.any_life().replace("/c/*/", f"/c/{digit}$*/", 1) for digit in "0123456789abcdef")
+
     def any_life(self) -> str:
         return f"selfconf/{self.ecology}/c/*/*/live/*"
 

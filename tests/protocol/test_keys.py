@@ -124,6 +124,21 @@ def test_the_questions_of_an_ecology_meet_what_they_are_meant_for() -> None:
         assert intersects(question, key)
 
 
+@given(st.integers(0, 10**6))
+def test_each_life_is_in_one_part_of_all_lives(number: int) -> None:
+    life = HOME.life(IRI(f"https://example.org/lamp{number}"), "1")
+    parts = HOME.parts_of_lives()
+    assert [zenoh.KeyExpr(part).intersects(zenoh.KeyExpr(life)) for part in parts].count(True) == 1
+    assert [part for part in parts if intersects(part, life)] == [part for part in parts if intersects(life, part)]
+    assert [part for part in parts if zenoh.KeyExpr(part).intersects(zenoh.KeyExpr(life))] == [
+        part for part in parts if intersects(part, life)
+    ]
+
+
+def test_all_lives_include_their_parts_so_that_whoever_may_read_them_may_read_these() -> None:
+    assert all(zenoh.KeyExpr(HOME.any_life()).includes(zenoh.KeyExpr(part)) for part in HOME.parts_of_lives())
+
+
 def test_ecologies_do_not_meet() -> None:
     component = IRI("https://example.org/drive")
     other = Keys("other")
