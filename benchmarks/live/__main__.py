@@ -268,7 +268,7 @@ def main() -> None:
     if given.write:
         written = PAGE.read_text() if PAGE.exists() else ""
         _, head, kept = written.partition(BY_HAND)
-        PAGE.write_text(text + ("\n" + head + kept).rstrip("\n") * bool(head) + "\n" * bool(head))
+        PAGE.write_text(f"{text}\n{head}{kept}" if head else text)
 
 
 if __name__ == "__main__":
