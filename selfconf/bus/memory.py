@@ -276,7 +276,7 @@ class MemoryBus:
         self._late_arrivals: list[Callable[[], None]] = []
         self._subscribers: dict[int, tuple[str, Callable[[Sample], None]]] = {}
         self._queryables: dict[int, tuple[str, Callable[[_Request], None]]] = {}
-        self._watchers: dict[int, tuple[str, Callable[[str, bool], None]]] = {}
+        self._watchers: dict[int, _Watch] = {}
         self._tokens: dict[int, str] = {}
         self._publishers: dict[int, _Publisher] = {}
         self._count = itertools.count()
@@ -390,11 +390,11 @@ class MemoryBus:
 
         return undone
 
-    def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
-        """Follow every life under a key, those that are there already first."""
-        undo = self._declare(self._watchers, (key, changed))
+    def watch(self, key: str, changed: Callable[[str, bool], None], *, history: bool = True) -> Callable[[], None]:
+        """Follow every life under a key, those that are there already first, unless it is without `history`."""
+        undo = self._declare(self._watchers, _Watch(key, changed, None if history else set()))
         number = max(self._watchers)
-        for node in self.network.nodes:
+        for node in self.network.nodes if history else ():
             if self.network.reaches(node, self):
                 for token in list(node._tokens.values()):
                     if intersects(key, token):
@@ -445,15 +445,15 @@ class MemoryBus:
 
     def _notice_lives(self, other: MemoryBus, alive: bool) -> None:
         for token in other._tokens.values():
-            for number, (key, changed) in list(self._watchers.items()):
-                if intersects(key, token):
-                    self.network.at(self.network.time, self, _life_notice(self, number, changed, token, alive))
+            for number, watch in list(self._watchers.items()):
+                if intersects(watch.key, token) and watch.tells(token, alive, alone=True):
+                    self.network.at(self.network.time, self, _life_notice(self, number, watch.changed, token, alive))
 
     def _publish_life(self, token: str, alive: bool) -> None:
         for node in self.network.nodes:
-            for number, (key, changed) in list(node._watchers.items()):
-                if intersects(key, token):
-                    notice = _life_notice(node, number, changed, token, alive)
+            for number, watch in list(node._watchers.items()):
+                if intersects(watch.key, token) and watch.tells(token, alive, alone=False):
+                    notice = _life_notice(node, number, watch.changed, token, alive)
                     self.network.deliver(self, node, notice, outlasts_link=not alive)
 
     def _declare(self, where: dict[int, _T], what: _T) -> Callable[[], None]:
@@ -478,6 +478,23 @@ class MemoryBus:
                     self.network.deliver(
                         self, node, _arrival(node, number, receive, sample), sure=urgency is Urgency.EVENT
                     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Watch:
+    """Who follows the lives under a key, and without their history which of them it was shown."""
+
+    key: str
+    changed: Callable[[str, bool], None]
+    shown: set[str] | None
+
+    def tells(self, token: str, alive: bool, alone: bool) -> bool:
+        """Whether it is told that a life begins or ends; `alone`: that a link comes or goes, and not the life."""
+        if self.shown is None:
+            return True
+        told = alive or not alone or token in self.shown
+        (self.shown.add if alive else self.shown.discard)(token)
+        return told
 
 
 def _again(node: MemoryBus, action: Callable[[], None], timer: bool) -> Callable[[], None]:

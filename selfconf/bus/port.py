@@ -182,8 +182,12 @@ class Bus(Protocol):
         """Be alive under a key until undone, or until this node is gone."""
         ...
 
-    def watch(self, key: str, changed: Callable[[str, bool], None]) -> Undo:
-        """Follow every life under a key: those that are there already, those that begin, those that end."""
+    def watch(self, key: str, changed: Callable[[str, bool], None], *, history: bool = True) -> Undo:
+        """Follow every life under a key: those that are there already, those that begin, those that end.
+
+        Without `history` those that are there already are not told; nor is it, when this node loses its hub, that they
+        have ended. When it has one again, all that live are told.
+        """
         ...
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:

@@ -384,8 +384,8 @@ class ZenohBus(Loop):
         """Be alive under a key."""
         return self._keep(self._session.liveliness().declare_token(key))
 
-    def watch(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
-        """Follow every life under a key, those that are there already first."""
+    def watch(self, key: str, changed: Callable[[str, bool], None], *, history: bool = True) -> Callable[[], None]:
+        """Follow every life under a key, those that are there already first, unless it is without `history`."""
 
         def change(*lives: tuple[str, bool]) -> None:
             for life in lives:
@@ -397,7 +397,7 @@ class ZenohBus(Loop):
             receiver.received(*((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT) for sample in samples))
 
         handler = _handler(key, listen)
-        declared = self._session.liveliness().declare_subscriber(key, handler, history=True)
+        declared = self._session.liveliness().declare_subscriber(key, handler, history=history)
         self._read_aside(handler, declared.handler, listen)
         return receiver.open(declared)
 

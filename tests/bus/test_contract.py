@@ -377,6 +377,22 @@ def test_a_watch_shows_lives_that_are_there_that_begin_and_that_end(net: Net, to
     assert net.until(lambda: heard[3:] == [(f"{top}/c/b/live/1", False)])
 
 
+def test_a_watch_without_history_shows_what_begins_and_every_end(net: Net, top: str) -> None:
+    one, two, watching = net.node(), net.node(), net.node()
+    undo = one.announce(f"{top}/c/a/live/1")
+    net.settle()
+    heard: list[tuple[str, bool]] = []
+    watching.watch(f"{top}/c/*/live/*", lambda key, alive: heard.append((key, alive)), history=False)
+    net.settle()
+    two.announce(f"{top}/c/b/live/1")
+    assert net.until(lambda: heard == [(f"{top}/c/b/live/1", True)])
+    undo()
+    assert net.until(lambda: heard[1:] == [(f"{top}/c/a/live/1", False)])
+    called: list[tuple[str, ...]] = []
+    watching.roll_call(f"{top}/c/b/live/*", 3.0, called.append)
+    assert net.until(lambda: called == [(f"{top}/c/b/live/1",)])
+
+
 def test_a_watch_that_is_undone_hears_no_more(net: Net, top: str) -> None:
     one, two, other = net.node(), net.node(), net.node()
     heard: list[str] = []

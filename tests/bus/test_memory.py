@@ -383,3 +383,19 @@ def test_a_timer_that_is_renewed_until_a_time_has_passed_ends() -> None:
         node.later(begun, partial(look, network.time))
     network.run(lambda: False, 20.0)
     assert looks < 400
+
+
+def test_a_watch_without_history_is_told_of_a_lost_link_only_what_it_was_shown() -> None:
+    network = Network(1)
+    one, two = network.node(), network.node()
+    one.announce("a/live/1")
+    heard: list[tuple[str, bool]] = []
+    two.watch("*/live/*", lambda key, alive: heard.append((key, alive)), history=False)
+    one.announce("b/live/1")
+    network.run(lambda: False, 0.1)
+    network.cut(one, two)
+    network.run(lambda: False, 0.1)
+    assert heard == [("b/live/1", True), ("b/live/1", False)]
+    network.reconnect(one, two)
+    network.run(lambda: False, 0.1)
+    assert sorted(heard[2:]) == [("a/live/1", True), ("b/live/1", True)]
