@@ -12,8 +12,9 @@ only that this is still the one.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError, SelfconfError, TurtleError
@@ -35,8 +36,9 @@ LARGEST_SITE = 1 << 26
 MOST_COMPLAINTS = 20
 """How many things that are wrong with the answer of one site are told one by one; the rest is counted."""
 MANY_LIVES = 2_000
-"""From how many lives on they are followed in parts: a router of Zenoh says nothing else until it has told a watch all
-lives, which takes it a second for 10,000, and then whoever watches takes it for dead."""
+"""From how many components on their lives are not followed all together: a router of Zenoh says nothing else until it
+has told a watch all lives, which takes it a second for 10,000, and then whoever watches takes it for dead. Who needs
+few of them calls and follows those, and hears only news of the others; who needs all follows them in parts."""
 MOST_LIVES = 16
 """How many lives of one component are followed: there should be one, and two where processes clash."""
 BETWEEN_DISCOVERIES = 0.2
@@ -80,6 +82,8 @@ class Discovery:
 
 Beliefs = Callable[[], Mapping[IRI, str]]
 """Whose a component is that several sites advertise, by their names, as far as somebody has said so."""
+LifeChanged = Callable[[str, bool], None]
+"""Hears of a life that has begun or ended, by its key."""
 SiteLife = tuple[str, str]
 """A site by its name and its life; the life is empty for a site of before that does not say it."""
 
@@ -128,17 +132,23 @@ class _SiteAnswer:
 class EcologyView:
     """One ecology as seen from a bus: it can be discovered, and its lives followed."""
 
-    def __init__(self, bus: Bus, name: str, believed: Beliefs | None = None) -> None:
-        """With keys, `believed` says whose a component is; without, it is that of the first site by name."""
-        self.bus, self.keys, self.believed = bus, Keys(name), believed
+    def __init__(self, bus: Bus, name: str, believed: Beliefs | None = None, *, selects: bool = False) -> None:
+        """With keys, `believed` says whose a component is; without, it is that of the first site by name.
+
+        A view that `selects` knows in a large ecology only the lives of the components that were selected.
+        """
+        self.bus, self.keys, self.believed, self._selects = bus, Keys(name), believed, selects
         self.lives: dict[str, tuple[str, ...]] = {}
         """The lives of each living component, sorted, by the component's chunk: more than one where processes clash."""
+        self._selected: set[str] | None = None
+        """The chunks of the components whose lives are known; None: of all."""
         self.discovery = Discovery()
         self.aside: Callable[[Callable[[], None]], None] = lambda work: work()
         """Reads what the sites have answered; by default at once, where there is only one thread."""
         self.known: dict[SiteLife, KnownSite] = {}
         """What the sites that live have answered before."""
         self._followed = False
+        self._changed: LifeChanged = lambda key, alive: None
         self._undo: list[Undo] = []
         self._next_discovery = -math.inf
         """When, on the bus's clock, the next discovery may begin."""
@@ -169,22 +179,67 @@ class EcologyView:
         """Whether `lives` is kept up to date."""
         return self._followed
 
-    def follow(self, changed: Callable[[str, bool], None], site_changed: Callable[[str, bool], None]) -> None:
+    def follow(self, changed: LifeChanged, site_changed: LifeChanged) -> None:
         """Follow the life of every component and site from now on, those that are there first; twice does nothing.
 
-        Not to be called before the first discovery has ended: Zenoh answers a roll-call in part only if a watch of
-        the same lives begins meanwhile.
+        Of components that could be selected, but are not, only news are told: a life that begins, or, after this node
+        has lost its hub, is there again. Not to be called before the first discovery has ended: Zenoh answers a
+        roll-call in part only if a watch of the same lives begins meanwhile.
         """
-        if not self._followed:
-            self._followed = True
+        if self._followed:
+            return
+        self._followed, self._changed = True, changed
+        self._undo = [self.bus.watch(self.keys.any_site_life(), site_changed)]
+        if self._selected is not None:
+            self._undo.append(self.bus.watch(self.keys.any_life(), self._news, history=False))
+        else:
             lives = self.keys.parts_of_lives() if len(self.lives) > MANY_LIVES else (self.keys.any_life(),)
-            self._undo = [
-                *(self.bus.watch(key, changed) for key in lives),
-                self.bus.watch(self.keys.any_site_life(), site_changed),
-            ]
+            self._undo += [self.bus.watch(key, changed) for key in lives]
+
+    def _news(self, key: str, alive: bool) -> None:
+        if alive and not self.knows(owner_of(key)):
+            self._changed(key, alive)
+
+    def knows(self, chunk: str) -> bool:
+        """Whether `lives` says how a component lives, that is given by its chunk."""
+        return self._selected is None or chunk in self._selected
+
+    def select(self, components: Iterable[IRI], done: Callable[[Sequence[str]], None]) -> None:
+        """Call the lives of components, and follow them from then on; not to be called before `follow`.
+
+        `done` is called with the keys of those that live and were not known; at once where all were.
+        """
+        unknown = sorted(component for component in components if not self.knows(component_chunk(component)))
+        if unknown:
+            _Selection(self, unknown, done).start()
+        else:
+            done(())
+
+    def selected(self, components: Iterable[IRI], keys: Iterable[str]) -> Sequence[str]:
+        """Note the answer to a call of the lives of components, follow these, and return what is news."""
+        unknown = [component for component in components if not self.knows(component_chunk(component))]
+        chunks = set(map(component_chunk, unknown))
+        news = [key for key in keys if owner_of(key) in chunks]
+        for key in news:
+            self.began(owner_of(key), life_of(key))
+        if self._selected is not None:
+            self._selected |= chunks
+        self._undo += [self.bus.watch(self.keys.lives(component), self._changed) for component in unknown]
+        return news
+
+    def called(self, keys: Iterable[str] | None) -> None:
+        """Note the answer to a call of all lives, or, with None, that they are too many for that."""
+        self.lives, self._selected = {}, None if keys is not None else set()
+        for key in keys or ():
+            self.began(owner_of(key), life_of(key))
+
+    def calls_all(self, advertised: int) -> bool:
+        """Whether, in an ecology that advertises so many components, the lives of all are called."""
+        return not (self._selects and advertised > MANY_LIVES)
 
     def unfollow(self) -> None:
         """Follow no life any more."""
+        self._selected = None
         for undo in self._undo:
             undo()
         self._undo.clear()
@@ -204,8 +259,40 @@ class EcologyView:
             inquiry.start()
 
 
+class _Selection:
+    """One call of the lives of some components, each by its key, so that nobody tells of thousands of others."""
+
+    def __init__(
+        self,
+        ecology: EcologyView,
+        components: Sequence[IRI],
+        done: Callable[[Sequence[str]], None],
+        again: int = DISCOVERY_ATTEMPTS - 1,
+    ) -> None:
+        """`again` is how often it begins anew when this node has lost its hub meanwhile."""
+        self._ecology, self._components, self._done, self._again = ecology, components, done, again
+        self._link = ecology.bus.link
+        self._missing = len(components)
+        self._alive: list[str] = []
+
+    def start(self) -> None:
+        for component in self._components:
+            self._ecology.bus.roll_call(self._ecology.keys.lives(component), DISCOVERY, self._called)
+
+    def _called(self, keys: tuple[str, ...]) -> None:
+        self._alive += keys
+        self._missing -= 1
+        if self._missing:
+            return
+        if self._ecology.bus.link != self._link and self._again:
+            anew = _Selection(self._ecology, self._components, self._done, self._again - 1)
+            self._ecology.bus.later(BACK, anew.start)
+        else:
+            self._done(self._ecology.selected(self._components, self._alive))
+
+
 class _Inquiry:
-    """One discovery: roll-call of sites and components, a question to all sites, and again to those incomplete."""
+    """One discovery: roll-call of sites, a question to all, again to those incomplete, roll-call of components."""
 
     def __init__(
         self, ecology: EcologyView, done: Callable[[Discovery], None], again: int = DISCOVERY_ATTEMPTS - 1
@@ -225,18 +312,6 @@ class _Inquiry:
 
     def start(self) -> None:
         self._link = self.bus.link
-        if self.ecology.followed:
-            self._call_sites()
-        else:
-            self.bus.roll_call(self.keys.any_life(), DISCOVERY, self._living)
-
-    def _living(self, keys: tuple[str, ...]) -> None:
-        self.ecology.lives = {}
-        for key in keys:
-            self.ecology.began(owner_of(key), life_of(key))
-        self._call_sites()
-
-    def _call_sites(self) -> None:
         self.bus.roll_call(self.keys.any_site_life(), DISCOVERY, self._called)
 
     def _called(self, keys: tuple[str, ...]) -> None:
@@ -256,7 +331,21 @@ class _Inquiry:
         incomplete = [site for site in self._sites() if site not in self._answers or not self._answers[site].complete]
         if incomplete and self._attempt < DISCOVERY_ATTEMPTS and replies.complete:
             self._ask(incomplete[0][0] if len(incomplete) == 1 else "*")
-        elif self.bus.link != self._link and self._again:
+        elif self.ecology.followed:
+            self._end(incomplete)
+        elif not self.ecology.calls_all(sum(answer.total for answer in self._answers.values())):
+            self.ecology.called(None)
+            self._end(incomplete)
+        else:
+            self.bus.roll_call(self.keys.any_life(), DISCOVERY, partial(self._living, incomplete))
+
+    def _living(self, incomplete: list[SiteLife], keys: tuple[str, ...]) -> None:
+        if not self.ecology.followed:  # else another discovery has ended meanwhile, and its watch knows better
+            self.ecology.called(keys)
+        self._end(incomplete)
+
+    def _end(self, incomplete: list[SiteLife]) -> None:
+        if self.bus.link != self._link and self._again:
             self.bus.later(BACK, _Inquiry(self.ecology, self._done, self._again - 1).start)
         else:
             self.ecology.aside(lambda: self._finish(incomplete))

@@ -9,7 +9,7 @@ what has become of its components.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from selfconf.bus.port import Undo
@@ -33,6 +33,8 @@ CUT_OFF = 0.25
 """Seconds between two looks of a configurator that is cut off whether it still is."""
 ASK_SITE_AGAIN = 5.0
 """Seconds after which a site that lives, but has not answered in full, is taken for news, and so is asked again."""
+NEWS_TOGETHER = 0.05
+"""Seconds for which news of lives that nobody waits for are collected: after a lost link there may be thousands."""
 AUDIT = 1.0
 """Seconds between two looks at what runs: a component may have let go of its task, or have failed, unnoticed."""
 AUDITED = 20
@@ -66,8 +68,10 @@ class Liveness:
         """The liveliness keys of the sites that answered last, or are news: one that was started again has another."""
         self._shown_sites: set[str] = set()
         """The liveliness keys of the sites that the watch shows to live."""
+        self._news: dict[str, str] = {}
+        """A life of each component that is not followed and has begun to live, by its chunk, until it is fed."""
         self._unseen: set[tuple[str, str]] = set()
-        """The lives of the roll-call that the watch has not shown yet, with the component's chunk."""
+        """The lives of a roll-call that the watch has not shown yet, with the component's chunk."""
         self._unseen_sites: set[str] = set()
         """The liveliness keys of the sites that have answered, but that the watch has not shown yet."""
         self._ended_sites: set[str] = set()
@@ -97,18 +101,40 @@ class Liveness:
         self._sites = set(discovery.answered - self._ended_sites)
         self._ended_sites.clear()
         if not self.ecology.followed:
-            self._unseen = {(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives}
+            self._called({(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives})
             self._unseen_sites = set(discovery.answered)
-            self.bus.later(SETTLING, self._end_unseen)
+            self.bus.later(SETTLING, self._end_unseen_sites)
         self.ecology.follow(self._life_changed, self._site_changed)
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
         if discovery.missing or not discovery.site_tokens.issuperset(self._shown_sites):
             self._ask_again = self.bus.later(ASK_SITE_AGAIN, lambda: self._step(Appeared({})))
 
+    def select(self, components: Iterable[IRI], done: Callable[[], None]) -> None:
+        """Know and follow the lives of components, where there are too many for all; at once where they are known."""
+
+        def called(keys: Sequence[str]) -> None:
+            if keys:
+                self._called({(owner_of(key), life_of(key)) for key in keys})
+            done()
+
+        self.ecology.select(components, called)
+
+    def _called(self, lives: set[tuple[str, str]]) -> None:
+        """A life that ends between its call and the beginning of the watch is never shown: it has ended then."""
+        self._unseen |= lives
+        self.bus.later(SETTLING, partial(self._end_unseen, lives))
+
+    def _end_unseen(self, called: Iterable[tuple[str, str]]) -> None:
+        for chunk, life in sorted(self._unseen.intersection(called)):
+            self._unseen.discard((chunk, life))
+            self._ended(chunk, life)
+
     def _life_changed(self, key: str, alive: bool) -> None:
         chunk, life = owner_of(key), life_of(key)
         self._unseen.discard((chunk, life))
-        if not alive:
+        if not self.ecology.knows(chunk):
+            self._note_news(chunk, life)
+        elif not alive:
             self._ended(chunk, life)
         elif life not in self.ecology.lives.get(chunk, ()):
             self.ecology.began(chunk, life)
@@ -116,6 +142,17 @@ class Liveness:
             if component is not None:
                 self._calls.woken(component, life)
             self._step(Appeared({component: life} if component is not None else {}))
+
+    def _note_news(self, chunk: str, life: str) -> None:
+        """A component lives that is not followed; thousands may be told at once, so they are fed together."""
+        if not self._news:
+            self.bus.later(NEWS_TOGETHER, self._feed_news)
+        self._news[chunk] = life
+
+    def _feed_news(self) -> None:
+        news, self._news = self._news, {}
+        found = {self._component(chunk): life for chunk, life in news.items()}
+        self._step(Appeared({component: life for component, life in found.items() if component is not None}))
 
     def _ended(self, chunk: str, life: str) -> None:
         """A life has ended, or only the way to it: a client that changes its router seems to end for a moment."""
@@ -219,13 +256,9 @@ class Liveness:
         connected = not self.cut_off and self.bus.link == self._link
         return connected and state.phase is Phase.RUNNING and state.epoch == epoch
 
-    def _end_unseen(self) -> None:
-        """A life that ended between the roll-call and the beginning of the watch was called, but never seen since."""
-        for chunk, life in sorted(self._unseen):
-            self._ended(chunk, life)
+    def _end_unseen_sites(self) -> None:
         for site in sorted(self._unseen_sites):
             self._site_changed(site, False)
-        self._unseen.clear()
 
     def _held_life(self, component: IRI) -> str | None:
         held = self._state().held.get(component)

@@ -115,7 +115,7 @@ class TaskRunner:
     ) -> None:
         """`task` and `beginning` are those of a task that another configurator has begun; by default it is new."""
         self.bus, self.request, self.clock = bus, request, clock
-        self.ecology = EcologyView(bus, ecology, request.believed)
+        self.ecology = EcologyView(bus, ecology, request.believed, selects=True)
         self.ecology.aside = request.aside
         self.keys = self.ecology.keys
         self.name = name or f"c{secrets.token_hex(4)}"
@@ -264,6 +264,8 @@ class TaskRunner:
             def send() -> None:
                 if self.state.epoch == epoch and self.state.phase is Phase.RUNNING:
                     self._calls.stand_by(configuration, standby)
+                    sources = {wire.component for some in standby.values() for wires in some.values() for wire in wires}
+                    self._liveness.select(sources, lambda: None)
 
             self.bus.wake_up(send)
 
@@ -420,7 +422,14 @@ class TaskRunner:
         for complaint in discovery.complaints:
             self._report(AnswerRejected(complaint))
         self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
-        self._step(Discovered({c: holder for c, holder in holders.items() if not self._shareable(c)}))
+        number = self._asked
+        held = Discovered({c: holder for c, holder in holders.items() if not self._shareable(c)})
+
+        def known() -> None:
+            if number == self._asked:
+                self._step(held)
+
+        self._liveness.select(self.state.held, known)
 
     def _shareable(self, component: IRI) -> bool:
         found = self.ecology.discovery.found.get(component)
@@ -456,7 +465,9 @@ class TaskRunner:
         counts = effect.attempt == self.state.attempt and not self.state.despite and self.state.phase is Phase.COMPOSING
         if counts and (isinstance(outcome, Configuration) or not self.state.searches_again):
             self._report(SearchEnded(outcome, seconds))
-        self._step(Composed(effect.attempt, outcome))
+        composed = Composed(effect.attempt, outcome)
+        wanted = outcome.components if isinstance(outcome, Configuration) else ()
+        self._liveness.select(wanted, lambda: self._step(composed))
 
     def _received_fail(self, sample: Sample) -> None:
         try:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf import discovery
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.state import Phase, Policy
@@ -20,6 +21,13 @@ from selfconf.protocol.messages import Cause, Page
 from selfconf.sdk.supervision import GRACE
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
+
+
+@pytest.fixture(autouse=True, params=["all lives", "selected lives"])
+def followed(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether a configurator follows all lives, or, as in a large ecology, those that it has selected."""
+    if request.param == "selected lives":
+        monkeypatch.setattr(discovery, "MANY_LIVES", 0)
 
 
 def test_a_component_that_crashes_is_replaced(lab: Lab) -> None:

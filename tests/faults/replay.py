@@ -4,7 +4,8 @@
     python -m tests.faults.replay SEED --shrink     drop whatever is not needed for it to go wrong
     python -m tests.faults.replay SEED --log        show what sites, components and configurators log
 
-`--ecology composed` plays it where there are operations and a composite.
+`--ecology composed` plays it where there are operations and a composite, `--large` as if the ecology were so large
+that not all lives are followed.
 
 The exit code is 1 if an invariant was broken.
 """
@@ -73,11 +74,12 @@ def main() -> int:
     parser.add_argument("seed", type=int)
     parser.add_argument("--shrink", action="store_true", help="drop whatever is not needed for it to go wrong")
     parser.add_argument("--log", action="store_true", help="show what sites, components and configurators log")
+    parser.add_argument("--large", action="store_true", help="only selected lives are followed")
     parser.add_argument("--ecology", choices=ECOLOGIES, default="paper", help="where it happens (default: %(default)s)")
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.DEBUG if arguments.log else logging.CRITICAL, format="%(name)s: %(message)s")
     with tempfile.TemporaryDirectory() as folder:
-        script = write(arguments.seed, ecology=ECOLOGIES[arguments.ecology])
+        script = replace(write(arguments.seed, ecology=ECOLOGIES[arguments.ecology]), large=arguments.large)
         if arguments.shrink:
             logging.disable(logging.CRITICAL)
             script = shrink(script, Path(folder))

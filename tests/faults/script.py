@@ -57,6 +57,8 @@ class Script:
     startable: frozenset[str] = frozenset()
     """The components that their sites start on demand, and again when they crash."""
     actions: tuple[Action, ...] = ()
+    large: bool = False
+    """Whether the ecology counts as so large that a configurator follows only the lives that it has selected."""
     hangs_on: bool = False
     """Whether a process whose code hangs, and that no site has started, goes on; else it ends as all others do."""
 

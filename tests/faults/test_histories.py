@@ -5,6 +5,7 @@ How to play one again is said at the head of `tests/faults/replay.py`.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -33,8 +34,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
     for seed in range(batch, batch + BATCH):
         ecology = COMPOSED if seed % 4 == 3 else PAPER
-        history = played(write(seed, NOT_YET, ecology), folder / ecology.name)
-        replay = f"python -m tests.faults.replay {seed} --ecology {ecology.name} --shrink"
+        script = replace(write(seed, NOT_YET, ecology), large=seed % 3 == 2)
+        history = played(script, folder / ecology.name)
+        large = " --large" if script.large else ""
+        replay = f"python -m tests.faults.replay {seed} --ecology {ecology.name}{large} --shrink"
         assert not history.broken, f"{replay}\n{account(history)}"
 
 
