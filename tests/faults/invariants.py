@@ -178,8 +178,10 @@ def runs_with_anothers(history: History) -> Iterator[str]:
 
 
 def acts_blind(history: History) -> Iterator[str]:
-    """No actuator is on while nobody feeds it."""
+    """No actuator is on while nobody feeds it; one that is in `started` comes to rest as soon as that returns."""
     for life in awake(history):
+        if life.thread.starting:
+            continue
         told = [said for said in life.recorder.said if said in (("started",), ("stopped",))]
         actuates = bool(life.runtime.profile.signal_inputs) and not life.runtime.profile.outputs
         if actuates and life.runtime.active and told[-1:] == [("started",)]:
