@@ -174,7 +174,7 @@ class LivingEcology(Ecology):
         """Connects, with keys by showing a certificate; raises NetworkError if no site of the ecology answers."""
         self.name, self.endpoints, self._credentials = name, tuple(endpoints), credentials
         self._bus = member(name, endpoints, credentials)
-        self._view = EcologyView(self._bus, name, beliefs(credentials))
+        self._view = EcologyView(self._bus, name, beliefs(credentials), selects=True)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self.silent: tuple[str, ...] = ()
@@ -222,9 +222,9 @@ class LivingEcology(Ecology):
     def state(self, component: IRI) -> str:
         """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.
 
-        As of the last discovery.
+        As of the last discovery; what lives in a large ecology, as of the first question after it.
         """
-        if self._view.life(component) is not None:
+        if self._life(component) is not None:
             return "alive"
         found = self.discovery.found.get(component)
         return "dormant" if found is not None and found.startable else "absent"
@@ -240,7 +240,7 @@ class LivingEcology(Ecology):
         found = []
         silent: list[str] = []
         for one in component_states(discovery, self._view.keys, replies):
-            if one.state != "alive" and self._view.life(one.component) is not None:
+            if one.state != "alive" and self._life(one.component) is not None:
                 one = one._replace(state="alive")
                 silent.append(f"{one.component} lives, but does not say how it is")
             found.append(one)
@@ -248,6 +248,12 @@ class LivingEcology(Ecology):
             silent = ["components do not tell those who may look on only how they are; that takes keys of conf.NAME"]
         self.complaints = (*self.complaints, *silent)
         return tuple(found)
+
+    def _life(self, component: IRI) -> str | None:
+        """The life of a component; those of a large ecology, which most who look on need not, are called now."""
+        if not self._view.knows(component_chunk(component)):
+            self._view.called(self._wait(partial(self._bus.roll_call, self._view.keys.any_life(), ROLL_CALL)))
+        return self._view.life(component)
 
     @property
     def _looks_on_only(self) -> bool:
@@ -295,7 +301,7 @@ class LivingEcology(Ecology):
         check_may_run(self._credentials)
         found = self.component(component)
         one, site, keys = found.advertisement.component, found.site, self._view.keys
-        life = self._view.life(one)
+        life = self._life(one)
         if not found.startable:
             raise NetworkError(
                 f"the site {site} cannot start {one.short}: its advertisement has no sc:command; restart its program"

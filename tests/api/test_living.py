@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import selfconf as sc
-from selfconf import LivingEcology, Refusal, join, template
+from selfconf import LivingEcology, Refusal, discovery, join, template
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
 from selfconf.errors import AuthorError, NetworkError
@@ -106,7 +106,11 @@ def living(house: Home) -> Iterator[LivingEcology]:
         yield living
 
 
-def test_what_is_advertised_is_found_and_whether_it_lives(living: LivingEcology) -> None:
+@pytest.mark.parametrize("many", [0, discovery.MANY_LIVES], ids=["large", "small"])
+def test_what_is_advertised_is_found_and_whether_it_lives(
+    living: LivingEcology, monkeypatch: pytest.MonkeyPatch, many: int
+) -> None:
+    monkeypatch.setattr(discovery, "MANY_LIVES", many)
     assert len(living.components) == len(ADVERTISEMENTS)
     assert living.sites == ("home",)
     assert living.state(iri("person-tracker")) == "alive"

@@ -11,6 +11,7 @@ import pytest
 from selfconf import discovery
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
+from selfconf.configurator.events import Appeared, Event
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import liveness
 from selfconf.deployment.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, MOST_REOPENINGS, SETTLING
@@ -238,6 +239,26 @@ def test_many_that_end_at_once_are_asked_about_once(lab: Lab, monkeypatch: pytes
     assert set(agent.state.lost) >= {iri("person-tracker"), iri("sonar-array")}
     assert asked[:2] == [lab.keys.any_site_life()] * len(asked[:2])
     assert asked.count(lab.keys.any_site_life()) <= 2 + 1  # a discovery calls the sites as well
+
+
+def test_lives_that_nobody_waits_for_are_fed_together_when_a_lost_link_is_back(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(discovery, "MANY_LIVES", 0)
+    lamps = lab.network.node()
+    undos = [lamps.announce(lab.keys.life(iri(f"lamp{number}"), "1")) for number in range(50)]
+    agent = lab.agent()
+    lab.running(agent)
+    fed: list[Event] = []
+    monkeypatch.setattr(agent._liveness, "_step", fed.append)
+    node = agent.bus
+    assert isinstance(node, MemoryBus)
+    lab.network.cut(lamps, node)
+    lab.let_pass(1.0)
+    lab.network.reconnect(lamps, node)
+    lab.let_pass(1.0)
+    assert fed == [Appeared({})]
+    assert len(undos) == 50
 
 
 def test_a_life_that_begins_or_ends_costs_one_look_up_however_many_components_there_are(
