@@ -191,10 +191,10 @@ class EcologyView:
         self._followed, self._changed = True, changed
         self._undo = [self.bus.watch(self.keys.any_site_life(), site_changed)]
         if self._selected is not None:
-            self._undo.append(self.bus.watch(self.keys.any_life(), self._news, history=False))
+            self._undo.append(self.bus.watch(self.keys.any_life(), self._news, history=False, many=True))
         else:
             lives = self.keys.parts_of_lives() if len(self.lives) > MANY_LIVES else (self.keys.any_life(),)
-            self._undo += [self.bus.watch(key, changed) for key in lives]
+            self._undo += [self.bus.watch(key, changed, many=True) for key in lives]
 
     def _news(self, key: str, alive: bool) -> None:
         if alive and not self.knows(owner_of(key)):

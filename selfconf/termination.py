@@ -108,8 +108,11 @@ class Termination:
     Without `then` a signal ends the program also while that thread is held up.
     """
 
-    def __init__(self, bus: Bus, then: Callable[[], None] | None = None) -> None:
-        self._bus, self._then, self._ending = bus, then, False
+    def __init__(
+        self, bus: Bus, then: Callable[[], None] | None = None, told: Callable[[], None] = lambda: None
+    ) -> None:
+        """`told` wakes whoever waits for the end, and is called where a signal is noticed, or on the bus's thread."""
+        self._bus, self._then, self._told, self._ending = bus, then, told, False
         self._parent = os.getppid()
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._signalled)
@@ -122,6 +125,7 @@ class Termination:
     def _signalled(self, _: int, __: FrameType | None) -> None:
         if self._then is None:
             self._ending = True
+            self._told()
         self._bus.wake_up(self._end)
 
     def _end(self) -> None:
@@ -129,6 +133,7 @@ class Termination:
             self._ending = True
             if self._then is not None:
                 self._then()
+            self._told()
 
     def _look(self) -> None:
         if orphaned(self._parent):

@@ -116,3 +116,13 @@ def test_a_process_began_at_one_time_and_a_dead_one_at_none() -> None:
 
 def test_this_program_takes_memory() -> None:
     assert 1 << 20 < resident_memory() < 1 << 40
+
+
+@pytest.mark.usefixtures("handlers")
+def test_whoever_waits_for_the_end_is_woken_by_the_signal_itself() -> None:
+    network, said = Network(0), list[str]()
+    ended = Termination(network.node(), told=lambda: said.append("told"))
+    signal.raise_signal(signal.SIGTERM)
+    assert (ended(), said) == (True, ["told"])
+    network.run(lambda: False, 1.0)
+    assert said == ["told"]

@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 
 Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
 """Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
-WORK_CHECK = 0.2
-"""How often, in seconds, a site looks whether it is to end."""
+WORK_CHECK = 1.0
+"""How often, in seconds, a site looks whether it is to end; it is told at once, but for a signal at a bad moment."""
 
 
 def serve(
@@ -95,8 +95,8 @@ def serve(
             secured.introduce(bus, ecology)  # the hub of another site has to know this one
         _refuse_taken(name, ecology, joining)
         life = f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}"
-        ended = Termination(bus)
         work = WorkQueue()
+        ended = Termination(bus, told=work.wake_up)
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
         log_path = _log_path(log, ecology, name).absolute()

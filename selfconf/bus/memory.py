@@ -390,7 +390,9 @@ class MemoryBus:
 
         return undone
 
-    def watch(self, key: str, changed: Callable[[str, bool], None], *, history: bool = True) -> Callable[[], None]:
+    def watch(
+        self, key: str, changed: Callable[[str, bool], None], *, history: bool = True, many: bool = False
+    ) -> Callable[[], None]:
         """Follow every life under a key, those that are there already first, unless it is without `history`."""
         undo = self._declare(self._watchers, _Watch(key, changed, None if history else set()))
         number = max(self._watchers)

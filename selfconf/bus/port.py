@@ -182,11 +182,13 @@ class Bus(Protocol):
         """Be alive under a key until undone, or until this node is gone."""
         ...
 
-    def watch(self, key: str, changed: Callable[[str, bool], None], *, history: bool = True) -> Undo:
+    def watch(
+        self, key: str, changed: Callable[[str, bool], None], *, history: bool = True, many: bool = False
+    ) -> Undo:
         """Follow every life under a key: those that are there already, those that begin, those that end.
 
         Without `history` those that are there already are not told; nor is it, when this node loses its hub, that they
-        have ended. When it has one again, all that live are told.
+        have ended. When it has one again, all that live are told. `many` says that thousands may be told at once.
         """
         ...
 

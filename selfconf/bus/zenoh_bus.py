@@ -384,7 +384,9 @@ class ZenohBus(Loop):
         """Be alive under a key."""
         return self._keep(self._session.liveliness().declare_token(key))
 
-    def watch(self, key: str, changed: Callable[[str, bool], None], *, history: bool = True) -> Callable[[], None]:
+    def watch(
+        self, key: str, changed: Callable[[str, bool], None], *, history: bool = True, many: bool = False
+    ) -> Callable[[], None]:
         """Follow every life under a key, those that are there already first, unless it is without `history`."""
 
         def change(*lives: tuple[str, bool]) -> None:
@@ -396,7 +398,8 @@ class ZenohBus(Loop):
         def listen(samples: Sequence[zenoh.Sample]) -> None:
             receiver.received(*((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT) for sample in samples))
 
-        handler = _handler(key, listen)
+        # A channel is looked at ten times a second; a callback for each of thousands would hold Zenoh's thread up.
+        handler: Any = FifoChannel(_CHANNEL) if many else _each(listen)
         declared = self._session.liveliness().declare_subscriber(key, handler, history=history)
         self._read_aside(handler, declared.handler, listen)
         return receiver.open(declared)
@@ -468,6 +471,10 @@ def _handler(key: str, take: Callable[[Sequence[Any]], object], end: Callable[[]
     """What Zenoh hands over under a key to: a channel where it may be thousands, else a callback for each."""
     if "*" in key.removesuffix("/*"):  # of one component there are few lives, and few outputs
         return FifoChannel(_CHANNEL)
+    return _each(take, end)
+
+
+def _each(take: Callable[[Sequence[Any]], object], end: Callable[[], None] = lambda: None) -> Any:
     return Callback(lambda one: take((one,)), end, indirect=False)
 
 

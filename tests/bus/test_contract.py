@@ -361,12 +361,13 @@ def test_a_broad_question_does_not_reach_a_control_call(net: Net, top: str) -> N
 # Lives.
 
 
-def test_a_watch_shows_lives_that_are_there_that_begin_and_that_end(net: Net, top: str) -> None:
+@pytest.mark.parametrize("many", [False, True], ids=["few", "many"])
+def test_a_watch_shows_lives_that_are_there_that_begin_and_that_end(net: Net, top: str, many: bool) -> None:
     one, two, watching = net.node(), net.node(), net.node()
     undo = one.announce(f"{top}/c/a/live/1")
     net.settle()
     heard: list[tuple[str, bool]] = []
-    watching.watch(f"{top}/c/*/live/*", lambda key, alive: heard.append((key, alive)))
+    watching.watch(f"{top}/c/*/live/*", lambda key, alive: heard.append((key, alive)), many=many)
     assert net.until(lambda: heard == [(f"{top}/c/a/live/1", True)])
     two.announce(f"{top}/c/b/live/1")
     assert net.until(lambda: heard[1:] == [(f"{top}/c/b/live/1", True)])

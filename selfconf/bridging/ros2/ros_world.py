@@ -79,7 +79,7 @@ class RosWorld:
 
         def begin() -> None:
             self._bus.announce(bridge_token(self._domain).key())
-            self._bus.watch(f"{ROOT}/{self._number}/**", self._changed)
+            self._bus.watch(f"{ROOT}/{self._number}/**", self._changed, many=True)
             begun.set()
 
         self._bus.wake_up(begin)
