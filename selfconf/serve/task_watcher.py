@@ -27,6 +27,8 @@ LOOK_ANEW = 10.0
 """Seconds between two looks at all configurators."""
 TOGETHER = 0.05
 """Seconds for which changes are collected, so that a rush of them is told at once."""
+LAST_WORDS_OF_TASK = 0.25
+"""Seconds for which the end of a configurator waits for its last notice: the end of a life may overtake it."""
 PATIENCE_WITH_PEERS = 2.0
 """Seconds that a configurator may take to answer."""
 ENDED_TASKS = 12
@@ -45,6 +47,8 @@ class TaskWatcher:
         self.bus, self.keys, self._happened, self._changed = bus, keys, happened, changed
         self._tasks: dict[str, WatchedTask] = {}
         """By the name of the configurator."""
+        self._leaving: set[str] = set()
+        """The configurators whose life has ended, and whose last notice may still come."""
         self._over: deque[str] = deque()
         self._kept: dict[str, TaskRecord] = {}
         self._records: dict[str, TaskRecord] = {}
@@ -102,19 +106,31 @@ class TaskWatcher:
     def _configurator_changed(self, key: str, alive: bool) -> None:
         name = owner_of(key)
         if alive:
+            self._leaving.discard(name)
             self._task(name).alive = True
             self._ask_all(name)
             self._ask_task(name)
         elif name in self._tasks:
-            self._tasks[name].alive = False
-            self._over.append(name)
-            while len(self._over) > ENDED_TASKS:
-                gone = self._over.popleft()
-                self._tasks.pop(gone, None)
-                self._records.pop(gone, None)
-            self._deployed_text.pop(name, None)
-            self._put_graph(name, b"")
-            self._changed()
+            self._leaving.add(name)
+            if self._tasks[name].ended:
+                self._end(name)
+            else:
+                self.bus.later(LAST_WORDS_OF_TASK, lambda: self._end(name))
+
+    def _end(self, name: str) -> None:
+        """Take a configurator for ended, unless it has come back meanwhile."""
+        if name not in self._leaving or name not in self._tasks:
+            return
+        self._leaving.discard(name)
+        self._tasks[name].alive = False
+        self._over.append(name)
+        while len(self._over) > ENDED_TASKS:
+            gone = self._over.popleft()
+            self._tasks.pop(gone, None)
+            self._records.pop(gone, None)
+        self._deployed_text.pop(name, None)
+        self._put_graph(name, b"")
+        self._changed()
 
     def _noticed(self, sample: Sample) -> None:
         try:

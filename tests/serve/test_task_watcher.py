@@ -57,6 +57,28 @@ def test_a_configurator_that_is_cut_down_is_gone(lab: Lab) -> None:
     assert tasks.watcher.take_graphs() == [{graph[0]: b""}]
 
 
+def test_a_configurator_whose_life_ends_before_its_last_notice_comes_has_stopped(lab: Lab) -> None:
+    tasks, life = Tasks(lab), lab.keys.configurator_life("c1", "1")
+    tasks.watcher._configurator_changed(life, True)
+    tasks.watcher._configurator_changed(life, False)
+    tasks.watcher._hear(tasks.watcher._task("c1"), Notice("c1", 1, "tidy~1", {"act": "stopped", "time": 1.0}))
+    assert tasks.phases() == ["stopped"]
+    tasks.watcher._configurator_changed(life, True)
+    lab.let_pass(1.0)
+    assert tasks.watcher._tasks["c1"].alive, "it has come back before its end was believed"
+
+
+def test_a_configurator_that_comes_back_at_once_was_never_gone(lab: Lab) -> None:
+    tasks = Tasks(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    for alive in (False, True):
+        tasks.watcher._configurator_changed(lab.keys.configurator_life(agent.name, "1"), alive)
+    lab.let_pass(1.0)
+    assert tasks.phases() == ["running"]
+
+
 def test_a_configuration_that_is_replaced_before_it_is_handed_on_is_handed_on_before_the_other(lab: Lab) -> None:
     tasks = Tasks(lab)
     agent = lab.agent()
