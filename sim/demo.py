@@ -110,16 +110,22 @@ class Stage:
 
     def serve(self) -> None:
         """Show the ecology in a browser, and wait until the page is there."""
+        # Somebody else may take the usual port between the look at it and the server's own.
+        if not (self._served(_free(USUAL_PORT)) or self._served(0)):
+            raise DemoError("the page cannot be served")
+
+    def _served(self, port: int) -> bool:
+        """Start the server of the page and wait until it is there; False if it ends before."""
         where = ["--ecology", self.ecology, "--connect", self.endpoint]
-        self.crew.start(PAGE, "-m", "selfconf", "serve", *where, "--port", str(_free(USUAL_PORT)))
+        self.crew.start(PAGE, "-m", "selfconf", "serve", *where, "--port", str(port))
         deadline = time.monotonic() + STARTING
         while time.monotonic() < deadline:
             for line in self.crew.lines(0.05):
                 self.hear(line.process, line.text)
                 if line.process == PAGE and line.text is None:
-                    raise DemoError("the page cannot be served")
+                    return False
                 if line.process == PAGE and "http://" in (line.text or ""):
-                    return
+                    return True
         raise DemoError(f"the page is not there after {STARTING:.0f} s")
 
     def linger(self) -> None:
