@@ -18,6 +18,7 @@ from functools import partial
 
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError, SelfconfError, TurtleError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import Keys, component_chunk, life_of, owner_of, site_of
@@ -49,7 +50,7 @@ IN_A_ROW = 20
 """How many discoveries may begin without a pause after a quiet time, as where tasks contend for components."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class FoundAdvertisement:
     """An advertisement of the living ecology: at which site, from which file, and whether the site can start it."""
 
@@ -88,7 +89,7 @@ SiteLife = tuple[str, str]
 """A site by its name and its life; the life is empty for a site of before that does not say it."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class KnownSite:
     """What a site has answered in full: at which revision, how many pages, and what was read in them."""
 

@@ -14,12 +14,13 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.immutable import immutable
 from selfconf.protocol.keys import checked_name
 
 if sys.version_info >= (3, 11):
@@ -102,7 +103,7 @@ PROJECT_KEYS: Mapping[str, ProjectKey] = {
 """The keys, in the order in which they are explained; besides them there is the table `bind`."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Project:
     """What a project file says; without a file, nothing."""
 

@@ -17,12 +17,13 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from pathlib import Path
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 from selfconf.termination import alive, start_time
@@ -50,7 +51,7 @@ Else a client that tries to connect to a port where nothing listens might be giv
 """
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class LocalSite:
     """A site of this machine: its ecology, name, endpoint and process."""
 

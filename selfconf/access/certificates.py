@@ -10,12 +10,12 @@ import ipaddress
 import secrets
 import warnings
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from typing import Any
 
 from selfconf.access.principal import Principal
 from selfconf.errors import AuthorError, InstallationError, PeerError
+from selfconf.model.immutable import immutable
 
 try:
     from cryptography import x509
@@ -70,7 +70,7 @@ def read_key(pem: bytes) -> Key:
     return key
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Certificate:
     """An X.509 certificate."""
 

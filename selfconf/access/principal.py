@@ -9,10 +9,10 @@ The configurators of conf.NAME are called NAME-... in keys, so their NAME has no
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from enum import Enum
 
 from selfconf.errors import AuthorError, PeerError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, component_chunk
 
@@ -34,7 +34,7 @@ class PrincipalKind(str, Enum):
     """Discovers, queries and watches, and changes nothing."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Principal:
     """The subject of a certificate."""
 

@@ -11,10 +11,11 @@ with `@`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, any_ecology, component_chunk
 from selfconf.protocol.messages import Access
@@ -27,7 +28,7 @@ BY, TO = "ingress", "egress"
 """What comes by the link of somebody, and what goes to that link."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AccessRules:
     """Who may do what at the hubs of one site."""
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from selfconf.api.reading import existing
 from selfconf.api.site_program import serve
 from selfconf.bridging import Bridge, ForeignWorld
+from selfconf.model.immutable import immutable
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class BridgeSite:
     """The site of a bridge: its ecology and name, where it listens and connects, its keys, as `serve` takes them."""
 

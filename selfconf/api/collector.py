@@ -23,10 +23,11 @@ def collector_at_rest() -> Iterator[None]:
     """No garbage collection while much is read that will stay; afterwards it counts as old, and is looked at rarely."""
     collecting = gc.isenabled()
     gc.disable()
+    before = gc.get_count()[0]
     try:
         yield
     finally:
-        if gc.get_count()[0] >= MANY_VALUES and not gc.get_freeze_count():
+        if gc.get_count()[0] - before >= MANY_VALUES and not gc.get_freeze_count():
             gc.freeze()
             gc.unfreeze()  # moves everything to the oldest generation, without a look at it
         if collecting:

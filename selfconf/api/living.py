@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -25,6 +25,7 @@ from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
 from selfconf.errors import AuthorError, NetworkError, PeerError, TurtleError
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
@@ -67,7 +68,7 @@ ANSWER_PATIENCE = 20.0
 _Result = TypeVar("_Result")
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class LivingTask:
     """A task of an ecology: who runs it, since when, and with which components."""
 
@@ -130,7 +131,7 @@ class LivingTask:
         }
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SiteAccess:
     """Who may do what at the hub of a site with keys, and what was refused there, the latest first."""
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ import pyoxigraph as ox
 
 from selfconf.api.deployed import deployed_body
 from selfconf.errors import AuthorError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
@@ -32,7 +32,7 @@ _ORDER = (".log", ".sst", "")
 """The endings of the files in the order of copying: write-ahead logs, tables, and what names them."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class PastConfiguration:
     """A configuration as the history has it: who deployed it, from when until when, and what had failed before."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from selfconf.api.reading import text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, TemplateError
+from selfconf.model.immutable import immutable
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import tasks, turtle
@@ -26,7 +26,7 @@ Value = str | int | float | Decimal | IRI | Literal
 plain words; a number or truth value stands for the literal of its kind."""
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@immutable
 class TaskSpecification(Tabular):
     """A template with values for some of its parameters. Immutable: `bind` returns another one.
 
@@ -89,7 +89,7 @@ class TaskSpecification(Tabular):
             yield ["parameter", parameter.name, names(bound[parameter.name]) if known else "(free)"]
 
     def __repr__(self) -> str:
-        return f"<task {self.names(self.iri)}>\n{super(TaskSpecification, self).__repr__()}"
+        return f"<task {self.names(self.iri)}>\n{Tabular.__repr__(self)}"
 
 
 def template(source: str | Path | rdflib.Graph, name: str | None = None) -> TaskSpecification:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from selfconf.errors import NetworkError
+from selfconf.model.immutable import immutable
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Credentials:
     """A certificate with its key, and the authorities whose certificates are believed; each a file in PEM."""
 

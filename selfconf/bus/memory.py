@@ -12,11 +12,11 @@ import heapq
 import itertools
 import random
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeVar
 
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
+from selfconf.model.immutable import immutable
 
 _T = TypeVar("_T")
 
@@ -62,7 +62,7 @@ _LEAST_TIMER = 1e-6
 timer that is renewed until a time has come would never end."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Faults:
     """The chances per message, and the delays in seconds; a perfect and fast network by default."""
 
@@ -482,7 +482,7 @@ class MemoryBus:
                     )
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class _Watch:
     """Who follows the lives under a key, and without their history which of them it was shown."""
 

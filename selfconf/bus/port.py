@@ -22,9 +22,10 @@ A *life* is one incarnation of a program or a component: a liveliness token unde
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple, Protocol
+
+from selfconf.model.immutable import immutable
 
 
 class Urgency(str, Enum):
@@ -53,7 +54,7 @@ LARGEST_REPLIES = 1 << 28
 """How many bytes the replies to one question can have together; what comes after that is dropped."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Replies:
     """All the replies to a question.
 

@@ -15,7 +15,6 @@ import json
 import os
 import socket
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ import zenoh
 
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import NetworkError
+from selfconf.model.immutable import immutable
 
 LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
@@ -42,7 +42,7 @@ _RETRY = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Security:
     """How the links of a session are secured: what it shows, and, at a router, who may do what there."""
 

@@ -9,12 +9,12 @@ be fed. Composites that could be inside of each other in a circle have no end, a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from selfconf.composition.composer import Composer
 from selfconf.errors import AuthorError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import Input, Output, Profile, port_in_words
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
@@ -27,7 +27,7 @@ DocumentOf = Callable[[Advertisement], Document]
 """Reads the document in which a composite is advertised; raises SelfconfError."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Inside:
     """What a composite is inside: a task, of which some parameters are operational parameters of the composite."""
 

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from selfconf.configurator.order import Callers
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Wire
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Discover:
     """Acts 1 and 2: broadcast a query, collect the advertisements, and ask the other tasks what they hold."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Compose:
     """Act 3: search for a configuration without the lost components, which keeps as much of `running` as it can."""
 
@@ -26,21 +27,21 @@ class Compose:
     running: Configuration | None
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Watch:
     """Act 4, first: connect to the FAIL of a component, and notice if its life ends."""
 
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Unwatch:
     """Stop listening to a component."""
 
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class WakeUp:
     """Act 4: have a component started by its site, unless it lives."""
 
@@ -48,7 +49,7 @@ class WakeUp:
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ReserveOf:
     """Act 4: have a component held for this task, without acting."""
 
@@ -58,7 +59,7 @@ class ReserveOf:
     values: Mapping[str, Term] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class QueueFor:
     """Have a component remember that this task waits for it, and tell when it is free."""
 
@@ -66,7 +67,7 @@ class QueueFor:
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Decline:
     """Tell a component that is kept for this task, and that it cannot take now, to go to the next that waits."""
 
@@ -74,7 +75,7 @@ class Decline:
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ApplyTo:
     """Act 4: give a component the values of its parameters, activate it, and connect its inputs."""
 
@@ -88,7 +89,7 @@ class ApplyTo:
     """Whether what an input followed before is let go of only when the new output delivers."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ReleaseFrom:
     """Turn a component off, as far as this task is concerned."""
 
@@ -96,7 +97,7 @@ class ReleaseFrom:
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AwaitRelease:
     """Another task holds a component: it is waited for, but not for long without a look (`WaitedLong`)."""
 
@@ -104,14 +105,14 @@ class AwaitRelease:
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Running:
     """The configuration is complete: note and report it."""
 
     configuration: Configuration
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Finish:
     """The task has ended: taken down as wanted, or refused."""
 

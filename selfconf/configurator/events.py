@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -23,14 +24,14 @@ class Call(str, Enum):
     RELEASE = "release"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Accepted:
     """A task is to be configured. Epochs start above `epoch`, so that they are newer than those of earlier runs."""
 
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Adopted:
     """A task that runs already is to be gone on with, whose configurator is gone."""
 
@@ -38,19 +39,19 @@ class Adopted:
     configuration: Configuration
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class HandedOver:
     """Another configurator is to go on with this task."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Discovered:
     """The ecology has answered; `holders` are the other tasks that hold components."""
 
     holders: Mapping[IRI, Holder] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Composed:
     """The search has ended; `attempt` is its number, so that the outcome of an older search is passed over."""
 
@@ -58,7 +59,7 @@ class Composed:
     outcome: Outcome
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Answered:
     """A component has answered a call, or could not be reached (no verdict)."""
 
@@ -73,7 +74,7 @@ class Answered:
     """Who holds the component, where that is another task."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Failed:
     """A component is lost. `life` is empty where the life is not known."""
 
@@ -85,14 +86,14 @@ class Failed:
     """Whether the site of the component can start it again."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Freed:
     """A component that another task held is kept for this one, for a moment."""
 
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class WaitedLong:
     """A component that was asked for, and is held by another task, has not become free for some time."""
 
@@ -100,31 +101,31 @@ class WaitedLong:
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Appeared:
     """Something has come that may help: a component lives (again), or the advertisements of a site have changed."""
 
     lives: Mapping[IRI, str]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Rewired:
     """Other components than before issue the outputs of a component, or call by it: who is connected has to be told."""
 
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Improvable:
     """What the task needs may be had from components that the strategy would rather have."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Reconnected:
     """This node was cut off from the ecology, or the task from what feeds it: all that is known may be outdated."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Stopped:
     """The configuration is to be taken down."""
 

@@ -7,10 +7,10 @@ feed nothing, come last, when everything else acts. Coming to rest goes the othe
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Wire
@@ -60,7 +60,7 @@ def parameter_values(configuration: Configuration) -> dict[IRI, dict[str, Term]]
     return values
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class StartingOrder:
     """Which components must act before a component is started."""
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from selfconf.configurator.events import Call
 from selfconf.configurator.order import Callers, InputWires, StartingOrder
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause
@@ -36,7 +37,7 @@ class Policy(str, Enum):
     DISMANTLE = "dismantle"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Held:
     """A component that was called for this task: what it is to do, and how far that has come."""
 
@@ -54,7 +55,7 @@ class Held:
     """Whether it has said that it acts with these inputs and values, for these callers."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Loss:
     """Why a component was given up, and in which life."""
 
@@ -69,7 +70,7 @@ class Loss:
     """Whether its process has ended, or is about to, and its site can start it again."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class State:
     """All that a configurator knows about its task, apart from the advertisements."""
 

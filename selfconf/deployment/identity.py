@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from selfconf.model.immutable import immutable
 from selfconf.protocol.keys import task_name
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskIdentity:
     """A running task: what stays the same if another configurator goes on with it."""
 

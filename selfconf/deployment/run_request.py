@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from selfconf.configurator.state import Policy
 from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import RunEvent
@@ -26,7 +27,7 @@ Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
 """For each component and input, the outputs that might be connected to it next."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Outside:
     """What is outside of a task that is the inside of a composite."""
 

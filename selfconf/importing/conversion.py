@@ -7,7 +7,7 @@ model of what it extends. What it cannot read it hands over as an error and goes
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from selfconf import files
@@ -23,11 +23,12 @@ from selfconf.importing.ros2 import import_nodes
 from selfconf.importing.sources import SourceDocument, gather
 from selfconf.importing.turtle_text import turtle
 from selfconf.importing.wot import import_things
+from selfconf.model.immutable import immutable
 
 Importer = Callable[[Iterable[SourceDocument], ImportLedger], Iterable[ImportedDocument]]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ImportFormat:
     """A format that can be imported: its name, the endings of its files in a folder, and what reads it."""
 
@@ -49,7 +50,7 @@ IMPORT_FORMATS = {
 """The formats, by their names."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ImportedFile:
     """A Turtle file that an import has written, or that was there as it would be written."""
 
@@ -58,7 +59,7 @@ class ImportedFile:
     document: ImportedDocument
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ImportReport:
     """What an import has written, what it has left out or renamed, and what it could not read."""
 

@@ -7,21 +7,22 @@ writer of Turtle takes; a format that is RDF already makes descriptions without 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.model.wording import listed
 from selfconf.rdf.vocabulary import LABEL, SC, TYPE, XSD
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NestedNode:
     """A node without a name, written in brackets where it stands."""
 
     statements: tuple[DescribedStatement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TermList:
     """An RDF list, written in parentheses."""
 
@@ -32,7 +33,7 @@ DescribedValue = Term | NestedNode | TermList
 DescribedStatement = tuple[IRI, tuple[DescribedValue, ...]]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Description:
     """All that a file says of one subject, in the order in which it is written."""
 
@@ -48,7 +49,7 @@ class Description:
         return tuple(value for found, values in self.statements if found == predicate for value in values)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ImportedPort:
     """An input or output: its name, any number of signal types, and what else the source says of it."""
 
@@ -71,7 +72,7 @@ class ImportedPort:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ImportedOperation:
     """An operation that a component offers or needs: its name, what a request and what a response is."""
 
@@ -97,7 +98,7 @@ FEW = 2
 TRUE = Literal("true", XSD.boolean)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ImportedComponent:
     """A component as some other format describes it."""
 
@@ -150,7 +151,7 @@ def grouped(pairs: Iterable[tuple[IRI, DescribedValue]]) -> tuple[DescribedState
     return tuple((predicate, tuple(each)) for predicate, each in values.items())
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ImportedDocument:
     """A Turtle file to be: where it goes, without its ending, what it was made from, and what stands in it."""
 
@@ -165,7 +166,7 @@ class ImportedDocument:
         return (each for each in self.descriptions if kind in each.values(TYPE))
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Omission:
     """Something of a source that is not in the advertisements, why, and how often."""
 
@@ -180,7 +181,7 @@ class Omission:
         return f"left out {self.what} ({self.number}): {self.reason}; in {where}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Renaming:
     """A component that got another name than its source gives it, because that one is taken."""
 

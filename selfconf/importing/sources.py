@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from http.client import HTTPException, HTTPResponse
 from pathlib import Path
 from time import monotonic
@@ -27,6 +26,7 @@ from urllib.request import (
 from selfconf import files
 from selfconf.errors import AuthorError
 from selfconf.importing.turtle_text import MARK
+from selfconf.model.immutable import immutable
 
 LARGEST_SOURCE = 16 << 20
 """A document of more bytes is not read; the largest Thing Descriptions that are known have a few hundred kilobytes."""
@@ -38,7 +38,7 @@ Unreadable = Callable[[AuthorError], None]
 """Receives what is wrong with a source that cannot be read; the others are imported all the same."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SourceDocument:
     """A document: what messages call it, its name below the folder that was given, and its bytes."""
 

@@ -10,9 +10,8 @@ earns its code, the good one earns nothing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from selfconf.model.diagnostic import Severity
+from selfconf.model.immutable import immutable
 
 PREAMBLE = """\
 @prefix : <https://example.org/home#> .
@@ -28,7 +27,7 @@ PREAMBLE = """\
 """What stands at the head of each example."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Code:
     """One kind of problem."""
 

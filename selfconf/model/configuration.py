@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Term
 
 
@@ -24,7 +25,7 @@ def ordered_connections(connections: Iterable[Connection], components: Iterable[
     return tuple(sorted(connections, key=lambda c: (place[c.source], c.output, place[c.sink], c.input)))
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Assignment:
     """The components that play a role, in the order in which they were chosen."""
 
@@ -32,7 +33,7 @@ class Assignment:
     components: tuple[IRI, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ParameterSetting:
     """An operational parameter of a component and the value it is given."""
 

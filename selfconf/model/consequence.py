@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Consequence:
     """A component that may fail, the role it plays, and the configuration after that, or why there is none."""
 

@@ -8,16 +8,16 @@ exact fractions, so that no order of addition and no rounding changes an answer.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.immutable import immutable
 from selfconf.model.number import fraction
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class CostTerm:
     """A property whose value counts, times a weight (negative to reward large values), for one role or for all."""
 

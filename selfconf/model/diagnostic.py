@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import Enum
 
+from selfconf.model.immutable import immutable
+
 LONGEST_SOURCE = 240
 """Characters of a line that are shown: a file on one line may have a million problems, all of them on that line."""
 BEFORE = 80
@@ -25,7 +27,7 @@ class Severity(str, Enum):
     WARNING = "warning"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Diagnostic:
     """One problem in one file; line and column count from one, the width from there is counted in characters."""
 

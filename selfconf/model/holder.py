@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from selfconf.model.immutable import immutable
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Holder:
     """Who holds a component: a task, its priority and beginning, and its configurator."""
 

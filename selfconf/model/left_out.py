@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import Place
 from selfconf.model.term import IRI, BlankNode
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class LeftOut:
     """An advertisement that does not count: it does not conform, or its component is advertised already."""
 

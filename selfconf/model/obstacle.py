@@ -7,10 +7,10 @@ programs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar
 
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import Operation, WantedSignal, port_in_words
 from selfconf.model.signal_match import Degree, SignalMatch
 from selfconf.model.term import IRI, Term
@@ -49,7 +49,7 @@ class TypeRelation(str, Enum):
     """An ontology places it above the wanted one."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class WrongType(_Predicate):
     """The component is not of a class that the role asks for (`sh:class`)."""
 
@@ -71,7 +71,7 @@ class WrongType(_Predicate):
         return f"{said} but a {self.offered.short}, which lies above it"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class WrongComponent(_Predicate):
     """The role asks for one of some components by name (`sh:in` or `sh:hasValue` on the node)."""
 
@@ -82,7 +82,7 @@ class WrongComponent(_Predicate):
         return f"is not {in_words(self.members)}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Missing:
     """There is no value where one has to be."""
 
@@ -91,7 +91,7 @@ class Missing:
         return f"has no {name}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class WrongCount:
     """There are fewer or more values than the role allows."""
 
@@ -103,7 +103,7 @@ class WrongCount:
         return f"has {self.found} of {name}, too {'many' if self.too_many else 'few'}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class WrongShareOfValues:
     """Fewer or more values are of some kind than the role allows (`sh:qualifiedValueShape`)."""
 
@@ -117,7 +117,7 @@ class WrongShareOfValues:
         return f"has {self.found} of {name} that are as asked for, not at {limit} {self.wanted}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NotAmong:
     """Some values are not among those that the role allows (`sh:in`), or not the one that it requires."""
 
@@ -131,7 +131,7 @@ class NotAmong:
         return f"{name} is {worded(self.values)}, not {worded(self.members)}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ConstraintFailed:
     """Some values fail a constraint of SHACL on each value; `constraint` is its parameter, such as `sh:pattern`.
 
@@ -159,7 +159,7 @@ class ConstraintFailed:
         return f"like /{wanted}/" if constraint == "pattern" else f"a {wanted}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Ambiguous:
     """There are several values where a free parameter has to be equal to each."""
 
@@ -173,7 +173,7 @@ class Ambiguous:
 Fault = Missing | WrongCount | WrongShareOfValues | NotAmong | ConstraintFailed | Ambiguous
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class PropertyUnmet:
     """All that is wrong with one property: one obstacle, as one change of the property mends it."""
 
@@ -191,7 +191,7 @@ class PropertyUnmet:
         return "; ".join(fault.said(self.path.short) for fault in self.faults)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ParameterUndeclared(_Predicate):
     """The role sets an operational parameter of a type that the component does not declare (`sc:hasParameter`)."""
 
@@ -202,7 +202,7 @@ class ParameterUndeclared(_Predicate):
         return f"declares no parameter of type {self.type.short}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NoAlternative:
     """The component meets too few of several alternatives (`sh:or`, `sh:xone`, `sh:and`): what each of them lacks."""
 
@@ -218,7 +218,7 @@ class NoAlternative:
         return " and ".join(dict.fromkeys(map(str, self.obstacles)))
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Excluded(_Predicate):
     """The component meets what it must not meet (`sh:not`), or several of which it may meet one (`sh:xone`)."""
 
@@ -229,7 +229,7 @@ class Excluded(_Predicate):
         return "is several things of which it must be one" if self.several else "is what it must not be"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ShapeViolated(_Predicate):
     """pySHACL finds a constraint violated that is not compiled; `path` is the property, if it is about one."""
 
@@ -241,7 +241,7 @@ class ShapeViolated(_Predicate):
         return f"violates: {self.message}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NoCommonValue(_Predicate):
     """What the component states leaves a free parameter of the role no value at all."""
 
@@ -251,7 +251,7 @@ class NoCommonValue(_Predicate):
         return "leaves no value for a free parameter that its statements agree on"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ParameterForbids(_Predicate):
     """What the component states would be the value of a free parameter, which may not have it."""
 
@@ -271,7 +271,7 @@ _RELATIONS = {
 """In words how an offered signal type is related to the one that is wanted."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class UnlikePorts(_Predicate):
     """The component would fit but for its ports: what it should issue or take, and what comes nearest."""
 
@@ -287,7 +287,7 @@ class UnlikePorts(_Predicate):
         return " and ".join(dict.fromkeys((*issued, *given))) or "has other ports"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class UnfitOutput(_Predicate):
     """The component issues the signal that an input wants, but in another unit or frame, or of another shape."""
 
@@ -319,7 +319,7 @@ class UnfitOutput(_Predicate):
         return f"issues what {' and '.join(said)} (output {self.output!r})"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NotFedItself(_Predicate):
     """The component issues what an input wants, but could not be recruited: an input of its own stays unfed."""
 
@@ -355,7 +355,7 @@ def _taking(match: SignalMatch) -> str:
     return f"needs {wanted} and would be given {match.offered.short}, {_RELATIONS[match.degree]} it"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NotJudged(_Predicate):
     """What the component says would take too long to judge, or cannot be judged at all; so it plays no role."""
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Optimum:
     """A configuration, what its solution costs on each level, and what any solution costs at least."""
 

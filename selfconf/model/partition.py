@@ -9,9 +9,10 @@ Candidates can play together iff, for each variable, the conjunction of their ma
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from selfconf.model.candidate_order import candidate_order
+from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.profile import Place, Profile
 from selfconf.model.term import IRI, Term
@@ -19,7 +20,7 @@ from selfconf.model.term import IRI, Term
 ANY_VALUE = -1
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Variable:
     """A parameter left unbound, and the values that some candidate could give it; bit k stands for `domain[k]`."""
 
@@ -35,7 +36,7 @@ class Variable:
         return self.domain[(mask & -mask).bit_length() - 1]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Candidate:
     """A component that is eligible for a role, and what it allows each variable to be."""
 
@@ -43,7 +44,7 @@ class Candidate:
     admits: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Recruit:
     """A component that may feed players without playing a role itself."""
 
@@ -57,7 +58,7 @@ class Recruit:
         return self.profile.component
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NearMiss:
     """A component that a role would take, but for one thing."""
 
@@ -77,7 +78,7 @@ class NearMiss:
         return self.obstacle.clause
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Partition:
     """F1 ... Fn in the order of the template's roles, each in the order in which candidates are tried."""
 

@@ -11,16 +11,17 @@ in `()`, as those of other ports may not. So whatever pairs, counts or names por
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 from functools import lru_cache
 from typing import NamedTuple
 
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import in_words
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Place:
     """Where something was said: a file or other source, and the line in it, counted from one, where known."""
 
@@ -251,7 +252,7 @@ def shared_ports(inputs: tuple[Input, ...], outputs: tuple[Output, ...]) -> Port
     return Ports(inputs, outputs)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class OperationalParameter:
     """A parameter that a configurator may set on a component."""
 
@@ -259,7 +260,7 @@ class OperationalParameter:
     type: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Profile:
     """What a component is. Parameters are sorted by name, properties by predicate and value."""
 

@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import immutable
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import CALL_MARK, Place, WantedSignal, port_in_words
 from selfconf.model.relaxation import Relaxation
@@ -19,7 +20,7 @@ from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Contradiction:
     """A role asks for more components than it allows."""
 
@@ -42,7 +43,7 @@ class Contradiction:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ValueUnknown:
     """A parameter is set on a component, is not bound, and no candidate states a value for it."""
 
@@ -64,7 +65,7 @@ class ValueUnknown:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TooFewEligible:
     """A role has fewer eligible components than it asks for."""
 
@@ -86,7 +87,7 @@ class TooFewEligible:
         return f"the role {self.role.short} asks for {self.wanted} components, and only {_eligible(self.found)}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class DerivationStep:
     """A step of a derivation: candidates of a role play in no configuration, as one of their inputs is not fed."""
 
@@ -125,7 +126,7 @@ def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str,
     return ", and ".join([*said, *(["no recruit does"] if recruits and sources else [])])
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class InputUnfed:
     """Every candidate of a role that matters has an input that no candidate of the roles feeding it can feed."""
 
@@ -162,7 +163,7 @@ class InputUnfed:
         return "; so ".join([f"{name} {verdict}: {lack}", *map(str, self.consequences)])
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TooFewDistinct:
     """Some roles together ask for more components than are eligible for any of them."""
 
@@ -190,7 +191,7 @@ class TooFewDistinct:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Conflict:
     """Each of these roles can be played, but not all of them together."""
 
@@ -256,7 +257,7 @@ class Refusal:
         return False
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Undecided:
     """What was allowed is used up, and there is neither a configuration nor a proof that there is none.
 

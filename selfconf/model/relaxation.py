@@ -6,16 +6,17 @@ A relaxation is a fact; it words itself as a request. `code` is stable, for prog
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import ClassVar
 
+from selfconf.model.immutable import immutable
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.profile import CALL_MARK, Operation, Output, Place
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import in_words, listed
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Addition:
     """Components to be added: so many for a role, each without inputs and with these outputs."""
 
@@ -63,7 +64,7 @@ def _signal(output: Output) -> str:
     return f"{output}{shape}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AddComponents:
     """Fewest components whose addition makes the task possible."""
 
@@ -81,7 +82,7 @@ class AddComponents:
         return f"add {listed(map(str, self.additions))}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AddRecruits(AddComponents):
     """Components that make the task possible as recruits; none of their outputs can be spared."""
 
@@ -95,7 +96,7 @@ class AddRecruits(AddComponents):
         return f"add {listed(addition.worded(' to recruit') for addition in some)}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AskForFewer:
     """A role that asks for fewer components, or for none, makes the task possible."""
 
@@ -111,7 +112,7 @@ class AskForFewer:
         return f"let the role {self.role.short} ask for {self.minimum} (sc:minCount {self.minimum})"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class LetRecruit:
     """A role that recruits makes the task possible."""
 
@@ -128,7 +129,7 @@ class LetRecruit:
         return f"let the role {self.role.short} recruit (sc:recruits true): {would} {names}".rstrip()
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AddInteraction:
     """One more interaction makes the task possible."""
 
@@ -143,7 +144,7 @@ class AddInteraction:
         return f"let the role {self.role.short} feed the role {self.sink.short} (sc:feeds)"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AcceptNearMiss:
     """A component that was kept out by one thing would make the task possible."""
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import WantedSignal
 from selfconf.model.term import IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RolePlayed:
     """A role is played by as many components as it asks for at least."""
 
@@ -18,7 +17,7 @@ class RolePlayed:
         return f"{self.role.short} is played"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class InputFed:
     """Whoever plays a role gets a signal.
 
@@ -34,7 +33,7 @@ class InputFed:
         return f"{self.role.short} gets the {self.wanted} that it needs{port}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class OneValue:
     """A free parameter, by name, has one value that all candidates chosen admit."""
 
@@ -44,7 +43,7 @@ class OneValue:
         return f"there is one {self.parameter} for all"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class OneRoleEach:
     """No component plays two roles."""
 

@@ -7,15 +7,16 @@ Each event has an `act`, a name that is stable for programs, and a time in secon
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import ClassVar
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.term import IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RunEvent:
     """Something that the configurator did or noticed; its subclasses say what."""
 
@@ -28,14 +29,14 @@ class RunEvent:
         return " ".join((self.act, *(f"{name}={_brief(value)}" for name, value in facts)))
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class EcologyAsked(RunEvent):
     """Act 1: the ecology was asked what it has."""
 
     act: ClassVar[str] = "query"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class EcologyDiscovered(RunEvent):
     """Act 2: the ecology has answered; `missing` are the sites that live and did not answer in full."""
 
@@ -45,7 +46,7 @@ class EcologyDiscovered(RunEvent):
     missing: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class AnswerRejected(RunEvent):
     """Something in an answer of the ecology was left out, and why."""
 
@@ -53,7 +54,7 @@ class AnswerRejected(RunEvent):
     detail: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ComponentLeftOut(RunEvent):
     """Act 3: what a component says cannot be judged, or not in time, so it plays no role; reported once."""
 
@@ -62,7 +63,7 @@ class ComponentLeftOut(RunEvent):
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SearchEnded(RunEvent):
     """Act 3: the search has ended, after so many seconds."""
 
@@ -71,7 +72,7 @@ class SearchEnded(RunEvent):
     seconds: float
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class FailWatched(RunEvent):
     """Act 4: the configurator listens to the FAIL of a component."""
 
@@ -79,7 +80,7 @@ class FailWatched(RunEvent):
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ComponentWoken(RunEvent):
     """Act 4: a site was asked to start a dormant component."""
 
@@ -88,7 +89,7 @@ class ComponentWoken(RunEvent):
     site: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ComponentAwaited(RunEvent):
     """Act 4: another task holds a component, and it is waited for."""
 
@@ -96,7 +97,7 @@ class ComponentAwaited(RunEvent):
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class InputConnected(RunEvent):
     """Act 4: an input of a component was told to follow an output of another."""
 
@@ -107,7 +108,7 @@ class InputConnected(RunEvent):
     input: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ActivationSent(RunEvent):
     """Act 4: a component was told to act."""
 
@@ -115,7 +116,7 @@ class ActivationSent(RunEvent):
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class CallAnswered(RunEvent):
     """A component has answered a call; its subclasses say which one."""
 
@@ -123,35 +124,35 @@ class CallAnswered(RunEvent):
     detail: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ComponentActivated(CallAnswered):
     """Act 4: a component acts."""
 
     act: ClassVar[str] = "activated"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ParametersSet(CallAnswered):
     """Act 4: a component has its operational parameters."""
 
     act: ClassVar[str] = "set"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ComponentReleased(CallAnswered):
     """A component was turned off."""
 
     act: ClassVar[str] = "released"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class CallDeclined(CallAnswered):
     """A component does not do what it was told, and why."""
 
     act: ClassVar[str] = "declined"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ComponentUnreachable(RunEvent):
     """A component did not answer a call."""
 
@@ -161,7 +162,7 @@ class ComponentUnreachable(RunEvent):
     detail: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ComponentLost(RunEvent):
     """A component was given up: it failed, crashed, went silent, or refused."""
 
@@ -171,7 +172,7 @@ class ComponentLost(RunEvent):
     detail: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskRunning(RunEvent):
     """A configuration is complete and runs."""
 
@@ -180,7 +181,7 @@ class TaskRunning(RunEvent):
     epoch: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskWaiting(RunEvent):
     """There is no configuration now, and the task waits for the ecology to change; `lost` by component, and why."""
 
@@ -189,7 +190,7 @@ class TaskWaiting(RunEvent):
     lost: Mapping[IRI, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskRefused(RunEvent):
     """The task has ended as there is no configuration, or none was found in time."""
 
@@ -200,7 +201,7 @@ class TaskRefused(RunEvent):
     """The components that were turned off and have not obeyed: they are out of control until they are gone."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskStopped(RunEvent):
     """The task was taken down as wanted."""
 
@@ -211,7 +212,7 @@ class TaskStopped(RunEvent):
     """The components that were turned off and have not obeyed: they are out of control until they are gone."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskDetached(RunEvent):
     """The task was handed to the sites of the ecology, which go on with it."""
 
@@ -219,14 +220,14 @@ class TaskDetached(RunEvent):
     task: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class EcologyUnreachable(RunEvent):
     """The configurator has lost its link to the ecology, and believes nothing until it is back."""
 
     act: ClassVar[str] = "cut off"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class EcologyReachable(RunEvent):
     """The configurator is linked to the ecology again."""
 

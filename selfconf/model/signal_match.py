@@ -5,9 +5,9 @@ The degrees are those of semantic matchmaking (Paolucci et al., 2002; OWLS-MX, K
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 
 
@@ -21,7 +21,7 @@ class Degree(str, Enum):
     FAIL = "fail"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SignalMatch:
     """A wanted signal type, and the nearest one that is offered for it."""
 

@@ -7,14 +7,15 @@ what is here is all that a search needs to know of a role.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from selfconf.model.cost import CostLevel
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import Input, Output, Place
 from selfconf.model.term import IRI, Term
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Setting:
     """A role sets an operational parameter, known by its type, to a value or to that of a template parameter."""
 
@@ -22,7 +23,7 @@ class Setting:
     value: Term
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Role:
     """A part to be played by `minimum` to `maximum` distinct components; no maximum means as many as fit."""
 
@@ -37,7 +38,7 @@ class Role:
     place: Place | None = field(default=None, compare=False)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Interaction:
     """One role feeds another; ports are paired by type, and by name too where a name is given."""
 
@@ -47,7 +48,7 @@ class Interaction:
     input: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TemplatePort:
     """A port that a template has itself: one that the players of a role have, for those outside of the template."""
 
@@ -66,7 +67,7 @@ class TemplatePort:
         return isinstance(self.port, Input)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Parameter:
     """A parameter of a template; `in_shape` tells that some role's shape mentions it, so that it may stay free."""
 
@@ -77,7 +78,7 @@ class Parameter:
     is_set: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Template:
     """A task-level specification: roles in their order, interactions in theirs, parameters by IRI."""
 
@@ -101,7 +102,7 @@ class Template:
         raise KeyError(iri)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Task:
     """A template with values for some of its parameters, by parameter IRI; the rest stays free."""
 

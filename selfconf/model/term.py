@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+
+from selfconf.model.immutable import immutable
 
 XSD_NAMESPACE = "http://www.w3.org/2001/XMLSchema#"
 
@@ -47,7 +48,7 @@ _BARE = {
 """What Turtle takes for a literal of a datatype as it stands."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Literal:
     """A literal: lexical form, datatype and, for `rdf:langString`, a language tag.
 

@@ -30,9 +30,10 @@ lasts, but blocks no other task, and another configurator of the same task goes 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 
+from selfconf.model.immutable import immutable
 from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict
 
 MOST_WAITING = 64
@@ -62,7 +63,7 @@ class ActivationStep(str, Enum):
     RAISE_FAIL = "raise fail"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Hold:
     """A task that holds a component: its newest call that was obeyed, and whether the component acts for it."""
 
@@ -75,7 +76,7 @@ class Hold:
         return self.claim.inputs, self.claim.values
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Activation:
     """Whether a component acts, for whom, and who waits for it."""
 

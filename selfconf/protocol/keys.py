@@ -36,11 +36,11 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 from urllib.parse import quote, unquote
 
 from selfconf.errors import AuthorError, PeerError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
@@ -69,7 +69,7 @@ def _digest(component: IRI) -> bytes:
     return hashlib.blake2s(component.encode(), digest_size=10).digest()
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Keys:
     """The keys of one ecology."""
 

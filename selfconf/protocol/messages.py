@@ -7,10 +7,11 @@ task). Of the calls of one task a component obeys the newest epoch that it knows
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Any
 
+from selfconf.model.immutable import immutable
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, Term
 
@@ -36,7 +37,7 @@ class Cause(str, Enum):
     """It is not broken, but acts no more for a task whose configurator seemed gone, or has not yielded in time."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Wire:
     """An output that an input shall follow; `period` is the longest pause in seconds that the output promises."""
 
@@ -45,7 +46,7 @@ class Wire:
     period: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Claim:
     """What every call says of the task that makes it, and of the component that it means."""
 
@@ -61,7 +62,7 @@ class Claim:
     """When the task began, in seconds of the Unix epoch by the clock of its configurator."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Reserve(Claim):
     """Be held for a task, without acting for it: none of its components acts before it has reserved them all.
 
@@ -73,7 +74,7 @@ class Reserve(Claim):
     waits: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Apply(Claim):
     """Be active with these values of the operational parameters, and let each input follow exactly these outputs.
 
@@ -90,12 +91,12 @@ class Apply(Claim):
     """Whether an input is to follow the output before until the new one has issued a signal: make before break."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Release(Claim):
     """Act for this task no more; the component is off when no task is left for which it acts."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class StateOf:
     """What goes with a question for a component's state: of which task it is."""
 
@@ -118,7 +119,7 @@ class Verdict(str, Enum):
     """The call means another life of the component than the one that answers."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class CallAnswer:
     """The answer to a call: the verdict, the component's life, and the newest epoch it has obeyed."""
 
@@ -154,7 +155,7 @@ class CallAnswer:
     """Whether the code of the component was told to stop, and is not at rest yet: it may still act."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Moved:
     """The outputs of a composite are issued by others inside of it than before, or others call what it needs."""
 
@@ -164,7 +165,7 @@ class Moved:
     callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Fail:
     """FAIL, the special output that every component has."""
 
@@ -177,7 +178,7 @@ class Fail:
     """The identity of the task that it is put for; empty: every task that the component acts for."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Free:
     """To those that wait for a component: it is free, and kept for a moment for the task that goes first.
 
@@ -189,14 +190,14 @@ class Free:
     task: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Wake:
     """Start the process of a dormant component."""
 
     component: IRI
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class End:
     """End the process of a component that does not obey."""
 
@@ -205,7 +206,7 @@ class End:
     """The life that is meant; empty: whichever the site has started."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class LogQuestion:
     """What goes with the question for the log of a site: whose lines, how many of before, and from where on."""
 
@@ -217,7 +218,7 @@ class LogQuestion:
     """That of an earlier answer: only what was added since is asked for."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class LogPart:
     """The answer to a question for the log of a site, in the order in which the lines were printed."""
 
@@ -228,7 +229,7 @@ class LogPart:
     """Whether more has been added already than one answer holds."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Page:
     """What goes with each advertisement that a site replies: which of how many, of which revision, from which file."""
 
@@ -246,7 +247,7 @@ class Page:
     """Why the component, a composite, cannot act now, in a sentence; empty if it can, or if that is not known yet."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Introduction:
     """A certificate that is shown to a site, which lets in whom its authority vouches for, and shows its own."""
 
@@ -258,7 +259,7 @@ class Introduction:
     """In an answer: the sites of its host. One that does not answer has lost its hub for a moment, or hangs."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Access:
     """What somebody may do at the hubs of a site, as keys, and as a sentence that says it."""
 
@@ -277,7 +278,7 @@ class Access:
     """What it is told of what it hears; empty: all of it. Another site is told by each host what is said there."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RefusedAttempt:
     """What somebody has tried, and may not."""
 
@@ -293,7 +294,7 @@ class RefusedAttempt:
     """When it was last tried, in seconds of the Unix epoch."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Known:
     """What goes with the question for advertisements: which revision of which site the asker knows already.
 
@@ -305,7 +306,7 @@ class Known:
     """By the name and the life of the site, with a slash between."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SignalEncoding:
     """What the bytes of a signal are; empty for JSON, and for bytes of which nothing is said."""
 
@@ -317,7 +318,7 @@ class SignalEncoding:
     """How many elements an array has in each of its dimensions."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Stamp:
     """What goes with each signal: its source, in which life, its number there, its time in seconds, its encoding."""
 
@@ -328,7 +329,7 @@ class Stamp:
     encoding: SignalEncoding = SignalEncoding()
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Status:
     """What a configurator has deployed, and for which task."""
 
@@ -353,7 +354,7 @@ class Status:
     """The composite of which the task is the inside, if it is one."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Notice:
     """An event of a run, for those who look on: nothing depends on its arrival."""
 
@@ -365,7 +366,7 @@ class Notice:
     """The event as `selfconf run --format json` prints it."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskRecord:
     """A task that lives in the ecology: what the sites keep of it, and by which one of them goes on with it."""
 

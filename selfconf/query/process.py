@@ -15,12 +15,13 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import NamedTuple
 
 import pyoxigraph as ox
 
 from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
+from selfconf.model.immutable import immutable
 from selfconf.query.endpoint import asked
 from selfconf.query.results import shown
 from selfconf.rdf.eligibility import ANYBODY, prefaced
@@ -36,7 +37,7 @@ MEMORY = 4 << 30
 _REFUSED, _CUT, _UNREACHED, _EXHAUSTED = 2, 3, 4, 5
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Question:
     """A query, and how its answer is to be written."""
 

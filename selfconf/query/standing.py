@@ -12,9 +12,10 @@ import subprocess
 import sys
 import threading
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
 from selfconf.errors import NetworkError, NotAcceptableError, ProgrammerError, QueryError, QueryTimeoutError
+from selfconf.model.immutable import immutable
 from selfconf.query import standing_process as endings
 
 STANDING_SECONDS = 30.0
@@ -25,7 +26,7 @@ STANDING_END = 5.0
 """Seconds that the process may take to end."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class StandingQuestion:
     """A query, the graphs that are its dataset, if not all, and the media types wanted, the best first."""
 

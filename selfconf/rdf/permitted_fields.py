@@ -12,8 +12,8 @@ the fast loader recognises without looking closer. The last may accept less than
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
+from selfconf.model.immutable import immutable
 from selfconf.model.number import number_of
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -41,7 +41,7 @@ def _no_literal(_: str, __: str) -> bool:
     return False
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ValueKind:
     """A kind of value: which IRIs, literals (text and datatype) and blank nodes are of it."""
 
@@ -109,7 +109,7 @@ NAMED_OR_TEXT = ValueKind(
 )
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Subject:
     """What an advertisement may speak of, with its fields."""
 
@@ -137,7 +137,7 @@ LEAF = Subject()
 """What a value is that has no fields of its own."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Field:
     """A predicate of a subject: how many values it may have, and of which kind."""
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from selfconf import ros_messages
 from selfconf.errors import ProgrammerError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ class Refused(Exception):
     """
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Signal:
     """What an output issued, with its source, its time, and its number.
 
@@ -59,7 +59,7 @@ class CallStatus(str, Enum):
     """The configuration connects no component to the operation, which is optional then."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Response:
     """The answer to a call of an operation; true if there is one, else it says why not."""
 

@@ -19,13 +19,13 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
 from selfconf import ros_messages
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.errors import PeerError
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import CALL_MARK, Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
@@ -64,7 +64,7 @@ ASK_FOR_LAST = (0.3, 1.0, 3.0)
 has issued anything, and the signal before the subscription."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class InputEvents:
     """What the inputs of a component report: on the code's thread what arrives, on the bus's thread the rest."""
 

@@ -31,12 +31,13 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from selfconf.bus.port import Bus, Replies, Request
 from selfconf.errors import PeerError, ProgrammerError
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
@@ -61,7 +62,7 @@ MOST_REMEMBERED = 4 * MOST_CALLS
 _END_OF_STAMP = b"\n"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class OperationFields:
     """The fields of what an operation takes and of what it answers, as far as their types have some."""
 

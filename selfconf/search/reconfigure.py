@@ -23,10 +23,10 @@ engine has met, the strategy `first` included. Then `proved` says that a nearer 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from operator import attrgetter
 
 from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.immutable import immutable
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
@@ -52,7 +52,7 @@ Numbered = list[tuple[int, Candidate]]
 _COMPONENT: Callable[[Candidate], IRI] = attrgetter("profile.component")
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Reconfiguration:
     """The next configuration, what it keeps of the one that ran, and whether it is proved to be the nearest."""
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Any
 
 from selfconf.discovery import FoundAdvertisement
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import TaskRecord
 
@@ -14,7 +15,7 @@ Body = dict[str, Any]
 """A JSON object."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class EcologyChange:
     """What is new, by kind; None stands for what is gone."""
 

@@ -6,8 +6,9 @@ Only what section 2.1 calls the query operation is there: an update is refused, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from urllib.parse import parse_qsl
+
+from selfconf.model.immutable import immutable
 
 FORM, DIRECT, UPDATE = "application/x-www-form-urlencoded", "application/sparql-query", "application/sparql-update"
 LARGEST_REQUEST = 1 << 20
@@ -15,7 +16,7 @@ LARGEST_REQUEST = 1 << 20
 _DEFAULT, _NAMED = "default-graph-uri", "named-graph-uri"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class QueryRequest:
     """A query and its dataset; without graphs it is asked of all."""
 

@@ -7,15 +7,15 @@ of 2024 carried names of its fields; it is refused, like everything else that is
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 
 from selfconf.errors import PeerError
+from selfconf.model.immutable import immutable
 
 _FORM = struct.Struct("<qqB16s")
 _SIZE = 16
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RosAttachment:
     """The attachment of a message."""
 

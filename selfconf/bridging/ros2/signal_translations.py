@@ -14,16 +14,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.rdf.vocabulary import ROB
 
 Fields = Mapping[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SignalTranslation:
     """What a type of messages is as a kind of signal."""
 

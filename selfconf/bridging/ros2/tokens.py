@@ -10,9 +10,9 @@ and lyrical. In humble a type has no hash, so that nobody could say whether two 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from selfconf.errors import PeerError
+from selfconf.model.immutable import immutable
 from selfconf.ros_messages import HASH, NAME, MessageType
 
 ROOT = "@ros2_lv"
@@ -28,7 +28,7 @@ _DDS_NAME = re.compile(r"(\w+)::(msg|srv|action)::dds_::(\w+)_")
 LONGEST_TOKEN = 4096
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RosQuality:
     """The quality of service of a publisher or subscription: what differs from the defaults of rmw_zenoh is said."""
 
@@ -81,7 +81,7 @@ class RosQuality:
         return f"{reliability}:{durability}:{history},{depth}:{seconds},{nanoseconds}:,:,,"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RosNodeId:
     """Which node of which session of a domain."""
 
@@ -94,7 +94,7 @@ NodeIdentity = tuple[str, str]
 """Which node it is: the session, and its name with namespace. A session may say the same node by several numbers."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RosEndpoint:
     """A topic that a node publishes or is subscribed to, or a service that it serves or is a client of."""
 
@@ -111,7 +111,7 @@ class RosEndpoint:
         return f"{domain}/{self.topic.strip('/')}/{package}::{segment}::dds_::{name}_/{self.type.hash}"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RosToken:
     """A liveliness token: of a node, or of one of its endpoints."""
 

@@ -11,18 +11,19 @@ import json
 import os
 import stat
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 from selfconf.errors import AuthorError
+from selfconf.model.immutable import immutable
 
 TOLD_BY_NAME = frozenset(("username", "password", "token", "key"))
 _USUAL_PORTS = {"http": 80, "https": 443}
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingCredentials:
     """What some origins are told, by its name; `repr` shows none of it."""
 

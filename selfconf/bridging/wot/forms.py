@@ -8,12 +8,13 @@ what came of the others. (W3C Web of Things Thing Description 1.1, sections 5.3.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 from urllib.parse import urljoin, urlsplit, urlunsplit
 
 from selfconf.bridging.wot.credentials import ThingCredentials, origin
 from selfconf.bridging.wot.security_schemes import UnusableFormError, proof_of_identity
+from selfconf.model.immutable import immutable
 
 USUAL_METHODS = {
     "readproperty": "GET",
@@ -31,7 +32,7 @@ JSON = "application/json"
 _KNOWN_METHODS = frozenset(("GET", "PUT", "POST", "PATCH", "DELETE"))
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingForm:
     """One HTTP request that can be made; `repr` shows no header, and nothing that security adds to the URL."""
 

@@ -13,13 +13,14 @@ way back the field the value.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import lru_cache
 from typing import Any, TypeVar
 
 from selfconf import files, library
 from selfconf.bridging.wot.forms import FOLLOWED, ThingForm, ThingForms
 from selfconf.importing import DescribedThing, ImportedComponent, ImportedOperation, ImportedPort, NestedNode
+from selfconf.model.immutable import immutable
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, UNIT, XSD
@@ -28,7 +29,7 @@ _Imported = TypeVar("_Imported", ImportedPort, ImportedOperation)
 _Done = TypeVar("_Done")
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingOutput:
     """How an output is fed: by following a form, or by reading one at a rate, or both for the first value."""
 
@@ -44,7 +45,7 @@ class ThingOutput:
         return self.follow is None
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingInput:
     """Where a signal of an input goes: it writes a property, or calls an action."""
 
@@ -57,7 +58,7 @@ class ThingInput:
     """Whether it is an action that takes nothing: it is called by each signal, whatever that says."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingOperation:
     """How an operation is called: by the form of an action."""
 
@@ -73,7 +74,7 @@ class ThingOperation:
     """Whether the action answers something; else what comes back is not looked at."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingInteractions:
     """A thing as the component that it is on this side, with what its ports stand for."""
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote
+
+from selfconf.model.immutable import immutable
 
 ASKED_FOR = {"basic": ("username", "password"), "bearer": ("token",), "apikey": ("key",)}
 """Which credentials a scheme asks for."""
@@ -27,7 +28,7 @@ class UnusableFormError(Exception):
     """A form that a bridge cannot use; the text is a sentence that says why."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ProofOfIdentity:
     """What one security scheme adds to a request: a text, in a part of it, by a name; `repr` shows none of it."""
 

@@ -10,7 +10,6 @@ import json
 import os
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import aiohttp
@@ -18,13 +17,14 @@ from yarl import URL
 
 from selfconf.bridging.wot.forms import JSON, ThingForm
 from selfconf.importing import LARGEST_SOURCE
+from selfconf.model.immutable import immutable
 
 CONNECTIONS = 32
 """How many connections to one host are open at once; an output that is followed keeps one."""
 _LINE_END = b"\n"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingLimits:
     """How long a thing may take, in seconds, and how much it may answer, in bytes."""
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Coroutine, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -35,6 +35,7 @@ from selfconf.importing import (
     document_at,
     gather,
 )
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 
 DESCRIPTIONS = (".json", ".jsonld")
@@ -49,7 +50,7 @@ LAST_REQUESTS = 5.0
 """Seconds that the requests that are under way may take to end with the bridge."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ThingSettings:
     """How a bridge treats things; times are in seconds."""
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from selfconf.importing.naming import absolute, slug
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.vocabulary import XSD, Namespace
 
@@ -62,7 +63,7 @@ COUNTERPART = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NodeInterface:
     """A topic, service or action of a node: its kind, its name, its ROS type and its quality of service."""
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.ros2.interfaces import InterfaceKind, NodeInterface
 from selfconf.importing.ros2.model_text import ModelEntry, unquoted
 from selfconf.importing.sources import SourceDocument
+from selfconf.model.immutable import immutable
 
 BLOCKS = {kind.value: kind for kind in InterfaceKind}
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NodeModel:
     """A kind of node: where it comes from, its interfaces, and the names and types of its parameters."""
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.ros2.interfaces import InterfaceKind
 from selfconf.importing.ros2.model_text import ModelEntry, unquoted
 from selfconf.importing.sources import SourceDocument
+from selfconf.model.immutable import immutable
 
 ARROWS = {
     "pub": InterfaceKind.PUBLISHER,
@@ -27,7 +27,7 @@ _UNUSED = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ExposedInterface:
     """An interface of a node in a system: its name there, its kind, and which interface of the node's model it is."""
 
@@ -36,7 +36,7 @@ class ExposedInterface:
     reference: str
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SystemNode:
     """A node in a system: its name, the model that it is an instance of, its namespace, what it exposes."""
 
@@ -46,7 +46,7 @@ class SystemNode:
     exposed: tuple[ExposedInterface, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SystemModel:
     """A system: its nodes, the systems that are part of it, and the pairs of names that are connected."""
 

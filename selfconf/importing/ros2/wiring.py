@@ -7,15 +7,15 @@ connection of the whole may name an interface of a part.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.ros2.interfaces import COUNTERPART, NodeInterface
 from selfconf.importing.ros2.node_models import NodeModel
 from selfconf.importing.ros2.system_models import SystemModel, SystemNode
+from selfconf.model.immutable import immutable
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class NodeInstance:
     """A node that runs in a system: the system that describes it, and its interfaces by their names there."""
 
@@ -30,7 +30,7 @@ class NodeInstance:
         return self.system, self.node.name
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class WiredPair:
     """A connection: an interface that publishes or serves, and one of another node that subscribes or calls."""
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from dataclasses import dataclass
 from typing import Any
 
 from selfconf.errors import AuthorError
 from selfconf.importing.sources import SourceDocument
+from selfconf.model.immutable import immutable
 
 DEEPEST_JSON = 100
 """How deep arrays and objects may be nested; descriptions need about ten levels, the parser allows a thousand."""
@@ -17,7 +17,7 @@ _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|([\[{])|([\]}])', re.DOTALL)
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class JsonText:
     """A JSON document, and the names that occur twice in one of its objects: only the last value of each counts."""
 

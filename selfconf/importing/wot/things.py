@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import groupby
 from typing import Any
 
@@ -21,6 +21,7 @@ from selfconf.importing.wot.affordances import AffordanceReader
 from selfconf.importing.wot.contexts import TermMeanings, spoken
 from selfconf.importing.wot.json_text import parse_json
 from selfconf.importing.wot.thing_models import ModelReferences
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf.vocabulary import RDFS, SC, TYPE, XSD
 
@@ -43,7 +44,7 @@ _UNUSED = {
 _KNOWN = {"@context", "@type", "@id", "id", "title", "titles", "description", "descriptions", *AFFORDANCES}
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class DescribedThing:
     """A thing: the component that it is, and its description, completed by what its references lead to."""
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import Place, Profile
 from selfconf.model.term import IRI, BlankNode, Literal, Term, sort_key
 from selfconf.rdf.permitted_fields import PERMITTED_IN_SHAPES
@@ -112,7 +112,7 @@ class ParsedAdvertisement(Advertisement):
         return max(counts.values(), default=0)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class MalformedAdvertisement:
     """An advertisement that does not conform, and why: one sentence for each problem."""
 

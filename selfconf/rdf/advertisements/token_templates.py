@@ -16,8 +16,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
+from selfconf.model.immutable import immutable
 from selfconf.rdf.advertisements.recognition import port_of
 from selfconf.rdf.advertisements.statement_table import Statement, StatementTable
 from selfconf.rdf.permitted_fields import RATE
@@ -50,7 +50,7 @@ def patterns_of(segments: Sequence[bytes]) -> list[bytes]:
     return patterns if len(patterns) == len(segments) else [b""] * len(segments)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TokenTemplate:
     """One statement that the segments of a pattern make, with holes."""
 

@@ -7,9 +7,10 @@ be violated, or that it leaves no value for a free parameter. Without that it ma
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 
+from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, ParameterForbids, ShapeViolated
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI, Term, sort_key
@@ -24,7 +25,7 @@ JUDGED = 24
 _component = attrgetter("component")
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Exclusion:
     """A component that is not eligible for a role, and everything that keeps it out."""
 

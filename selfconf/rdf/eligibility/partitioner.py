@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING
 from selfconf.errors import TemplateError
 from selfconf.model.candidate_order import candidate_order
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Recruit, Variable, ordered
 from selfconf.model.profile import Profile
@@ -52,7 +52,7 @@ _CLASSIFYING = frozenset((TYPE, SC.signalType, SC.parameterType))
 _NOTHING: Mapping[IRI, frozenset[Term]] = {}
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class EligibleComponent:
     """A component that is eligible for a role, and for each free parameter it constrains, the values it allows."""
 
@@ -62,7 +62,7 @@ class EligibleComponent:
     """For each free parameter that may be anything else, the values that it may not be."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TestOutcome:
     """What the tests of a role say of a profile: everything that keeps it out, or the values it allows."""
 

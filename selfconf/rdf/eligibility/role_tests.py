@@ -9,9 +9,9 @@ Each test returns the obstacle by which it keeps a component out (`selfconf.mode
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import (
     Ambiguous,
     ConstraintFailed,
@@ -34,7 +34,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.rdf.shacl import MatchTooCostly, PairTest, ValueTest
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ClassTest:
     """The component's type is at or below a class."""
 
@@ -48,7 +48,7 @@ class ClassTest:
         return None if self.admits(profile.types, hierarchy) else WrongType(self.kind)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SelfTest:
     """The component is one of some components."""
 
@@ -58,7 +58,7 @@ class SelfTest:
         return None if profile.component in self.members else WrongComponent(self.members)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class QualifiedCount:
     """How many values of a property conform to a shape over single values: at least and at most so many."""
 
@@ -77,7 +77,7 @@ class QualifiedCount:
         return None
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class PropertyTest:
     """The values of one property: how many, which ones are allowed, which ones must be there, what each is like."""
 
@@ -154,7 +154,7 @@ def _values(path: IRI, profile: Profile, hierarchy: Hierarchy) -> frozenset[Term
     return frozenset([value for key, value in profile.properties if path in hierarchy.superproperties(key)])
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ParameterTest:
     """The component declares an operational parameter of the type that the role sets."""
 
@@ -166,7 +166,7 @@ class ParameterTest:
         return ParameterUndeclared(self.type)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Count:
     """Of several groups of tests, at least and at most so many are passed: `sh:or`, `sh:xone`, `sh:not`, `sh:and`."""
 
@@ -191,7 +191,7 @@ class Count:
 RoleTest = ClassTest | SelfTest | PropertyTest | ParameterTest | Count
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class CompiledRole:
     """The tests of a role, and whether they say all that its shape says."""
 

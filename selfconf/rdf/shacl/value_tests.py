@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from types import ModuleType
 
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.shacl.patterns import Pattern, pattern
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
@@ -42,7 +42,7 @@ _SOLE = frozenset((SH.nodeKind, SH.datatype, SH.minLength, SH.maxLength))
 """Constraints of which a shape may state only one."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ValueTest:
     """One constraint on each value: the SHACL parameter, its value, and for patterns the flags."""
 
@@ -55,7 +55,7 @@ class ValueTest:
         return _passes(self, value)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class PairTest:
     """Each value is less than each of another property: one of PAIRS, and the other property."""
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import dataclass
 
 from selfconf.errors import TemplateError
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
@@ -37,7 +37,7 @@ _SAID_OF = {
 """What is said only of instances of a class, or of one of two."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class TaskDocument:
     """A task with the document that holds the shapes of its roles."""
 

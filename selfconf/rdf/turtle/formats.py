@@ -13,11 +13,11 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle.document import Document, document_of
 
@@ -26,7 +26,7 @@ _HEAD = 1 << 16
 """Bytes at the head of a file by which its format is told, where the ending of its name does not tell it."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class RdfFormat:
     """A format of RDF: its name, Oxigraph's parser, the endings of file names, and what rdfpipe calls it."""
 

@@ -18,6 +18,7 @@ from functools import cached_property, lru_cache
 
 from selfconf.errors import TurtleError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
+from selfconf.model.immutable import immutable
 from selfconf.rdf import turtle
 from selfconf.rdf.validation.prefilter import Prefiltered, prefilter
 from selfconf.rdf.validation.syntax import hint, telling
@@ -32,7 +33,7 @@ a bound on the work that is known before, and is the same on every machine."""
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SourceText:
     """A text with the name to blame it by, and the IRI against which its relative IRIs are resolved."""
 
@@ -45,7 +46,7 @@ class SourceText:
         return self.octets.removeprefix(_BYTE_ORDER_MARK).decode("utf-8")
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class UnclearedFile:
     """A file that the prefilter has not cleared."""
 

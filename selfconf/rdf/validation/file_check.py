@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 
 from rdflib import Graph
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.immutable import immutable
 from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.positions import NotTurtleError, Positions, parse_with_positions
 from selfconf.rdf.validation.diagnostics import at
@@ -32,7 +32,7 @@ def shapes_of(*texts: str) -> Shapes:
     return Shapes.of(graph)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class FileCheck:
     """What the check of a file needs, for any number of files."""
 

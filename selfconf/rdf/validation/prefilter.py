@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import pyoxigraph as ox
 
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.unit_dimension import meant_unit
 from selfconf.rdf.permitted_fields import COMPONENT, Field, Subject
@@ -61,7 +62,7 @@ Properties = dict[str, dict[FileTerm, None]]
 Statements = dict[str, Properties]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class SyntaxProblem:
     """A place where a file is not Turtle; line and column count from one, columns in characters."""
 
@@ -248,7 +249,7 @@ def _of_one_unit(statements: Statements) -> bool:
     return len(units) < 2 and all(isinstance(unit, str) and meant_unit(IRI(unit)) is None for unit in units)
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class _Advertisements:
     """The fields of an advertisement, looked for in the statements of a file."""
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import Any
 
@@ -24,6 +24,7 @@ from rdflib.term import Node
 
 from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.model.immutable import immutable
 from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.permitted_fields import COMPONENT
 from selfconf.rdf.positions import Positions
@@ -43,7 +44,7 @@ _MADE_DISTINCT_BY: dict[Node, URIRef] = {
 """Shapes that want values to differ, and the property in which they have to."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ReportedViolation:
     """One result of a validation report."""
 
@@ -72,7 +73,7 @@ _TARGETS = (_SH.targetClass, _SH.targetSubjectsOf, _SH.targetObjectsOf)
 """The kinds of targets (SHACL, 2.1.3) of the shapes that ship with selfconf."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Shapes:
     """The shapes, and for each file as few of them as may find something.
 
@@ -205,7 +206,7 @@ def shape_violations(graph: Graph, positions: Positions, shapes: Shapes) -> list
     ]
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class _Places:
     """Takes violations to their places in one text."""
 

@@ -22,9 +22,9 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
+from selfconf.model.immutable import immutable
 from selfconf.search.engines.matching import HallSet, unmatchable
 from selfconf.search.reduction import NeedScope, Option, ReducedProblem
 
@@ -42,7 +42,7 @@ SPREAD = 4
 """For each role of the group from which it began how many groups are put together at most."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ExclusiveGroups:
     """Groups of options by their numbers, counted through all roles, and what follows from them."""
 

@@ -13,14 +13,15 @@ other slots that could take it, with what is reachable from components that are 
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Generic, TypeVar
+
+from selfconf.model.immutable import immutable
 
 Pooled = TypeVar("Pooled", bound=Hashable)
 """By what components are known here: their names, or the numbers of groups of which each stands for one."""
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class HallSet:
     """Roles that together have fewer components than slots."""
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Set
-from dataclasses import dataclass
 
+from selfconf.model.immutable import immutable
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
 from selfconf.search.reduction.arc_consistency import consistent
@@ -17,28 +17,28 @@ from selfconf.search.reduction.dominance import without_dominated
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Played:
     """A role is played by as many components as it asks for at least."""
 
     role: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Fed:
     """A need, by number, has a support, if a component with that need plays."""
 
     need: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Shared:
     """A variable, by number, has a value that every component that plays admits."""
 
     variable: int
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Distinct:
     """A component plays one role (the constraint AllDifferent over all slots)."""
 

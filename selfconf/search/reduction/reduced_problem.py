@@ -15,10 +15,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 from typing import NamedTuple
 
+from selfconf.model.immutable import immutable
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import Ports
 from selfconf.model.term import IRI
@@ -67,7 +68,7 @@ class Removal(NamedTuple):
     variable: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class ReducedProblem:
     """Options for each role, the needs by number, and the removals by which arc consistency made the options fewer."""
 

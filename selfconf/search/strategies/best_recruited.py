@@ -16,12 +16,13 @@ Without a solver library, players and recruits are chosen one after the other, a
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.cost import cost, unknown
+from selfconf.model.immutable import immutable
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import Profile
@@ -37,7 +38,7 @@ from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, founded, 
 from selfconf.search.reduction import Option, ReducedProblem, assigned, in_order, pruned, with_recruits
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class _Chosen:
     """Players, and recruits by number."""
 

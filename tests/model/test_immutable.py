@@ -1,0 +1,124 @@
+"""A class that is made immutable behaves as a frozen data class with slots does."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from collections.abc import Mapping
+from dataclasses import FrozenInstanceError, asdict, dataclass, field, fields, replace
+
+import pytest
+
+from selfconf.model.immutable import immutable
+
+
+@immutable
+class Lamp:
+    """A lamp, which is like another whatever its note."""
+
+    name: str
+    watts: float = 5.0
+    tags: list[str] = field(default_factory=list, hash=False)
+    note: str = field(default="", kw_only=True, compare=False, repr=False)
+
+
+@immutable
+class Spot(Lamp):
+    """A lamp with an angle; its angle is positive."""
+
+    angle: float = 30.0
+
+    def __post_init__(self) -> None:
+        if self.angle <= 0:
+            raise ValueError("an angle is positive")
+
+    def __repr__(self) -> str:
+        return f"a spot of {self.angle:g} degrees"
+
+
+@dataclass(frozen=True, slots=True)
+class Usual:
+    """What the standard library makes of the fields of `Lamp`."""
+
+    name: str
+    watts: float = 5.0
+    tags: list[str] = field(default_factory=list, hash=False)
+    note: str = field(default="", kw_only=True, compare=False, repr=False)
+
+
+@immutable
+class Nothing:
+    """A value without fields."""
+
+
+ARGUMENTS: list[tuple[tuple[object, ...], Mapping[str, object]]] = [
+    (("a",), {}),
+    (("a", 7.0), {}),
+    (("a", 5.0, ["x"]), {}),
+    (("a",), {"note": "n", "watts": 7.0}),
+    (("b",), {}),
+]
+
+
+def test_values_compare_hash_and_print_as_those_of_the_standard_library() -> None:
+    ours = [Lamp(*given, **named) for given, named in ARGUMENTS]  # type: ignore[arg-type]
+    theirs = [Usual(*given, **named) for given, named in ARGUMENTS]  # type: ignore[arg-type]
+    for one, usual in zip(ours, theirs, strict=True):
+        assert repr(one) == repr(usual).replace("Usual", "Lamp")
+        assert hash(one) == hash(usual)
+        assert asdict(one) == asdict(usual)
+        assert [one == other for other in ours] == [usual == other for other in theirs]
+    assert ours[0] != theirs[0]
+    assert Lamp.__match_args__ == Usual.__match_args__
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [((), {}), (("a", 1.0, [], "n"), {}), (("a",), {"name": "b"}), (("a",), {"colour": "red"})],
+)
+def test_what_the_standard_library_refuses_is_refused(given: tuple[object, ...], named: Mapping[str, object]) -> None:
+    for kind in (Usual, Lamp):
+        with pytest.raises(TypeError):
+            kind(*given, **named)  # type: ignore[arg-type]
+
+
+def test_nothing_is_assigned_or_deleted() -> None:
+    lamp = Lamp("a")
+    with pytest.raises(FrozenInstanceError, match="watts"):
+        lamp.watts = 6.0  # type: ignore[misc]
+    with pytest.raises(FrozenInstanceError, match="colour"):
+        lamp.colour = "red"  # type: ignore[attr-defined]
+    with pytest.raises(FrozenInstanceError, match="name"):
+        del lamp.name
+    assert not hasattr(lamp, "__dict__")
+
+
+def test_a_default_is_made_anew_for_each_value() -> None:
+    assert Lamp("a").tags is not Lamp("a").tags
+
+
+def test_a_class_below_has_the_fields_above_and_its_own_methods() -> None:
+    spot = Spot("a", angle=10.0, note="n")
+    assert [one.name for one in fields(spot)] == ["name", "watts", "tags", "note", "angle"]
+    assert (spot.name, spot.watts, spot.angle, spot.note) == ("a", 5.0, 10.0, "n")
+    assert repr(spot) == "a spot of 10 degrees"
+    assert spot != Lamp("a")
+    assert spot == Spot("a", angle=10.0)
+    with pytest.raises(ValueError, match="positive"):
+        Spot("a", angle=0.0)
+    with pytest.raises(ValueError, match="positive"):
+        replace(spot, angle=-1.0)
+
+
+def test_values_are_copied_and_pickled() -> None:
+    for one in (Lamp("a", tags=["x"], note="n"), Spot("b", angle=1.0), Nothing()):
+        for again in (copy.copy(one), copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
+            assert again == one
+            assert again.__class__ is one.__class__
+    assert pickle.loads(pickle.dumps(Lamp("a", note="n"))).note == "n"
+
+
+def test_values_without_fields_are_equal() -> None:
+    assert Nothing() == Nothing()
+    assert hash(Nothing()) == hash(Nothing())
+    assert repr(Nothing()) == "Nothing()"
