@@ -17,6 +17,7 @@ from selfconf.__main__ import COLLECTING
 from tests import schedule
 from tests.asked_here import ask_here
 from tests.effort import examples
+from tests.frozen import freeze_what_is_there
 
 settings.register_profile(
     "selfconf",
@@ -37,16 +38,23 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Where tests run in several processes, begin with those that take longest, so that all processes end together."""
+    """Where tests run in several processes, put those that wait for programs first, and those that compute last."""
     for item in items:
         if "inhabited" in getattr(item, "fixturenames", ()) and schedule.group_of(item.nodeid) != "inhabited":
             raise pytest.UsageError(f"{item.nodeid} uses `inhabited`: add its module to INHABITED in tests/schedule.py")
     if hasattr(config, "workerinput"):
-        items.sort(key=_takes_seconds, reverse=True)
+        items.sort(key=_place)
 
 
-def _takes_seconds(item: pytest.Item) -> bool:
-    return any(item.get_closest_marker(mark) for mark in ("process", "slow"))
+def pytest_collection_finish() -> None:
+    """The collector of garbage has no need to look at what the tests are made of again and again."""
+    freeze_what_is_there()
+
+
+def _place(item: pytest.Item) -> int:
+    if item.get_closest_marker("process"):
+        return 0
+    return 2 if item.get_closest_marker("slow") else 1
 
 
 @pytest.fixture(scope="session")

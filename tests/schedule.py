@@ -52,12 +52,22 @@ def group_of(test: str) -> str:
 
 
 def scheduler(config: Any, log: Any) -> Any:
-    """Make a scheduler of pytest-xdist that keeps each group in one process and begins with the largest."""
+    """Make a scheduler of pytest-xdist that keeps each group in one process, and all processors busy.
+
+    The tests come as `tests/conftest.py` has put them: those that wait for programs first, those that compute for long
+    last. One process in three takes them from the end and the others from the beginning, so that some compute while
+    others wait; they meet among the short ones, and all end together.
+    """
     from xdist.scheduler import LoadScopeScheduling
 
     class Grouped(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
             return group_of(nodeid)
+
+        def _assign_work_unit(self, node: Any) -> None:
+            if self.workqueue and self.nodes.index(node) % 3 == 2:
+                self.workqueue.move_to_end(next(reversed(self.workqueue)), last=False)
+            super()._assign_work_unit(node)
 
         def remove_node(self, node: Any) -> str | None:
             """Return the test in which a process has died, which is not run again; others take over what is left."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from selfconf.api.collector import MANY_COMPONENTS, SELDOM, collector_at_rest, collector_looking_at_new
+from selfconf.api.collector import MANY_COMPONENTS, MANY_VALUES, SELDOM, collector_at_rest, collector_looking_at_new
 
 
 class Loop:
@@ -65,3 +65,15 @@ def test_what_was_there_is_looked_at_where_there_are_few_components() -> None:
         del loop
         gc.collect()
         assert gone() is None
+
+
+def test_what_is_frozen_is_not_asked_for_few_new_values(monkeypatch: pytest.MonkeyPatch) -> None:
+    gc.disable()
+    try:
+        old = [[number] for number in range(2 * MANY_VALUES)]
+        monkeypatch.setattr(gc, "get_freeze_count", lambda: pytest.fail("it takes as long as there is much frozen"))
+        with collector_at_rest():
+            new = [[number] for number in range(10)]
+        assert len(old) > len(new)
+    finally:
+        gc.enable()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import json
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import pytest
 
 from selfconf.cli.main import main
+from tests.frozen import nothing_frozen
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +46,9 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> Outcome:
     """Run a command."""
     capsys.readouterr()
     try:
-        code = main(arguments)
+        with nothing_frozen():
+            code = main(arguments)
     except SystemExit as error:
         code = int(error.code or 0)
-    finally:
-        gc.unfreeze()  # a command leaves what it has read to the end of its process, which is not this one
     said = capsys.readouterr()
     return Outcome(code, said.out, said.err)

@@ -7,7 +7,6 @@ SPARQL as they are), and how many lines it says on stderr. The members of `secon
 from __future__ import annotations
 
 import contextlib
-import gc
 import io
 import json
 import os
@@ -21,6 +20,7 @@ import rdflib
 from rdflib import compare
 
 from selfconf.cli.main import main
+from tests.frozen import nothing_frozen
 
 SENTENCES = frozenset(("message", "obstacle", "hint", "text", "title"))
 """The members of JSON that are for people. `obstacles` is a list of them."""
@@ -53,11 +53,10 @@ def answered(case: Case) -> Answer:
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
-            code = main(case.arguments)
+            with nothing_frozen():
+                code = main(case.arguments)
         except SystemExit as error:
             code = int(error.code or 0)
-        finally:
-            gc.unfreeze()  # a command leaves what it has read to the end of its process, which is not this one
     return taken_apart(case, code, out.getvalue(), err.getvalue())
 
 
