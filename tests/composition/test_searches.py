@@ -27,42 +27,45 @@ from selfconf.search.additions import MOST_ADDITIONS, asking_for
 from selfconf.search.problem import Problem
 from selfconf.search.relaxations import relaxed_by, with_relaxations
 from tests.effort import NIGHTLY
+from tests.search.chance import Chance, by_chance
 from tests.search.possibility import possible
-from tests.search.strategies.test_best_recruited import PricedWorld, priced_recruiting
+from tests.search.strategies.test_best_recruited import PricedWorld, a_priced_problem
 from tests.search.test_recruiting import Players, Recruit
 from tests.search.worlds import CLASSES, SIGNALS, agreement, iri
 
 Solution = tuple[Players, tuple[Recruit, ...]]
 
 
-@st.composite
-def ecologies(draw: st.DrawFn) -> Problem:
-    """Problems with all that a template and an advertisement can say; a third of them are the inside of a composite."""
-    given_ = draw(priced_recruiting())
-    spread = st.sampled_from([0, 0, 0, 1, None])
+def ecologies() -> st.SearchStrategy[Problem]:
+    """Problems as `an_ecology` makes them."""
+    return by_chance(an_ecology)
+
+
+def an_ecology(chance: Chance) -> Problem:
+    """A problem with all that a template and an advertisement say; a third of them are the inside of a composite."""
+    given_ = a_priced_problem(chance)
+    spread = [0, 0, 0, 1, None]
     roles = tuple(
-        replace(role, maximum=None if (more := draw(spread)) is None else role.minimum + more) for role in given_.roles
+        replace(role, maximum=None if (more := chance.one_of(spread)) is None else role.minimum + more)
+        for role in given_.roles
     )
     task = replace(given_.task, template=replace(given_.task.template, roles=roles))
     partition = given_.partition
-    if draw(st.integers(0, 2)) == 0:
-        names = st.sampled_from([role.iri for role in roles])
-        ports = tuple(
-            TemplatePort(draw(names), draw(_ports(name))) for name in draw(st.sampled_from([(), ("p",), ("p", "q")]))
-        )
+    if chance.below(3) == 0:
+        names = [role.iri for role in roles]
+        ports = tuple(TemplatePort(chance.one_of(names), _port(chance, name)) for name in "pq"[: chance.below(3)])
         ported = replace(task, template=replace(task.template, ports=ports))
         task = with_outside(ported, iri("composite"))
         partition = with_outside_candidate(partition, ported, iri("composite"), given_.hierarchy)
     return Problem(task, partition, given_.hierarchy)
 
 
-@st.composite
-def _ports(draw: st.DrawFn, name: str) -> Input | Output:
-    """Ports that a template has itself, operations among them."""
-    signal, is_input = draw(st.sampled_from(SIGNALS)), draw(st.booleans())
-    if draw(st.integers(0, 2)):
+def _port(chance: Chance, name: str) -> Input | Output:
+    """A port that a template has itself, perhaps an operation."""
+    signal, is_input = chance.one_of(SIGNALS), chance.flip()
+    if chance.below(3):
         return Input(name, (signal,)) if is_input else Output(name, (signal,))
-    return (needed_operation if is_input else offered_operation)(name, draw(st.sampled_from([None, *CLASSES])), signal)
+    return (needed_operation if is_input else offered_operation)(name, chance.one_of([None, *CLASSES]), signal)
 
 
 def raised(problem: Problem) -> Iterator[Problem]:

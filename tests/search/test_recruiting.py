@@ -20,25 +20,32 @@ from selfconf.search.problem import Problem
 from selfconf.search.recruiting import first_recruited, recruited
 from selfconf.search.strategies import first
 from tests.effort import NIGHTLY
+from tests.search.chance import Chance, by_chance
 from tests.search.oracle import World
-from tests.search.worlds import agreement, component, iri, problem, problems
+from tests.search.worlds import a_problem, agreement, component, iri, problem
 
 Players = tuple[tuple[Candidate, ...], ...]
 
 
-@st.composite
-def recruiting(draw: st.DrawFn) -> Problem:
-    """Problems some of whose roles recruit, with recruits that may be candidates as well and may feed each other."""
-    given_ = draw(problems(roles=3, components=4))
-    others = draw(problems(roles=1, components=4))
+def recruiting() -> st.SearchStrategy[Problem]:
+    """Problems as `a_recruiting_problem` makes them."""
+    return by_chance(a_recruiting_problem)
+
+
+def a_recruiting_problem(chance: Chance) -> Problem:
+    """A problem some of whose roles recruit, with recruits that may be candidates as well and may feed each other."""
+    given_ = a_problem(chance, roles=3, components=4)
+    others = a_problem(chance, roles=1, components=4)
     everybody = {c.profile.component: c.profile for some in given_.candidates for c in some}
     pool = [
         *(replace(c.profile, component=iri(f"extra{k}")) for k, c in enumerate(others.candidates[0])),
-        *(profile for profile in everybody.values() if draw(st.booleans())),
+        *(profile for profile in everybody.values() if chance.flip()),
     ]
-    numbers = st.frozensets(st.integers(0, len(given_.roles) - 1))
-    recruits = tuple(Recruit(profile, draw(numbers)) for profile in draw(st.permutations(pool)))
-    roles = tuple(replace(role, recruits=draw(st.booleans()), maximum=role.minimum) for role in given_.roles)
+    numbers = range(len(given_.roles))
+    recruits = tuple(
+        Recruit(profile, frozenset(chance.some(numbers, 0, len(numbers)))) for profile in chance.order(pool)
+    )
+    roles = tuple(replace(role, recruits=chance.flip(), maximum=role.minimum) for role in given_.roles)
     template = replace(given_.task.template, roles=roles)
     partition = replace(given_.partition, recruits=recruits)
     return Problem(replace(given_.task, template=template), partition, given_.hierarchy)

@@ -26,6 +26,7 @@ from selfconf.model.template import Interaction, Parameter, Role, Setting, Task,
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
 from tests.effort import NIGHTLY, solved_examples
+from tests.search.chance import Chance, by_chance
 
 
 def agreement(share: float = 1.0) -> settings:
@@ -122,9 +123,13 @@ Cast = Sequence[Sequence[int]]
 """For each role the numbers of the components that are meant to play it."""
 
 
-@st.composite
-def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool = False) -> Problem:
-    """Problems small enough to enumerate, with everything that a template can say.
+def problems(roles: int = 4, components: int = 5, plain: bool = False) -> st.SearchStrategy[Problem]:
+    """Problems as `a_problem` makes them."""
+    return by_chance(lambda chance: a_problem(chance, roles, components, plain))
+
+
+def a_problem(chance: Chance, roles: int = 4, components: int = 5, plain: bool = False) -> Problem:
+    """A problem small enough to enumerate, with everything that a template can say.
 
     Roles share candidates and order them each in their own way; components may share what is equal of their ports;
     cardinalities include none, two and without end; interactions may form cycles, feed a role from itself and name
@@ -134,50 +139,54 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool =
     issue what their inputs need and allow a common value of each parameter. So it has a solution. All else is noise.
     With `plain` each port has one type, each input must be fed, and none states a condition.
     """
-    solvable = draw(st.booleans())
+    solvable = chance.flip()
     kinds_of_port = () if plain else SOLVABLE if solvable else ODD
-    shared: dict[Ports, Ports] | None = {} if draw(st.booleans()) else None
-    count = draw(st.integers(1, roles))
-    signals = st.sampled_from(SIGNALS[: draw(st.integers(1, 4))])
-    some, any_ = (st.dictionaries(st.sampled_from(NAMES), signals, min_size=k, max_size=2) for k in (1, 0))
-    kinds = st.sets(st.sampled_from(CLASSES[3:]), max_size=1)
+    shared: dict[Ports, Ports] | None = {} if chance.flip() else None
+    count = chance.number(1, roles)
+    signals = SIGNALS[: chance.number(1, 4)]
+
+    def ports(least: int) -> dict[str, IRI]:
+        return {name: chance.one_of(signals) for name in chance.some(NAMES, least, 2)}
+
     made = [
-        (draw(st.one_of(st.just({}), some)), draw(any_), draw(kinds))
-        for _ in range(draw(st.integers(min(count, components) if solvable else 0, components)))
+        (ports(1) if chance.flip() else {}, ports(0), chance.some(CLASSES[3:], 0, 1))
+        for _ in range(chance.number(min(count, components) if solvable else 0, components))
     ]
     number = len(made)
     variables = tuple(
-        Variable(iri(f"v{k}"), tuple(iri(f"value{n}") for n in range(draw(st.integers(1, 3)))))
-        for k in range(draw(st.sampled_from([0, 0, 1, 1, 2])))
+        Variable(iri(f"v{k}"), tuple(iri(f"value{n}") for n in range(chance.number(1, 3))))
+        for k in range(chance.one_of([0, 0, 1, 1, 2]))
     )
     parameters = tuple(
-        Parameter(v.parameter, v.parameter.short, in_shape=True, is_set=draw(st.booleans())) for v in variables
+        Parameter(v.parameter, v.parameter.short, in_shape=True, is_set=chance.flip()) for v in variables
     )
     parts: list[Role] = []
     for k in range(count):
-        parts.append(_role(draw, k, parameters, number - sum(p.minimum for p in parts) if solvable else 2))
+        parts.append(_role(chance, k, parameters, number - sum(p.minimum for p in parts) if solvable else 2))
     pairs = [(a, b) for a in range(count) for b in range(count)]
-    chosen = draw(st.lists(st.sampled_from(pairs), min_size=count - 1, max_size=3 * count, unique=True))
-    port = st.sampled_from([None, None, None, *NAMES[:2]])
-    interactions = [Interaction(parts[a].iri, parts[b].iri, draw(port), draw(port)) for a, b in chosen]
-    edges = draw(st.lists(st.tuples(st.sampled_from(CLASSES), st.sampled_from(CLASSES)), max_size=3))
-    hierarchy = Hierarchy(edges) if draw(st.booleans()) else NOTHING_ABOVE
+    chosen = chance.some(pairs, count - 1, 3 * count)
+    port = [None, None, None, *NAMES[:2]]
+    interactions = [
+        Interaction(parts[a].iri, parts[b].iri, chance.one_of(port), chance.one_of(port)) for a, b in chosen
+    ]
+    edges = [(chance.one_of(CLASSES), chance.one_of(CLASSES)) for _ in range(chance.number(0, 3))]
+    hierarchy = Hierarchy(edges) if chance.flip() else NOTHING_ABOVE
     cast: Cast = [()] * count
     if solvable:
-        cast = _cast(draw, parts, number)
+        cast = _cast(chance, parts, number)
         players = dict(zip([role.iri for role in parts], cast, strict=True))
         inputs, outputs = [one[0] for one in made], [one[1] for one in made]
-        _feed(draw, players, interactions, inputs, outputs, hierarchy)
-    sent, taken = ({}, {}) if plain else _requests(draw, solvable, hierarchy)
+        _feed(chance, players, interactions, inputs, outputs, hierarchy)
+    sent, taken = ({}, {}) if plain else _requests(chance, solvable, hierarchy)
     profiles = [
         Profile(
             iri(f"c{k}"),
             ports=_once(
                 Ports(
                     tuple(
-                        _needing(_input(draw, *one, kinds_of_port), sent, hierarchy) for one in sorted(wanted.items())
+                        _needing(_input(chance, *one, kinds_of_port), sent, hierarchy) for one in sorted(wanted.items())
                     ),
-                    tuple(_offering(_output(draw, *one, kinds_of_port), taken) for one in sorted(issued.items())),
+                    tuple(_offering(_output(chance, *one, kinds_of_port), taken) for one in sorted(issued.items())),
                 ),
                 shared,
             ),
@@ -185,8 +194,8 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool =
         )
         for k, (wanted, issued, set_) in enumerate(made)
     ]
-    common = [1 << draw(st.integers(0, len(variable.domain) - 1)) for variable in variables]
-    candidates = tuple(_candidates(draw, profiles, variables, players, common) for players in cast)
+    common = [1 << chance.below(len(variable.domain)) for variable in variables]
+    candidates = tuple(_candidates(chance, profiles, variables, players, common) for players in cast)
     template = Template(
         iri("template"), tuple(parts), tuple(interactions), (*parameters, Parameter(iri("goal"), "goal"))
     )
@@ -194,14 +203,14 @@ def problems(draw: st.DrawFn, roles: int = 4, components: int = 5, plain: bool =
     return Problem(task, Partition(candidates, variables), hierarchy)
 
 
-def _input(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Input:
+def _input(chance: Chance, name: str, signal: IRI, kinds: Sequence[str]) -> Input:
     """Return an input that takes a signal; of a kind, perhaps others, perhaps nothing, and perhaps on a condition."""
     if not kinds:
         return Input(name, (signal,))
-    kind = draw(st.sampled_from(kinds))
-    unit, frame = _stated(draw, kind)
+    kind = chance.one_of(kinds)
+    unit, frame = _stated(chance, kind)
     condition = Condition(unit, frame, SHAPE if kind == "shape" else None)
-    signals = {signal, draw(st.sampled_from(SIGNALS))} if kind == "more" else {signal}
+    signals = {signal, chance.one_of(SIGNALS)} if kind == "more" else {signal}
     return Input(
         name,
         () if kind == "untyped" else tuple(sorted(signals)),
@@ -211,14 +220,14 @@ def _input(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Inp
     )
 
 
-def _output(draw: st.DrawFn, name: str, signal: IRI, kinds: Sequence[str]) -> Output:
+def _output(chance: Chance, name: str, signal: IRI, kinds: Sequence[str]) -> Output:
     """Return an output of a signal; of a kind, perhaps of others too, with a unit, a frame or neither."""
     if not kinds:
         return Output(name, (signal,))
-    kind = draw(st.sampled_from(kinds))
-    unit, frame = _stated(draw, kind)
-    conforms = frozenset((SHAPE,) if "other" not in kinds or draw(st.booleans()) else ())
-    signals = {signal, draw(st.sampled_from(SIGNALS))} if kind == "more" else {signal}
+    kind = chance.one_of(kinds)
+    unit, frame = _stated(chance, kind)
+    conforms = frozenset((SHAPE,) if "other" not in kinds or chance.flip() else ())
+    signals = {signal, chance.one_of(SIGNALS)} if kind == "more" else {signal}
     return Output(name, () if kind == "untyped" else tuple(sorted(signals)), None, unit, frame, conforms)
 
 
@@ -226,22 +235,22 @@ Requests = Mapping[IRI, IRI | None]
 """The signals that are answers to calls in a problem, each with what is sent along."""
 
 
-def _requests(draw: st.DrawFn, solvable: bool, hierarchy: Hierarchy) -> tuple[Requests, Requests]:
+def _requests(chance: Chance, solvable: bool, hierarchy: Hierarchy) -> tuple[Requests, Requests]:
     """Return which signals are answers to calls, with what is sent along, and with what is taken.
 
     In a problem that is to have a solution, all operations take one request, and what is sent is that or below it; and
     where there is a hierarchy, either all signals are answers or none.
     """
-    some = draw(st.sampled_from([[], [], SIGNALS, SIGNALS[:2]]))
+    some = chance.one_of([[], [], SIGNALS, SIGNALS[:2]])
     if solvable and hierarchy is not NOTHING_ABOVE and some:
         some = SIGNALS
     requests: list[IRI | None] = [None, *CLASSES]
     if not solvable:
-        any_ = st.sampled_from(requests)
-        return {signal: draw(any_) for signal in some}, {signal: draw(any_) for signal in some}
-    taken = draw(st.sampled_from(requests))
+        sent_, taken_ = ({signal: chance.one_of(requests) for signal in some} for _ in range(2))
+        return sent_, taken_
+    taken = chance.one_of(requests)
     sent = [None] if taken is None else [one for one in CLASSES if hierarchy.matches(one, taken)]
-    return {signal: draw(st.sampled_from(sent)) for signal in some}, dict.fromkeys(some, taken)
+    return {signal: chance.one_of(sent) for signal in some}, dict.fromkeys(some, taken)
 
 
 def _needing(port: Input, requests: Requests, hierarchy: Hierarchy) -> Input:
@@ -262,10 +271,10 @@ def _offering(port: Output, requests: Requests) -> Output:
     return port._replace(signals=answers, request=requests[port.signals[0]])
 
 
-def _stated(draw: st.DrawFn, kind: str) -> tuple[IRI | None, Term | None]:
+def _stated(chance: Chance, kind: str) -> tuple[IRI | None, Term | None]:
     """Return the unit and the frame that a port of some kind states."""
     number = int(kind == "other")
-    which = draw(st.sampled_from(["unit", "frame"])) if number else kind
+    which = chance.one_of(["unit", "frame"]) if number else kind
     return (UNITS[number] if which == "unit" else None), (FRAMES[number] if which == "frame" else None)
 
 
@@ -273,25 +282,25 @@ def _once(ports: Ports, shared: dict[Ports, Ports] | None) -> Ports:
     return ports if shared is None else shared.setdefault(ports, ports)
 
 
-def _role(draw: st.DrawFn, number: int, parameters: Sequence[Parameter], most: int) -> Role:
-    minimum = min(most, draw(st.sampled_from([1, 1, 1, 1, 0, 2])))
-    maximum = draw(st.sampled_from([minimum, minimum, minimum + 1, None]))
-    value: Term = Literal("1") if draw(st.booleans()) else iri("goal")
-    settings_: tuple[Setting, ...] = (Setting(iri("Goal"), value),) if draw(st.booleans()) else ()
+def _role(chance: Chance, number: int, parameters: Sequence[Parameter], most: int) -> Role:
+    minimum = min(most, chance.one_of([1, 1, 1, 1, 0, 2]))
+    maximum = chance.one_of([minimum, minimum, minimum + 1, None])
+    value: Term = Literal("1") if chance.flip() else iri("goal")
+    settings_: tuple[Setting, ...] = (Setting(iri("Goal"), value),) if chance.flip() else ()
     for parameter in parameters:
-        if parameter.is_set and draw(st.booleans()):
+        if parameter.is_set and chance.flip():
             settings_ = (*settings_, Setting(iri("Goal"), parameter.iri))
     return Role(iri(f"r{number}"), minimum, maximum, settings_)
 
 
-def _cast(draw: st.DrawFn, roles: Sequence[Role], number: int) -> Cast:
+def _cast(chance: Chance, roles: Sequence[Role], number: int) -> Cast:
     """As many components of their own for each role as it asks for."""
-    order = iter(draw(st.permutations(range(number))))
+    order = iter(chance.order(range(number)))
     return [list(islice(order, role.minimum)) for role in roles]
 
 
 def _feed(
-    draw: st.DrawFn,
+    chance: Chance,
     players: Mapping[IRI, Sequence[int]],
     interactions: list[Interaction],
     inputs: Sequence[Mapping[str, IRI]],
@@ -309,11 +318,11 @@ def _feed(
                 for way in _ways(interaction, players, outputs, below)
             ]
             if not ways:
-                source = draw(st.sampled_from([one for one, others in players.items() if others]))
+                source = chance.one_of([one for one, others in players.items() if others])
                 interactions.append(Interaction(source, role))
                 ways = _ways(interactions[-1], players, outputs, below)
-            issued, name = draw(st.sampled_from(ways))
-            issued.setdefault(name, draw(st.sampled_from(below)))
+            issued, name = chance.one_of(ways)
+            issued.setdefault(name, chance.one_of(below))
 
 
 def _ways(
@@ -332,7 +341,7 @@ def _ways(
 
 
 def _candidates(
-    draw: st.DrawFn,
+    chance: Chance,
     profiles: Sequence[Profile],
     variables: Sequence[Variable],
     players: Sequence[int],
@@ -342,13 +351,13 @@ def _candidates(
 
     Components that are meant to play it are among them, and admit the common value of each variable.
     """
-    order = draw(st.permutations(range(len(profiles)))) if draw(st.booleans()) else range(len(profiles))
-    left_out = draw(st.sets(st.sampled_from(NUMBERS), max_size=1)) - set(players)
+    order = chance.order(range(len(profiles))) if chance.flip() else range(len(profiles))
+    left_out = set(chance.some(NUMBERS, 0, 1)) - set(players)
     return tuple(
         Candidate(
             profiles[number],
             tuple(
-                _allowed(draw, variable) | (bit if number in players else 0)
+                _allowed(chance, variable) | (bit if number in players else 0)
                 for variable, bit in zip(variables, common, strict=True)
             ),
         )
@@ -357,30 +366,34 @@ def _candidates(
     )
 
 
-def _allowed(draw: st.DrawFn, variable: Variable) -> int:
-    some = draw(st.integers(0, (1 << len(variable.domain)) - 1))
-    return ~some if not some or draw(st.integers(0, 3)) == 0 else some
+def _allowed(chance: Chance, variable: Variable) -> int:
+    some = chance.below(1 << len(variable.domain))
+    return ~some if not some or chance.below(4) == 0 else some
 
 
-@st.composite
-def rivalries(draw: st.DrawFn, roles: int = 5, values: int = 4) -> Problem:
-    """Problems whose roles exclude each other's candidates, pair by pair, through named inputs; some share components.
+def rivalries(roles: int = 5, values: int = 4) -> st.SearchStrategy[Problem]:
+    """Problems as `a_rivalry` makes them."""
+    return by_chance(lambda chance: a_rivalry(chance, roles, values))
+
+
+def a_rivalry(chance: Chance, roles: int = 5, values: int = 4) -> Problem:
+    """A problem whose roles exclude each other's candidates, pair by pair, through named inputs; some share components.
 
     Half of the pairs must differ, as pigeons do; what the others may not be together is drawn.
     """
-    count, size = draw(st.integers(2, roles)), draw(st.integers(2, values))
-    domains = [sorted(draw(st.sets(st.integers(0, size - 1), min_size=1))) for _ in range(count)]
-    pairs = [(a, b) for a in range(count) for b in range(a) if draw(st.integers(0, 3))]
-    shared = {draw(st.integers(0, size - 1))} if draw(st.booleans()) else set()
+    count, size = chance.number(2, roles), chance.number(2, values)
+    domains = [sorted(chance.some(range(size), 1, size)) for _ in range(count)]
+    pairs = [(a, b) for a in range(count) for b in range(a) if chance.below(4)]
+    shared = {chance.below(size)} if chance.flip() else set()
     inputs: dict[tuple[int, int], list[Input]] = {}
     outputs: dict[tuple[int, int], list[Output]] = {}
     for sink, source in pairs:
-        differ = draw(st.booleans())
+        differ = chance.flip()
         for value in domains[sink]:
             signal = iri(f"s{source}.{sink}.{value}")
             inputs.setdefault((sink, value), []).append(Input(f"from{source}", (signal,)))
             for other in domains[source]:
-                if value != other if differ else draw(st.integers(0, 3)):
+                if value != other if differ else chance.below(4):
                     outputs.setdefault((source, other), []).append(Output(f"to{sink}.{value}", (signal,)))
     candidates = []
     for role, domain in enumerate(domains):
@@ -391,7 +404,7 @@ def rivalries(draw: st.DrawFn, roles: int = 5, values: int = 4) -> Problem:
             name = f"c{value}" if value in shared and ports == Ports() else f"c{role}.{value}"
             some.append(Candidate(Profile(iri(name), ports=ports)))
         candidates.append(tuple(some))
-    asked = [2 if len(domain) > 1 and not draw(st.integers(0, 9)) else 1 for domain in domains]
+    asked = [2 if len(domain) > 1 and not chance.below(10) else 1 for domain in domains]
     template = Template(
         iri("template"),
         tuple(Role(iri(f"r{k}"), minimum, minimum) for k, minimum in enumerate(asked)),

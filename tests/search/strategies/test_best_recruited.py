@@ -22,8 +22,9 @@ from selfconf.search.cost_table import NO_ROLE
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best
+from tests.search.chance import Chance, by_chance
 from tests.search.oracle import Players
-from tests.search.test_recruiting import RecruitingWorld, recruiting, with_recruits
+from tests.search.test_recruiting import RecruitingWorld, a_recruiting_problem, with_recruits
 from tests.search.worlds import agreement, component, iri, problem
 
 LATENCY, ERROR = iri("latency"), iri("error")
@@ -36,15 +37,19 @@ def stated(profile: Profile, **amounts: float) -> Profile:
     return replace(profile, properties=said)
 
 
-@st.composite
-def priced_recruiting(draw: st.DrawFn) -> Problem:
-    """Problems with recruits and a cost of one or two levels, of which some reward."""
-    plain = draw(recruiting())
+def priced_recruiting() -> st.SearchStrategy[Problem]:
+    """Problems as `a_priced_problem` makes them."""
+    return by_chance(a_priced_problem)
+
+
+def a_priced_problem(chance: Chance) -> Problem:
+    """A problem with recruits and a cost of one or two levels, of which some reward."""
+    plain = a_recruiting_problem(chance)
     known: dict[IRI, Profile] = {}
 
     def priced(profile: Profile) -> Profile:
         if profile.component not in known:
-            amounts = {name: draw(st.integers(-1, 3)) / 2 for name in ("latency", "error") if draw(st.integers(0, 3))}
+            amounts = {name: chance.number(-1, 3) / 2 for name in ("latency", "error") if chance.below(4)}
             known[profile.component] = stated(profile, **amounts)
         return known[profile.component]
 
@@ -55,15 +60,17 @@ def priced_recruiting(draw: st.DrawFn) -> Problem:
         ),
         recruits=tuple(Recruit(priced(recruit.profile), recruit.roles) for recruit in plain.partition.recruits),
     )
-    terms = st.builds(
-        CostTerm,
-        st.sampled_from([LATENCY, ERROR]),
-        st.sampled_from([Fraction(1), Fraction(1), Fraction(-1, 3), Fraction(2)]),
-        st.sampled_from([None, Fraction(1), Fraction(0)]),
-        st.sampled_from([None, None, *(role.iri for role in plain.roles)]),
-    )
-    levels = draw(st.lists(st.lists(terms, min_size=1, max_size=2).map(tuple), min_size=1, max_size=2))
-    template = replace(plain.task.template, cost=tuple(levels))
+
+    def term() -> CostTerm:
+        return CostTerm(
+            chance.one_of([LATENCY, ERROR]),
+            chance.one_of([Fraction(1), Fraction(1), Fraction(-1, 3), Fraction(2)]),
+            chance.one_of([None, Fraction(1), Fraction(0)]),
+            chance.one_of([None, None, *(role.iri for role in plain.roles)]),
+        )
+
+    levels = tuple(tuple(term() for _ in range(chance.number(1, 2))) for _ in range(chance.number(1, 2)))
+    template = replace(plain.task.template, cost=levels)
     return Problem(replace(plain.task, template=template), partition, plain.hierarchy)
 
 
