@@ -35,7 +35,7 @@ def recruiting() -> st.SearchStrategy[Problem]:
 def a_recruiting_problem(chance: Chance) -> Problem:
     """A problem some of whose roles recruit, with recruits that may be candidates as well and may feed each other."""
     given_ = a_problem(chance, roles=3, components=4)
-    others = a_problem(chance, roles=1, components=4)
+    others = a_problem(chance, roles=1, components=4, hierarchy=given_.hierarchy)
     everybody = {c.profile.component: c.profile for some in given_.candidates for c in some}
     pool = [
         *(replace(c.profile, component=iri(f"extra{k}")) for k, c in enumerate(others.candidates[0])),

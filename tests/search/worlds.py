@@ -128,7 +128,9 @@ def problems(roles: int = 4, components: int = 5, plain: bool = False) -> st.Sea
     return by_chance(lambda chance: a_problem(chance, roles, components, plain))
 
 
-def a_problem(chance: Chance, roles: int = 4, components: int = 5, plain: bool = False) -> Problem:
+def a_problem(
+    chance: Chance, roles: int = 4, components: int = 5, plain: bool = False, hierarchy: Hierarchy | None = None
+) -> Problem:
     """A problem small enough to enumerate, with everything that a template can say.
 
     Roles share candidates and order them each in their own way; components may share what is equal of their ports;
@@ -137,7 +139,8 @@ def a_problem(chance: Chance, roles: int = 4, components: int = 5, plain: bool =
 
     Every other problem is made around a cast: for each role as many components of their own as it asks for, which
     issue what their inputs need and allow a common value of each parameter. So it has a solution. All else is noise.
-    With `plain` each port has one type, each input must be fed, and none states a condition.
+    The hierarchy is drawn, too, unless it is given. With `plain` each port has one type, each input must be fed, and
+    none states a condition.
     """
     solvable = chance.flip()
     kinds_of_port = () if plain else SOLVABLE if solvable else ODD
@@ -169,8 +172,9 @@ def a_problem(chance: Chance, roles: int = 4, components: int = 5, plain: bool =
     interactions = [
         Interaction(parts[a].iri, parts[b].iri, chance.one_of(port), chance.one_of(port)) for a, b in chosen
     ]
-    edges = [(chance.one_of(CLASSES), chance.one_of(CLASSES)) for _ in range(chance.number(0, 3))]
-    hierarchy = Hierarchy(edges) if chance.flip() else NOTHING_ABOVE
+    if hierarchy is None:
+        edges = [(chance.one_of(CLASSES), chance.one_of(CLASSES)) for _ in range(chance.number(0, 3))]
+        hierarchy = Hierarchy(edges) if chance.flip() else NOTHING_ABOVE
     cast: Cast = [()] * count
     if solvable:
         cast = _cast(chance, parts, number)
