@@ -15,7 +15,6 @@ import pytest
 
 def freeze_what_is_there() -> None:
     """Have the collector look from now on only at what is made later."""
-    gc.collect()
     gc.freeze()
 
 

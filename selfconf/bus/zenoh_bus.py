@@ -29,7 +29,6 @@ import zenoh.ext
 from zenoh.handlers import Callback, FifoChannel
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.handshake import why_refused
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
 from selfconf.bus.zenoh_relay import Hub, Relay
@@ -126,6 +125,8 @@ def client(
 
 def _raise_if_refused(connect: Sequence[str], credentials: Credentials) -> None:
     """Raise NetworkError if this end and an endpoint do not believe each other; a hub may also be opened anew."""
+    from selfconf.bus.handshake import why_refused  # loads TLS, of which programs without keys have no need
+
     why = next((found for endpoint in connect if (found := why_refused(endpoint, credentials))), "")
     if why:
         raise NetworkError(why) from None
