@@ -6,6 +6,7 @@ no longer reads. So the scheduler is told the group of a test by its name.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 INHABITED = {
@@ -61,13 +62,28 @@ def scheduler(config: Any, log: Any) -> Any:
     from xdist.scheduler import LoadScopeScheduling
 
     class Grouped(LoadScopeScheduling):
+        places: Mapping[str, int] = {}
+        """Where each test stands in the order of all, which every process has."""
+
         def _split_scope(self, nodeid: str) -> str:
             return group_of(nodeid)
 
         def _assign_work_unit(self, node: Any) -> None:
-            if self.workqueue and self.nodes.index(node) % 3 == 2:
-                self.workqueue.move_to_end(next(reversed(self.workqueue)), last=False)
-            super()._assign_work_unit(node)
+            from_the_end = self.nodes.index(node) % 3 == 2
+            group, tests = self.workqueue.popitem(last=from_the_end)
+            self.assigned_work[node][group] = tests
+            if not self.places:
+                self.places = {test: place for place, test in enumerate(self.registered_collections[node])}
+            node.send_runtest_some([self.places[test] for test, done in tests.items() if not done])
+
+        def mark_test_complete(self, node: Any, item_index: int, duration: float = 0) -> None:
+            """Note that a test is over, and forget its group with the last: what is assigned is counted each time."""
+            test = self.registered_collections[node][item_index]
+            tests = self.assigned_work[node][group_of(test)]
+            tests[test] = True
+            if all(tests.values()):
+                del self.assigned_work[node][group_of(test)]
+            self._reschedule(node)
 
         def remove_node(self, node: Any) -> str | None:
             """Return the test in which a process has died, which is not run again; others take over what is left."""
