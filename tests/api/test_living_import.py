@@ -11,6 +11,7 @@ from tests.cli.command import run
 ELSEWHERE = ("--connect", "tcp/127.0.0.1:1")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [

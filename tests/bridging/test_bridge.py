@@ -99,6 +99,7 @@ def test_what_cannot_live_says_why(living: LivingStage, tmp_path: Path) -> None:
     assert "a type of its own" in reason
 
 
+@pytest.mark.slow
 def test_a_component_that_has_to_leave_leaves_alone(living: LivingStage, tmp_path: Path) -> None:
     complaints: list[str] = []
     bridge = Bridge(tmp_path, complaints.append)
@@ -113,6 +114,7 @@ def test_a_component_that_has_to_leave_leaves_alone(living: LivingStage, tmp_pat
         assert until(lambda: bridge.begin_life(LAMP, Lamp([])).result() is None)
 
 
+@pytest.mark.slow
 def test_a_network_that_is_not_there_is_said_to_be_missing(tmp_path: Path) -> None:
     world = World()
     with pytest.raises(NetworkError), Bridge(tmp_path, print).living(world, "lab", lambda: client(["tcp/127.0.0.1:1"])):

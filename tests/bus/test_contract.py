@@ -378,6 +378,7 @@ def test_a_watch_shows_lives_that_are_there_that_begin_and_that_end(net: Net, to
     assert net.until(lambda: heard[3:] == [(f"{top}/c/b/live/1", False)])
 
 
+@pytest.mark.slow
 def test_a_watch_without_history_shows_what_begins_and_every_end(net: Net, top: str) -> None:
     one, two, watching = net.node(), net.node(), net.node()
     undo = one.announce(f"{top}/c/a/live/1")

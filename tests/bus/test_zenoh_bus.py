@@ -41,6 +41,7 @@ def test_a_client_without_an_answer_says_where_it_has_asked() -> None:
         client([endpoint], seconds=0.2)
 
 
+@pytest.mark.slow
 def test_what_listens_and_stays_silent_is_no_site() -> None:
     with socket.create_server(("127.0.0.1", 0)) as silent:
         began = time.monotonic()
@@ -70,6 +71,7 @@ def shared(source: Any, sink: Any, size: int) -> bool:
     return any(came)
 
 
+@pytest.mark.slow
 def test_large_payloads_of_clients_that_want_it_go_through_shared_memory(
     zenoh_router: ZenohBus, monkeypatch: pytest.MonkeyPatch
 ) -> None:

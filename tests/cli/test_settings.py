@@ -66,6 +66,7 @@ def test_a_list_that_is_typed_takes_the_place_of_that_in_the_file(
     assert configure(capsys, "--ads", "../empty").code == 1
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("project")
 @pytest.mark.parametrize("option", ["--ecology=other", "--connect=tcp/127.0.0.1:9"])
 def test_an_ecology_that_is_typed_goes_before_the_files_of_the_project(

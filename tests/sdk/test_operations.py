@@ -572,6 +572,7 @@ def test_a_refusal_and_the_caller_that_is_not_connected_are_told_on_a_real_netwo
     assert errors[0].errors == ("diary is not connected to the operation 'takePhoto' of camera",)
 
 
+@pytest.mark.slow
 def test_a_caller_waits_no_longer_than_it_says_for_code_that_takes_long(living: LivingStage) -> None:
     album = Album()
     connected(living, Camera(reply=lambda request: living.release_code.wait(PATIENCE)), album)

@@ -177,6 +177,7 @@ def test_what_is_painted_on_the_floor_is_not_there_before_its_time(run: RunRecor
     assert (floor.painted[row, column] == floor.bare[row, column]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "samples",
     [
@@ -194,6 +195,7 @@ def test_a_run_may_be_short_or_still_and_need_not_fail(
     assert all(path.stat().st_size > 0 for path in paths)
 
 
+@pytest.mark.slow
 def test_a_run_that_leaves_the_apartment_is_drawn_as_well(apartment: Apartment, tmp_path: Path) -> None:
     samples = (Sample(0.0, 1.0, 1.4), Sample(9.0, 40.0, -30.0))
     failure = Failure(8.0, 40.0, -30.0)

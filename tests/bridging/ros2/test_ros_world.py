@@ -30,6 +30,7 @@ def test_nodes_come_and_go(living: LivingStage, tmp_path: Path) -> None:
         assert found.complaints == [f"/talker is here, in the domain {DOMAIN} of ROS 2"]
 
 
+@pytest.mark.slow
 def test_a_node_that_goes_while_it_acts_fails_by_its_sentence(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
         talker = found.node("talker")
@@ -105,6 +106,7 @@ def test_humble_and_what_is_no_token_are_named_and_hinder_nothing(living: Living
         assert "_tool" not in found.advertised()
 
 
+@pytest.mark.slow
 def test_a_router_that_is_not_there_is_said_to_be_missing(living: LivingStage, tmp_path: Path) -> None:
     world = RosWorld(lambda: client(["tcp/127.0.0.1:1"]), DOMAIN)
     bridge = Bridge(tmp_path, lambda words: None)

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from selfconf.bridging.wot.thing_client import ThingLimits
 from selfconf.bridging.wot.thing_world import is_url
 from selfconf.files import advertisements
@@ -72,6 +74,7 @@ def test_a_thing_without_anything_to_read_is_there_while_it_listens(
         assert until(lambda: not found.lives("lamp"))
 
 
+@pytest.mark.slow
 def test_a_thing_that_is_slow_is_a_sentence_and_holds_up_nobody(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:
@@ -137,6 +140,7 @@ def test_a_url_is_told_from_a_path() -> None:
     assert not is_url("http/lamp.json")
 
 
+@pytest.mark.slow
 def test_a_thing_that_is_lost_again_and_again_waits_longer_each_time(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:

@@ -42,6 +42,7 @@ def found(report: Report) -> list[str]:
     return [f"{each.line - head}:{each.column} {each.code}" for each in report.diagnostics]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
 def test_a_bad_file_earns_what_its_first_line_says(path: Path) -> None:
     found = [f"{each.line}:{each.column} {each.severity.value}[{each.code}]" for each in checked(path).diagnostics]
