@@ -43,7 +43,12 @@ class OtherLives:
             undo()
 
     def _begin(self) -> None:
-        self._unfollow = self._bus.watch(self._lives, lambda key, alive: self._heard((key,)) if alive else None)
+        self._unfollow = self._bus.watch(self._lives, self._noticed)
+
+    def _noticed(self, key: str, alive: bool) -> None:
+        """Look who lives: a new watch of Zenoh now and then tells of a life that has ended, such as the one before."""
+        if alive and life_of(key) < self._life:
+            self._look()
 
     def _look(self) -> None:
         self._bus.roll_call(self._lives, LIVES_CALL, self._heard)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
+
+import pytest
 
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies
@@ -135,3 +138,20 @@ def test_a_component_that_is_superseded_is_at_rest_before_its_process_leaves() -
     stage.network.reconnect(node, stage.network.nodes[2])
     stage.let_pass(1.0)
     assert seen == [[("started",), ("stopped",)]]
+
+
+def test_a_watch_that_tells_of_a_life_that_has_ended_makes_no_component_leave(monkeypatch: pytest.MonkeyPatch) -> None:
+    watched = MemoryBus.watch
+
+    def watch(bus: MemoryBus, key: str, changed: Callable[[str, bool], None], **how: bool) -> Callable[[], None]:
+        if key == KEYS.lives(CAP):
+            bus.network.deliver(bus, bus, lambda: changed(KEYS.life(CAP, "life-0"), True))
+        return watched(bus, key, changed, **how)
+
+    monkeypatch.setattr(MemoryBus, "watch", watch)
+    stage = Stage()
+    stage.others.announce(THEM)
+    applied(stage, apply(1, US, life="life-1"))
+    stage.let_pass(0.5)
+    assert stage.component.active
+    assert not stage.runtime.closed
