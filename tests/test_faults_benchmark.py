@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from benchmarks.faults import __main__ as faults_program
 from benchmarks.faults.__main__ import report
 from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS
 from benchmarks.faults.ecology import HUB, Sign, lives_at_once
-from benchmarks.faults.trial import KINDS, PHASES, PROMISES, ROUTED_VICTIMS, Outcome, plan
+from benchmarks.faults.trial import KINDS, PHASES, PROMISES, ROUTED_VICTIMS, Outcome, Plan, plan
 from tests.benchmark import short_run
 
 
@@ -59,3 +62,34 @@ def test_the_table_counts_what_was_broken() -> None:
 
 def test_every_actor_has_an_advertisement() -> None:
     assert {path.stem for path in ADVERTISEMENTS.glob("*/*.ttl")} == set(OUTPUTS)
+
+
+def test_trials_before_ctrl_c_count_and_the_ecology_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended: list[bool] = []
+
+    class Quiet:
+        """An ecology in which nothing is left of what it has started."""
+
+        def __init__(self, folder: Path, routed: bool) -> None:
+            pass
+
+        def close(self) -> list[str]:
+            ended.append(True)
+            return []
+
+    class Third:
+        """A trial, of which the third is interrupted."""
+
+        def __init__(self, ecology: Quiet, planned: Plan) -> None:
+            self.trial = planned.trial
+
+        def carry_out(self) -> Outcome:
+            if self.trial.endswith("/2"):
+                raise KeyboardInterrupt
+            return Outcome(self.trial, "running: kill drive")
+
+    monkeypatch.setattr(faults_program, "Ecology", Quiet)
+    monkeypatch.setattr(faults_program, "Trial", Third)
+    outcomes = faults_program.measure(1, list(range(5)), 10.0, 1.0)
+    assert [one.trial for one in outcomes] == ["1/0", "1/1"]
+    assert ended == [True]

@@ -29,33 +29,45 @@ LEFT = "no process is left when its site has ended"
 
 
 def measure(seed: int, numbers: list[int], longest: float, minutes: float, routed: bool = False) -> list[Outcome]:
-    """The outcomes of the trials, as many as there is time for; the ecology is made anew after a broken promise."""
+    """The outcomes of the trials, as many as there is time for; the ecology is made anew after a broken promise.
+
+    Ctrl-C ends the trial that is under way, which does not count; those before it do.
+    """
     outcomes: list[Outcome] = []
     deadline = time.monotonic() + 60 * minutes
     ecology: Ecology | None = None
     with tempfile.TemporaryDirectory() as folder:
-        for number in numbers:
-            if time.monotonic() > deadline:
-                break
-            ecology = ecology or Ecology(Path(folder), routed)
-            victims = ROUTED_VICTIMS if routed else VICTIMS
-            outcome = Trial(ecology, plan(seed, number, longest, victims)).carry_out()
-            outcomes.append(outcome)
-            if len(outcomes) % TOLD == 0:
-                print(f"{len(outcomes)} of {len(numbers)} trials", file=sys.stderr, flush=True)
-            for promise, detail in outcome.broken.items():
-                print(f"{outcome.trial} {outcome.fault}: broken: {promise}: {detail}", file=sys.stderr, flush=True)
-            if outcome.broken or number == numbers[-1]:
-                _leave(ecology, outcome)
-                ecology = None
+        try:
+            for number in numbers:
+                if time.monotonic() > deadline:
+                    break
+                ecology = ecology or Ecology(Path(folder), routed)
+                victims = ROUTED_VICTIMS if routed else VICTIMS
+                outcome = Trial(ecology, plan(seed, number, longest, victims)).carry_out()
+                outcomes.append(outcome)
+                _tell(outcome, len(outcomes), len(numbers))
+                if outcome.broken or number == numbers[-1]:
+                    _leave(ecology, outcome)
+                    ecology = None
+        except KeyboardInterrupt:
+            print("interrupted; the trial that was under way does not count", file=sys.stderr, flush=True)
         if ecology is not None:
-            _leave(ecology, outcomes[-1])
+            _leave(ecology, outcomes[-1] if outcomes else None)
     return outcomes
 
 
-def _leave(ecology: Ecology, outcome: Outcome) -> None:
+def _tell(outcome: Outcome, done: int, of: int) -> None:
+    if done % TOLD == 0:
+        print(f"{done} of {of} trials", file=sys.stderr, flush=True)
+    for promise, detail in outcome.broken.items():
+        print(f"{outcome.trial} {outcome.fault}: broken: {promise}: {detail}", file=sys.stderr, flush=True)
+
+
+def _leave(ecology: Ecology, outcome: Outcome | None) -> None:
+    """End an ecology; whether a process is left counts for its last trial, if there is one."""
     left = ecology.close()
-    outcome.judge(LEFT, 99.0 if left else 0.0, ", ".join(left))
+    if outcome is not None:
+        outcome.judge(LEFT, 99.0 if left else 0.0, ", ".join(left))
 
 
 def report(outcomes: list[Outcome]) -> str:
