@@ -46,6 +46,7 @@ class Chance:
         return [left.pop(self.below(len(left))) for _ in range(len(left))]
 
 
-def by_chance(make: Callable[[Chance], T], choices: int = 400) -> st.SearchStrategy[T]:
+@st.composite
+def by_chance(draw: st.DrawFn, make: Callable[[Chance], T], choices: int = 400) -> T:
     """Values that are made by so many choices at most; later ones fall on the first option."""
-    return st.binary(min_size=choices, max_size=choices).map(lambda decided: make(Chance(decided)))
+    return make(Chance(draw(st.binary(min_size=choices, max_size=choices))))
