@@ -69,6 +69,7 @@ class ClauseSolver:
         """How many conflicts the solver has met."""
         self._patience = CONFLICTS_PER_CALL
         """How many conflicts the next call has."""
+        self._interrupted = False
         self._counters = counters
         """Whether numbers beyond one are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
@@ -128,12 +129,20 @@ class ClauseSolver:
         before = self.conflicts
         self._solver.conf_budget(min(some for some in (self._patience, most, budget.steps) if some is not None))
         found: bool | None = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
+        if self._interrupted:
+            self._solver.clear_interrupt()
+            self._interrupted = False
         self._patience = min(2 * self._patience, LONGEST_CALL) if found is None else CONFLICTS_PER_CALL
         self.conflicts = int(self._solver.accum_stats()["conflicts"])
         budget.spend(1 + self.conflicts - before)
         if found:
             self._model = self._solver.get_model()
         return found
+
+    def interrupt(self) -> None:
+        """End the call that goes on in another thread, or else the next one, as if its conflicts were used up."""
+        self._interrupted = True
+        self._solver.interrupt()
 
     def maximise(self, literals: Sequence[int], budget: Budget) -> bool:
         """Make as many of the literals hold as can hold, from the last model upwards; False if the budget ends before.

@@ -5,11 +5,13 @@ the slot, the earliest first, until there is none. What is settled is added as a
 true, and a solver goes from one question to the next with it.
 
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
-CaDiCaL with the counting written as clauses, each by an order of magnitude. So MiniCard begins, and where it has met
-`ALONE` conflicts the other joins in: in a process of its own, where there is a processor for it (`rival`), else in
-turns, each twice as long as the last one of that solver. With a budget of steps it is always in turns, as a step has
-to mean the same on every machine. What one engine has settled the other takes over, since the least solution is unique:
-so the answer is the same whoever finds it, and the time is that of the better one at each question.
+CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
+(`ordered_decisions`), each by an order of magnitude and more. So clasp begins, for as long as loading the clauses
+takes; then MiniCard, and where it does not end at once, clasp goes on beside it; where it has met `ALONE` conflicts,
+CaDiCaL joins in: in a process of its own (`rival`). Where there is no processor for others, they take turns, each twice
+as long as the last one of that solver. With a budget of steps it is always in turns, as a step has to mean the same on
+every machine. What one engine has settled the others take over, since the least solution is unique: so the answer is
+the same whoever finds it, and the time is that of the better one at each question.
 """
 
 from __future__ import annotations
@@ -20,9 +22,12 @@ from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import SECOND_SOLVER, ClauseSolver
 from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival
 from selfconf.search.reduction import Option, ReducedProblem
 
+BRIEF = 256
+"""Conflicts of the solver that decides in order before the first of the others begins."""
 UNCOUNTED = 1_000
 """Conflicts of the first solver before it gets numbers beyond one as clauses."""
 ALONE = 10_000
@@ -64,8 +69,6 @@ class _Turn:
         """How many slots are settled in its clauses."""
         self.rejected = 0
         """Up to which option of the next slot none is possible, by its clauses."""
-        self.conflicts = ALONE
-        """How long its next turn is."""
 
 
 class _Descent:
@@ -86,7 +89,8 @@ class _Descent:
         self.least_left = 0
         """Below which number no option of the next slot is possible."""
         self.possible: bool | None = None
-        self.rival: Rival | None = None
+        self.beside: list[OrderedDecisions | Rival] = []
+        """The engines that work beside this one."""
 
     @property
     def finished(self) -> bool:
@@ -98,27 +102,51 @@ class _Descent:
         encoding = Encoding(self.reduced, ordered=True)
         self.plays = encoding.plays
         with ExitStack() as stack:
-            turns = [_Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))]
-            self.advance(turns[0], min(ALONE, UNCOUNTED))
-            if not self.finished and any(bound.most > 1 for bound in encoding.bounds):
-                # Counted by clauses, numbers are something to learn about; until then that would have been a detour.
-                counting = ClauseSolver(self.reduced, encoding=encoding, counters=True)
-                turns[0] = _Turn(stack.enter_context(counting))
-            self.advance(turns[0], ALONE)
-            if not self.finished and self.budget.steps is None and Rival.available():
-                self.rival = stack.enter_context(Rival(encoding, self.slots, self.least))
-                while not self.finished:
-                    self.advance(turns[0], None)
-            elif not self.finished and self.budget.steps != 0:
-                second = ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER)
-                turns.insert(0, _Turn(stack.enter_context(second)))
-            while not self.finished and self.budget.steps != 0:
-                turns.append(turn := turns.pop(0))
-                self.advance(turn, turn.conflicts)
-                turn.conflicts *= 2
+            in_order: OrderedDecisions | None = None
+            if OrderedDecisions.available(encoding):
+                in_order = stack.enter_context(OrderedDecisions(encoding, self.slots))
+                self._search_in_order(in_order, BRIEF)
+            if not self.finished:
+                self._search_together(encoding, in_order, stack)
         if self.possible is False:
             return None
         return self.chosen() if self.finished else Undecided(0)
+
+    def _search_in_order(self, search: OrderedDecisions, conflicts: int) -> None:
+        """Let the solver that decides in order work for a number of conflicts."""
+        part = conflicts if self.budget.steps is None else min(conflicts, self.budget.steps)
+        if part:
+            search.search(part)
+            self._hear(search)
+            self.budget.spend(1 if self.finished else part)
+
+    def _search_together(self, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack) -> None:
+        """Let all solvers work, beside each other or in turns."""
+        beside = self.budget.steps is None and Rival.available()
+        first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
+        if beside and in_order is not None:
+            in_order.begin(lambda: first.clauses.interrupt())
+            self.beside.append(in_order)
+        self.advance(first, min(ALONE, UNCOUNTED))
+        if not self.finished and any(bound.most > 1 for bound in encoding.bounds):
+            # Counted by clauses, numbers are something to learn about; until then that would have been a detour.
+            first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
+        self.advance(first, ALONE)
+        if self.finished or self.budget.steps == 0:
+            return
+        if beside:
+            self.beside.append(stack.enter_context(Rival(encoding, self.slots, self.least)))
+            self.advance(first, None)
+            return
+        second = ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER)
+        turns = [_Turn(stack.enter_context(second)), first]
+        conflicts = ALONE
+        while not self.finished and self.budget.steps != 0:
+            if in_order is not None:
+                self._search_in_order(in_order, conflicts)
+            for turn in turns:
+                self.advance(turn, conflicts)
+            conflicts *= 2
 
     def chosen(self) -> list[Option]:
         """Return the options that are settled."""
@@ -128,7 +156,8 @@ class _Descent:
         """Let a solver work for a number of conflicts, or to the end."""
         left = conflicts
         while not self.finished and (left is None or left > 0) and self.budget.steps != 0:
-            self._heard()
+            for engine in self.beside:
+                self._hear(engine)
             self._inform(turn)
             if self.finished:
                 return
@@ -137,13 +166,13 @@ class _Descent:
             if left is not None:
                 left -= 1 + turn.clauses.conflicts - before
 
-    def _heard(self) -> None:
-        """Take over what the engine beside has found."""
-        if self.rival is None:
-            return
-        self.possible = self.rival.possible if self.possible is None else self.possible
-        for number in self.rival.settled()[len(self.settled) :]:
-            self._settle(number)
+    def _hear(self, engine: OrderedDecisions | Rival) -> None:
+        """Take over what an engine has found; of any solution all or nothing, as engines find different ones."""
+        numbers = engine.settled()
+        self.possible = engine.possible if self.possible is None else self.possible
+        if self.least or len(numbers) == len(self.slots):
+            for number in numbers[len(self.settled) :]:
+                self._settle(number)
 
     def _inform(self, turn: _Turn) -> None:
         """Add what is settled to the clauses of a solver."""

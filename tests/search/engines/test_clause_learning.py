@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 
 import pytest
@@ -14,6 +15,7 @@ from benchmarks.search import families
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning
 from selfconf.search.engines.least_solution import least_by_clauses
+from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.constraints import pruned
 from selfconf.search.reduction.dominance import reduced
@@ -37,8 +39,23 @@ INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(),
 def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
     pytest.importorskip("pysat")
     expected = least_numbers(problem)
-    assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == expected
-    assert numbers(least_by_clauses(reduced(problem), Budget(10_000))) == expected
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(OrderedDecisions, "available", staticmethod(lambda _: False))
+        assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == expected
+        assert numbers(least_by_clauses(reduced(problem), Budget(10_000))) == expected
+
+
+def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pysat")
+    monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 10**9)
+    with clause_learning.ClauseSolver(reduced(families.satisfiability(400, 4.26, 1))) as clauses:
+        timer = threading.Timer(0.2, clauses.interrupt)
+        timer.start()
+        assert clauses.ask((), Budget()) is None
+        timer.join()
+        before = clauses.conflicts
+        assert clauses.ask((), Budget(), 100) is None
+        assert clauses.conflicts - before >= 100
 
 
 @pytest.mark.usefixtures("interruptible")

@@ -17,6 +17,7 @@ from benchmarks.search.further_families import cover, queens
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, least_solution
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses
+from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import pruned, reduced
@@ -31,6 +32,7 @@ pytest.importorskip("pysat")
 @agreement()
 def test_solvers_that_take_turns_find_the_least_solution(problem: Problem) -> None:
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(least_solution, "BRIEF", 0)
         patch.setattr(least_solution, "ALONE", 1)
         assert numbers(least_by_clauses(reduced(problem), Budget(100_000))) == least_numbers(problem)
 
@@ -40,16 +42,26 @@ def test_solvers_that_take_turns_find_the_least_solution(problem: Problem) -> No
 @settings(agreement(0.1), max_examples=examples(30), suppress_health_check=list(HealthCheck))
 def test_a_rival_that_does_all_the_work_finds_the_least_solution(problem: Problem) -> None:
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(OrderedDecisions, "available", staticmethod(lambda _: False))
         patch.setattr(least_solution, "ALONE", 0)
         patch.setattr(Rival, "available", staticmethod(lambda: True))
         patch.setattr(least_solution._Descent, "_ask", lambda *_: time.sleep(0))
         assert numbers(least_by_clauses(reduced(problem), Budget())) == least_numbers(problem)
 
 
+def test_one_that_decides_in_order_and_never_ends_stops_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = pruned(reduced(queens(14, 1, 3)))
+    alone = numbers(least_by_clauses(problem, Budget()))
+    monkeypatch.setattr(OrderedDecisions, "search", lambda *_: None)
+    monkeypatch.setattr(OrderedDecisions, "begin", lambda *_: None)
+    assert numbers(least_by_clauses(problem, Budget())) == alone
+
+
 @pytest.mark.process
 def test_what_both_settle_by_turns_is_the_same_as_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     for problem in (queens(14, 1, 3), cover(30, 24, 6, 0.25, 1)):
         alone = numbers(least_by_clauses(pruned(reduced(problem)), Budget()))
+        monkeypatch.setattr(least_solution, "BRIEF", 0)
         monkeypatch.setattr(least_solution, "ALONE", 1)
         monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20)
         assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == alone

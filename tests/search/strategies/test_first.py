@@ -9,6 +9,7 @@ from benchmarks.search import families, sparql
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.least_solution import least_by_clauses
+from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.dominance import LazyReduction, reduced
 from selfconf.search.strategies import first
@@ -61,8 +62,12 @@ def test_where_the_first_roles_are_impossible_the_whole_problem_is_not_reduced()
     assert "reduced" not in vars(given_)
 
 
-def test_a_problem_is_possible_though_the_steps_end_before_its_first_solution_is_proved() -> None:
+def test_a_problem_is_possible_though_the_steps_end_before_its_first_solution_is_proved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     pytest.importorskip("pysat")
+    # The solver that decides in order meets no other solution than the first.
+    monkeypatch.setattr(OrderedDecisions, "available", staticmethod(lambda _: False))
     problem = families.satisfiability(60, 3.8, seed=2)
     # Each call of the solver is a step, and the first solution takes one more for each slot at least.
     undecided = [

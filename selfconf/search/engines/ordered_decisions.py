@@ -1,0 +1,121 @@
+"""Clause learning that decides on options in order, so that the first model it meets is the least solution.
+
+*Which library.* clingo (MIT; Gebser, Kaminski, Kaufmann and Schaub, TPLP 2019): its solver clasp can be told by a
+domain heuristic which atoms to decide on before others, and to make them true (Gebser, Kaufmann, Romero, Otero, Schaub
+and Wanko, AAAI 2013). The clauses are handed over as they are; nothing is grounded. What comes in the extra `solvers`
+beside it is known by `clause_learning`; without clingo the other engines find the same.
+
+*Least.* Each option has a level of its own, which falls from slot to slot and from option to option. Let m be the model
+that is met, m' another one, and o the first option in order on which they differ. Were o played in m' alone, m would
+not have decided against it, as options are decided to play; so that it is not played followed from decisions that were
+made while o was open, which are of earlier options, on which m' agrees: then it is not played in m' either. Restarts
+and what is forgotten change nothing, as this is about the decisions with which m was met. A role of several slots is
+played by a set of options; of two sets of one size, the lesser one has the first option that is in one alone.
+
+*When.* On grids of roles, where each is bound to its neighbours, in rows as they stand in the template, a decision in
+order soon meets what it contradicts, and a few hundred conflicts suffice where other orders need a hundred thousand; on
+frequencies it is the other way round. So it is asked for a little before the other engines, and goes on beside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+from selfconf.search.engines.encoding import Encoding
+
+if TYPE_CHECKING:
+    import clingo
+
+LEVELS = 32_767
+"""How many levels clasp tells apart; beyond, its order would be wrong without a warning."""
+
+
+class OrderedDecisions:
+    """A problem as clauses in clasp, and what that has found; use it in a `with` statement."""
+
+    def __init__(self, encoding: Encoding, slots: Sequence[int]) -> None:
+        import clingo
+        from clingo.backend import HeuristicType
+
+        self._plays, self._slots = encoding.plays, slots
+        self._control = clingo.Control(["--heuristic=Domain"], logger=lambda *_: None)
+        self._handle: clingo.SolveHandle | None = None
+        self._found: list[int] = []
+        self.possible: bool | None = None
+        """Whether there is a solution, once that is known."""
+        with self._control.backend() as backend:
+            atoms = [backend.add_atom() for _ in range(encoding.top)]
+            self._atom = [0, *atoms, *(-atom for atom in reversed(atoms))]
+            """For each literal that of clasp; the one of a negative literal is found from the end."""
+            named = self._atom.__getitem__
+            backend.add_rule(atoms, choice=True)
+            for clause in encoding.clauses:
+                backend.add_rule((), [-named(literal) for literal in clause])
+            for literals, most, force in encoding.bounds:
+                assert not force  # for there are no guards
+                backend.add_weight_rule((), most + 1, [(named(literal), 1) for literal in literals])
+            level = sum(map(len, self._plays))
+            for literals in self._plays:
+                for literal in literals:
+                    # Of two options the second one plays iff the first, which is decided before it, does not.
+                    if literal > 0:
+                        backend.add_heuristic(named(literal), HeuristicType.True_, level, 0, ())
+                    level -= 1
+
+    @staticmethod
+    def available(encoding: Encoding) -> bool:
+        """Return whether clingo is installed and tells so many options apart."""
+        return sum(map(len, encoding.plays)) <= LEVELS and find_spec("clingo") is not None
+
+    def __enter__(self) -> OrderedDecisions:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._handle is not None:
+            self._handle.cancel()
+
+    def search(self, conflicts: int) -> None:
+        """Look for the least solution until it is found, or so many conflicts are met."""
+        self._limit(f"{conflicts}")
+        with self._control.solve(yield_=True) as handle:
+            self._take(handle)
+
+    def begin(self, ended: Callable[[], None]) -> None:
+        """Look for the least solution in a thread of clasp's own, until it is found, or this object is left.
+
+        `ended` is called in that thread.
+        """
+        self._limit("umax")
+
+        def found(_: object) -> None:
+            ended()
+
+        # A model is told of when it is met, that there is none at the end.
+        self._handle = self._control.solve(yield_=True, async_=True, on_model=found, on_finish=found)
+
+    def settled(self) -> Sequence[int]:
+        """Return the options of all slots if they are found by now, without waiting; else nothing."""
+        if self._handle is not None and self._handle.wait(0):
+            self._take(self._handle)
+            self._handle.cancel()
+            self._handle = None
+        return self._found
+
+    def _limit(self, conflicts: str) -> None:
+        solving: Any = self._control.configuration.solve
+        solving.solve_limit = f"{conflicts},umax"
+
+    def _take(self, handle: clingo.SolveHandle) -> None:
+        """Draw from a search that has ended what it found."""
+        model = handle.model()
+        if model is None:
+            self.possible = False if handle.get().unsatisfiable else None
+            return
+        self.possible = True
+        playing = [
+            [number for number, literal in enumerate(literals) if model.is_true(self._atom[literal])]
+            for literals in self._plays
+        ]
+        self._found = [playing[role].pop(0) for role in self._slots]
