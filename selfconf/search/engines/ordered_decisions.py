@@ -51,8 +51,9 @@ class OrderedDecisions:
             """For each literal that of clasp; the one of a negative literal is found from the end."""
             named = self._atom.__getitem__
             backend.add_rule(atoms, choice=True)
+            negated = [0, *(-atom for atom in atoms), *reversed(atoms)].__getitem__
             for clause in encoding.clauses:
-                backend.add_rule((), [-named(literal) for literal in clause])
+                backend.add_rule((), list(map(negated, clause)))
             for literals, most, force in encoding.bounds:
                 assert not force  # for there are no guards
                 backend.add_weight_rule((), most + 1, [(named(literal), 1) for literal in literals])
