@@ -50,11 +50,12 @@ def clingo(problem: Problem, rule: str, options: Sequence[str] = ()) -> First:
     import clingo as asp
 
     numbers: dict[IRI, int] = {}
-    ranks = [
-        f"rank({role},{numbers.setdefault(candidate.profile.component, len(numbers))},{rank})."
+    place = {
+        (role, numbers.setdefault(candidate.profile.component, len(numbers))): rank
         for role, candidates in enumerate(problem.candidates)
         for rank, candidate in enumerate(candidates)
-    ]
+    }
+    ranks = [f"rank({role},{component},{rank})." for (role, component), rank in place.items()]
     sizes = [0, *accumulate(map(len, problem.candidates))]
     order = [f"before({role},{size})." for role, size in enumerate(sizes[:-1])] + [f"total({sizes[-1]})."]
     control = asp.Control(["--warn=none", *options])
@@ -64,7 +65,8 @@ def clingo(problem: Problem, rule: str, options: Sequence[str] = ()) -> First:
     names = list(numbers)
     with control.solve(yield_=True) as models:
         for model in models:
-            pairs = sorted([one.number for one in symbol.arguments] for symbol in model.symbols(shown=True))
+            pairs = [tuple(one.number for one in symbol.arguments) for symbol in model.symbols(shown=True)]
+            pairs.sort(key=lambda pair: (pair[0], place[pair]))
             found = tuple(names[component] for _, component in pairs)
             if not model.cost:
                 break

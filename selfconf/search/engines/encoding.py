@@ -23,7 +23,7 @@ constraints in force never make less possible. There are no groups then, as each
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from selfconf.model.partition import ANY_VALUE
@@ -40,6 +40,13 @@ class AtMost(NamedTuple):
     force: Sequence[int] = ()
 
 
+class Implied(NamedTuple):
+    """Each of the literals implies the literal, which nothing else brings about."""
+
+    literal: int
+    literals: Sequence[int]
+
+
 class Encoding:
     """The clauses and bounds of a reduced problem; literals are numbered from one."""
 
@@ -50,6 +57,8 @@ class Encoding:
         self.top = 0
         """The highest literal so far."""
         self.clauses: list[list[int]] = []
+        self.implied: list[Implied] = []
+        """Clauses of two literals each, which some solvers take as one constraint."""
         self.bounds: list[AtMost] = []
         self.guards: dict[Constraint, int] = {}
         self._guarded = guarded
@@ -70,6 +79,13 @@ class Encoding:
         if ordered:
             for first, second in interchangeable(reduced):
                 self._ascending(self.plays[first], self.plays[second])
+
+    def all_clauses(self) -> Iterator[list[int]]:
+        """Yield the clauses, those of two literals included."""
+        yield from self.clauses
+        for literal, literals in self.implied:
+            for one in literals:
+                yield [-one, literal]
 
     def literal(self) -> int:
         """Return a new literal."""
@@ -146,8 +162,7 @@ class Encoding:
             # One literal between both sides: a sum of clauses instead of a product.
             fed = self.literal()
             add([*force, -fed, *supports])
-            for literal in having:
-                add([-literal, fed])
+            self.implied.append(Implied(fed, having))
 
     def _supporting(self, needs: Collection[int]) -> dict[int, list[list[int]]]:
         """Return for some needs the literals of the options that support them, role by role."""
@@ -173,7 +188,7 @@ class Encoding:
         if found is None:
             found = self._sums[known] = self.literal()
             self.clauses.append([-found, *literals])
-            self.clauses += [[-literal, found] for literal in literals]
+            self.implied.append(Implied(found, literals))
         return found
 
     def _values(self) -> None:

@@ -50,7 +50,11 @@ class OrderedDecisions:
             self._atom = [0, *atoms, *(-atom for atom in reversed(atoms))]
             """For each literal that of clasp; the one of a negative literal is found from the end."""
             named = self._atom.__getitem__
-            backend.add_rule(atoms, choice=True)
+            implied = {literal for literal, _ in encoding.implied}
+            backend.add_rule([named(one) for one in range(1, encoding.top + 1) if one not in implied], choice=True)
+            for literal, literals in encoding.implied:
+                # As nothing else brings the literal about, it holds iff one of these does.
+                backend.add_weight_rule((named(literal),), 1, [(named(one), 1) for one in literals])
             negated = [0, *(-atom for atom in atoms), *reversed(atoms)].__getitem__
             for clause in encoding.clauses:
                 backend.add_rule((), list(map(negated, clause)))
@@ -116,7 +120,7 @@ class OrderedDecisions:
             return
         self.possible = True
         playing = [
-            [number for number, literal in enumerate(literals) if model.is_true(self._atom[literal])]
+            (number for number, literal in enumerate(literals) if model.is_true(self._atom[literal]))
             for literals in self._plays
         ]
-        self._found = [playing[role].pop(0) for role in self._slots]
+        self._found = [next(playing[role]) for role in self._slots]
