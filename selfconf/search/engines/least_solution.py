@@ -7,11 +7,12 @@ true, and a solver goes from one question to the next with it.
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
 (`ordered_decisions`), each by an order of magnitude and more. So clasp begins, for as long as loading the clauses
-takes; then MiniCard, and where it does not end at once, clasp goes on beside it; where it has met `ALONE` conflicts,
-CaDiCaL joins in: in a process of its own (`rival`). Where there is no processor for others, they take turns, each twice
-as long as the last one of that solver. With a budget of steps it is always in turns, as a step has to mean the same on
-every machine. What one engine has settled the others take over, since the least solution is unique: so the answer is
-the same whoever finds it, and the time is that of the better one at each question.
+takes; then MiniCard works, and clasp beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a
+process of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits for longer
+(`PAIRED`), and takes the place of clasp, which comes back when nobody has ended for long. Where there is one processor,
+they take turns, each twice as long as before. With a budget of steps it is always in turns, as a step has to
+mean the same on every machine. What one engine has settled the others take over, since the least solution is unique: so
+the answer is the same whoever finds it, and the time is that of the better one at each question.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import SECOND_SOLVER, ClauseSolver
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
-from selfconf.search.engines.rival import Rival
+from selfconf.search.engines.rival import Rival, processors
 from selfconf.search.reduction import Option, ReducedProblem
 
 BRIEF = 256
@@ -31,7 +32,11 @@ BRIEF = 256
 UNCOUNTED = 1_000
 """Conflicts of the first solver before it gets numbers beyond one as clauses."""
 ALONE = 10_000
-"""Conflicts of the first solver after that before another one joins in, some tenths of a second."""
+"""Conflicts of the first solver after that before CaDiCaL joins in, some tenths of a second."""
+PAIRED = 40_000
+"""The same where there are but two processors, for one of which it waits."""
+TOGETHER = 200_000
+"""Conflicts of the first solver after that before there are three on two processors, some seconds."""
 
 
 def any_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
@@ -131,15 +136,26 @@ class _Descent:
         if not self.finished and any(bound.most > 1 for bound in encoding.bounds):
             # Counted by clauses, numbers are something to learn about; until then that would have been a detour.
             first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
-        self.advance(first, ALONE)
+        crowded = beside and in_order is not None and processors() == 2
+        self.advance(first, PAIRED if crowded else ALONE)
         if self.finished or self.budget.steps == 0:
             return
-        if beside:
-            self.beside.append(stack.enter_context(Rival(encoding, self.slots, self.least)))
-            self.advance(first, None)
+        if not beside:
+            self._take_turns(first, encoding, in_order, stack)
             return
-        second = ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER)
-        turns = [_Turn(stack.enter_context(second)), first]
+        if crowded and in_order is not None:
+            in_order.pause()
+        self.beside.append(stack.enter_context(Rival(encoding, self.slots, self.least)))
+        if crowded and in_order is not None:
+            self.advance(first, TOGETHER)
+            in_order.begin(first.clauses.interrupt)
+        self.advance(first, None)
+
+    def _take_turns(
+        self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
+    ) -> None:
+        """Let one solver after the other work, each time for longer, until one has the answer or the budget ends."""
+        turns = [_Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER))), first]
         conflicts = ALONE
         while not self.finished and self.budget.steps != 0:
             if in_order is not None:

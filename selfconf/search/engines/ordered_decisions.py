@@ -78,8 +78,7 @@ class OrderedDecisions:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._handle is not None:
-            self._handle.cancel()
+        self.pause()
 
     def search(self, conflicts: int) -> None:
         """Look for the least solution until it is found, or so many conflicts are met."""
@@ -100,12 +99,17 @@ class OrderedDecisions:
         # A model is told of when it is met, that there is none at the end.
         self._handle = self._control.solve(yield_=True, async_=True, on_model=found, on_finish=found)
 
+    def pause(self) -> None:
+        """End the thread; what was learned in it stays for the next one."""
+        if self._handle is not None:
+            self._handle.cancel()
+            self._handle = None
+
     def settled(self) -> Sequence[int]:
         """Return the options of all slots if they are found by now, without waiting; else nothing."""
         if self._handle is not None and self._handle.wait(0):
             self._take(self._handle)
-            self._handle.cancel()
-            self._handle = None
+            self.pause()
         return self._found
 
     def _limit(self, conflicts: str) -> None:

@@ -23,6 +23,11 @@ from selfconf.search.engines.encoding import Encoding
 PROGRAM = Path(__file__).with_name("rival_process.py")
 
 
+def processors() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 class Rival:
     """The process, and what it has found so far; use it in a `with` statement."""
 
@@ -58,8 +63,7 @@ class Rival:
     @staticmethod
     def available() -> bool:
         """Return whether a process can be started, and there is a processor for it."""
-        processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        return processors > 1 and bool(sys.executable) and PROGRAM.is_file()
+        return processors() > 1 and bool(sys.executable) and PROGRAM.is_file()
 
     def __enter__(self) -> Rival:
         return self

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from benchmarks.search.further_families import cover, queens
 from selfconf.search.budget import Budget
-from selfconf.search.engines import clause_learning, least_solution
+from selfconf.search.engines import clause_learning, least_solution, rival
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival
@@ -58,14 +58,19 @@ def test_one_that_decides_in_order_and_never_ends_stops_nobody(monkeypatch: pyte
 
 
 @pytest.mark.process
-def test_what_both_settle_by_turns_is_the_same_as_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("number", [1, 2, 3], ids=["turns", "two at a time", "all three"])
+def test_what_several_settle_is_the_same_as_alone(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
     for problem in (queens(14, 1, 3), cover(30, 24, 6, 0.25, 1)):
         alone = numbers(least_by_clauses(pruned(reduced(problem)), Budget()))
-        monkeypatch.setattr(least_solution, "BRIEF", 0)
-        monkeypatch.setattr(least_solution, "ALONE", 1)
-        monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20)
-        assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == alone
-        assert any_by_clauses(pruned(reduced(problem)), Budget()) is not None
+        with monkeypatch.context() as patch:
+            patch.setattr(rival, "processors", lambda: number)
+            patch.setattr(least_solution, "processors", lambda: number)
+            for moment in ("ALONE", "PAIRED", "TOGETHER"):
+                patch.setattr(least_solution, moment, 1)
+            patch.setattr(least_solution, "BRIEF", 0)
+            patch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20)
+            assert numbers(least_by_clauses(pruned(reduced(problem)), Budget())) == alone
+            assert any_by_clauses(pruned(reduced(problem)), Budget()) is not None
 
 
 def test_a_budget_of_steps_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -81,7 +86,7 @@ from benchmarks.search.families import satisfiability
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, least_solution, rival
 from selfconf.search.reduction import reduced
-least_solution.ALONE = 1
+least_solution.ALONE = least_solution.PAIRED = 1
 popen = rival.subprocess.Popen
 def started(*arguments, **options):
     process = popen(*arguments, **options)
@@ -103,11 +108,11 @@ def test_the_rival_ends_with_the_search(number: signal.Signals) -> None:
     ]
     with subprocess.Popen(command, cwd=root, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as search:
         assert search.stdout is not None
-        rival = int(search.stdout.readline())
+        other = int(search.stdout.readline())
         search.send_signal(number)
         search.wait(30)
         deadline = time.monotonic() + 60
-        while _lives(rival):
+        while _lives(other):
             assert time.monotonic() < deadline
             os.sched_yield()
 
