@@ -78,7 +78,7 @@ class ClauseSolver:
         """For each role, the literals of its options."""
         self._top = encoding.top
         add = self._solver.add_clause
-        for clause in encoding.all_clauses():
+        for clause in encoding.clauses():
             add(clause)
         for literals, most, force in encoding.bounds:
             self.at_most(literals, most, force)

@@ -41,7 +41,10 @@ class AtMost(NamedTuple):
 
 
 class Implied(NamedTuple):
-    """Each of the literals implies the literal, which nothing else brings about."""
+    """Each of the literals implies the literal, which nothing else brings about: a clause of two literals for each.
+
+    Some solvers take them as one constraint.
+    """
 
     literal: int
     literals: Sequence[int]
@@ -56,9 +59,8 @@ class Encoding:
         self.reduced = reduced
         self.top = 0
         """The highest literal so far."""
-        self.clauses: list[list[int]] = []
-        self.implied: list[Implied] = []
-        """Clauses of two literals each, which some solvers take as one constraint."""
+        self.statements: list[list[int] | Implied] = []
+        """The clauses, as lists of literals or several in one."""
         self.bounds: list[AtMost] = []
         self.guards: dict[Constraint, int] = {}
         self._guarded = guarded
@@ -80,12 +82,14 @@ class Encoding:
             for first, second in interchangeable(reduced):
                 self._ascending(self.plays[first], self.plays[second])
 
-    def all_clauses(self) -> Iterator[list[int]]:
-        """Yield the clauses, those of two literals included."""
-        yield from self.clauses
-        for literal, literals in self.implied:
-            for one in literals:
-                yield [-one, literal]
+    def clauses(self) -> Iterator[list[int]]:
+        """Yield the clauses one by one."""
+        for statement in self.statements:
+            if isinstance(statement, Implied):
+                for one in statement.literals:
+                    yield [-one, statement.literal]
+            else:
+                yield statement
 
     def literal(self) -> int:
         """Return a new literal."""
@@ -123,10 +127,10 @@ class Encoding:
             self._at_most(literals, asked)
             if len(literals) < asked:
                 impossible = self.literal()
-                self.clauses.append([*force, impossible])
-                self.clauses.append([-impossible])
+                self.statements.append([*force, impossible])
+                self.statements.append([-impossible])
             elif asked == 1:
-                self.clauses.append([*force, *literals])
+                self.statements.append([*force, *literals])
             else:
                 self._at_most([-literal for literal in literals], len(literals) - asked, force)
 
@@ -151,7 +155,7 @@ class Encoding:
                     elif need not in stated:
                         needing[need] = [literal]
         supporting = self._supporting(needing) if needing else {}
-        add = self.clauses.append
+        add = self.statements.append
         for need, having in sorted(needing.items()):
             force = self._in_force(Fed(need))
             by_role = supporting[need]
@@ -162,7 +166,7 @@ class Encoding:
             # One literal between both sides: a sum of clauses instead of a product.
             fed = self.literal()
             add([*force, -fed, *supports])
-            self.implied.append(Implied(fed, having))
+            self.statements.append(Implied(fed, having))
 
     def _supporting(self, needs: Collection[int]) -> dict[int, list[list[int]]]:
         """Return for some needs the literals of the options that support them, role by role."""
@@ -187,8 +191,8 @@ class Encoding:
         found = self._sums.get(known)
         if found is None:
             found = self._sums[known] = self.literal()
-            self.clauses.append([-found, *literals])
-            self.implied.append(Implied(found, literals))
+            self.statements.append([-found, *literals])
+            self.statements.append(Implied(found, literals))
         return found
 
     def _values(self) -> None:
@@ -209,28 +213,28 @@ class Encoding:
         self._at_most([value for _, value in values], 1)
         for literal, mask in constrained:
             if mask >= 0:
-                self.clauses.append([*force, -literal, *[value for bit, value in values if mask & bit]])
+                self.statements.append([*force, -literal, *[value for bit, value in values if mask & bit]])
                 continue
             # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
-            self.clauses += [[*force, -literal, -value] for bit, value in values if not mask & bit]
+            self.statements += [[*force, -literal, -value] for bit, value in values if not mask & bit]
 
     def _ascending(self, first: Sequence[int], second: Sequence[int]) -> None:
         """Let the option of one role come before that of another one; one of each plays."""
         before: int | None = None
         for earlier, later in zip(first, second, strict=True):
-            self.clauses.append([-later] if before is None else [-later, before])
+            self.statements.append([-later] if before is None else [-later, before])
             reached = self.literal()
-            self.clauses.append([-reached, earlier] if before is None else [-reached, earlier, before])
+            self.statements.append([-reached, earlier] if before is None else [-reached, earlier, before])
             before = reached
 
     def _groups(self, known: ExclusiveGroups) -> None:
         if known.impossible:
-            self.clauses += [[self.literal()], [-self.top]]
+            self.statements += [[self.literal()], [-self.top]]
         options = [literal for literals in self.plays for literal in literals]
         for group in known.groups:
             if len(group) == 2:
-                self.clauses.append([-options[number] for number in group])
+                self.statements.append([-options[number] for number in group])
             else:
                 self._at_most([options[number] for number in group], 1)
-        self.clauses += [[options[number] for number in some] for some in known.played]
-        self.clauses += [[-options[number]] for number in known.excluded]
+        self.statements += [[options[number] for number in some] for some in known.played]
+        self.statements += [[-options[number]] for number in known.excluded]

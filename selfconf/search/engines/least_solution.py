@@ -6,8 +6,8 @@ true, and a solver goes from one question to the next with it.
 
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
-(`ordered_decisions`), each by an order of magnitude and more. So clasp begins, for as long as loading the clauses
-takes; then MiniCard works, and clasp beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a
+(`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
+begins; after `BRIEF` steps clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a
 process of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits for longer
 (`PAIRED`), and takes the place of clasp, which comes back when nobody has ended for long. Where there is one processor,
 they take turns, each twice as long as before. With a budget of steps it is always in turns, as a step has to
@@ -27,10 +27,8 @@ from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival, processors
 from selfconf.search.reduction import Option, ReducedProblem
 
-BRIEF = 256
-"""Conflicts of the solver that decides in order before the first of the others begins."""
-UNCOUNTED = 1_000
-"""Conflicts of the first solver before it gets numbers beyond one as clauses."""
+BRIEF = 1_000
+"""Conflicts and questions of the first solver before it has company, and gets numbers beyond one as clauses."""
 ALONE = 10_000
 """Conflicts of the first solver after that before CaDiCaL joins in, some tenths of a second."""
 PAIRED = 40_000
@@ -107,35 +105,26 @@ class _Descent:
         encoding = Encoding(self.reduced, ordered=True)
         self.plays = encoding.plays
         with ExitStack() as stack:
-            in_order: OrderedDecisions | None = None
-            if OrderedDecisions.available(encoding):
-                in_order = stack.enter_context(OrderedDecisions(encoding, self.slots))
-                self._search_in_order(in_order, BRIEF)
+            first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
+            self.advance(first, BRIEF)
             if not self.finished:
-                self._search_together(encoding, in_order, stack)
+                self._search_together(first, encoding, stack)
         if self.possible is False:
             return None
         return self.chosen() if self.finished else Undecided(0)
 
-    def _search_in_order(self, search: OrderedDecisions, conflicts: int) -> None:
-        """Let the solver that decides in order work for a number of conflicts."""
-        part = conflicts if self.budget.steps is None else min(conflicts, self.budget.steps)
-        if part:
-            search.search(part)
-            self._hear(search)
-            self.budget.spend(1 if self.finished else part)
-
-    def _search_together(self, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack) -> None:
+    def _search_together(self, first: _Turn, encoding: Encoding, stack: ExitStack) -> None:
         """Let all solvers work, beside each other or in turns."""
-        beside = self.budget.steps is None and Rival.available()
-        first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
-        if beside and in_order is not None:
-            in_order.begin(lambda: first.clauses.interrupt())
-            self.beside.append(in_order)
-        self.advance(first, min(ALONE, UNCOUNTED))
-        if not self.finished and any(bound.most > 1 for bound in encoding.bounds):
+        if any(bound.most > 1 for bound in encoding.bounds):
             # Counted by clauses, numbers are something to learn about; until then that would have been a detour.
             first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
+        beside = self.budget.steps is None and Rival.available()
+        in_order: OrderedDecisions | None = None
+        if OrderedDecisions.available(encoding):
+            in_order = stack.enter_context(OrderedDecisions(encoding, self.slots))
+            if beside:
+                in_order.begin(first.clauses.interrupt)
+                self.beside.append(in_order)
         crowded = beside and in_order is not None and processors() == 2
         self.advance(first, PAIRED if crowded else ALONE)
         if self.finished or self.budget.steps == 0:
@@ -150,6 +139,14 @@ class _Descent:
             self.advance(first, TOGETHER)
             in_order.begin(first.clauses.interrupt)
         self.advance(first, None)
+
+    def _search_in_order(self, search: OrderedDecisions, conflicts: int) -> None:
+        """Let the solver that decides in order work for a number of conflicts."""
+        part = conflicts if self.budget.steps is None else min(conflicts, self.budget.steps)
+        if part:
+            search.search(part)
+            self._hear(search)
+            self.budget.spend(1 if self.finished else part)
 
     def _take_turns(
         self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack

@@ -14,7 +14,7 @@ played by a set of options; of two sets of one size, the lesser one has the firs
 
 *When.* On grids of roles, where each is bound to its neighbours, in rows as they stand in the template, a decision in
 order soon meets what it contradicts, and a few hundred conflicts suffice where other orders need a hundred thousand; on
-frequencies it is the other way round. So it is asked for a little before the other engines, and goes on beside them.
+frequencies it is the other way round. So it works beside the other engines.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.encoding import Encoding, Implied
 
 if TYPE_CHECKING:
     import clingo
@@ -50,14 +50,16 @@ class OrderedDecisions:
             self._atom = [0, *atoms, *(-atom for atom in reversed(atoms))]
             """For each literal that of clasp; the one of a negative literal is found from the end."""
             named = self._atom.__getitem__
-            implied = {literal for literal, _ in encoding.implied}
+            implied = {one.literal for one in encoding.statements if isinstance(one, Implied)}
             backend.add_rule([named(one) for one in range(1, encoding.top + 1) if one not in implied], choice=True)
-            for literal, literals in encoding.implied:
-                # As nothing else brings the literal about, it holds iff one of these does.
-                backend.add_weight_rule((named(literal),), 1, [(named(one), 1) for one in literals])
             negated = [0, *(-atom for atom in atoms), *reversed(atoms)].__getitem__
-            for clause in encoding.clauses:
-                backend.add_rule((), list(map(negated, clause)))
+            for statement in encoding.statements:
+                if isinstance(statement, Implied):
+                    # As nothing else brings the literal about, it holds iff one of these does.
+                    some = [(named(one), 1) for one in statement.literals]
+                    backend.add_weight_rule((named(statement.literal),), 1, some)
+                else:
+                    backend.add_rule((), list(map(negated, statement)))
             for literals, most, force in encoding.bounds:
                 assert not force  # for there are no guards
                 backend.add_weight_rule((), most + 1, [(named(literal), 1) for literal in literals])

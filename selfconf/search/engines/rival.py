@@ -36,7 +36,7 @@ class Rival:
             SECOND_SOLVER,
             PAIRED,
             encoding.top,
-            list(encoding.all_clauses()),
+            list(encoding.clauses()),
             [(list(literals), most, list(force)) for literals, most, force in encoding.bounds],
             [encoding.plays[role] for role in slots],
             [place > 0 and slots[place] == slots[place - 1] for place in range(len(slots))],

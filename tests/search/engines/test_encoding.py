@@ -32,6 +32,13 @@ PROBLEMS = {
         domain=("kitchen", "hall"),
     ),
     "more roles than components": TWINS,
+    "a need of two candidates": problem(
+        {
+            "eye": [BOTH, component("deaf")],
+            "mind": [MIND, component("thought", "i:Image", "o:Thought"), component("calm")],
+        },
+        "eye>mind",
+    ),
     "a need that several of two roles support": problem(
         {"eye": [*EYES, component("deaf")], "lens": [BOTH, component("dark")], "mind": [MIND]}, "eye>mind lens>mind"
     ),
@@ -42,7 +49,7 @@ def models(encoding: Encoding, assumed: Sequence[int] = ()) -> Iterator[set[int]
     """Every assignment of some literals that keeps to the clauses and the bounds, by trying all."""
     for signs in product((1, -1), repeat=encoding.top):
         model = {sign * literal for literal, sign in enumerate(signs, 1)}
-        if not model.issuperset(assumed) or not all(model.intersection(clause) for clause in encoding.clauses):
+        if not model.issuperset(assumed) or not all(model.intersection(clause) for clause in encoding.clauses()):
             continue
         if all(model.intersection(b.force) or len(model.intersection(b.literals)) <= b.most for b in encoding.bounds):
             yield model
