@@ -9,8 +9,8 @@ CaDiCaL with the counting written as clauses, on a third clasp, which decides in
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
 begins; after `BRIEF` steps clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a
 process of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits for longer
-(`PAIRED`), and takes the place of clasp, which comes back when nobody has ended for long. Where there is one processor,
-they take turns, each twice as long as before. With a budget of steps it is always in turns, as a step has to
+(`ALONE_OF_TWO`), and takes the place of clasp, which comes back when nobody has ended for long. Where there is one
+processor, they take turns, each twice as long as before. With a budget of steps it is always in turns, as a step has to
 mean the same on every machine. What one engine has settled the others take over, since the least solution is unique: so
 the answer is the same whoever finds it, and the time is that of the better one at each question.
 """
@@ -31,9 +31,9 @@ BRIEF = 1_000
 """Conflicts and questions of the first solver before it has company, and gets numbers beyond one as clauses."""
 ALONE = 10_000
 """Conflicts of the first solver after that before CaDiCaL joins in, some tenths of a second."""
-PAIRED = 40_000
+ALONE_OF_TWO = 40_000
 """The same where there are but two processors, for one of which it waits."""
-TOGETHER = 200_000
+TWO_AT_A_TIME = 200_000
 """Conflicts of the first solver after that before there are three on two processors, some seconds."""
 
 
@@ -118,26 +118,31 @@ class _Descent:
         if any(bound.most > 1 for bound in encoding.bounds):
             # Counted by clauses, numbers are something to learn about; until then that would have been a detour.
             first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
-        beside = self.budget.steps is None and Rival.available()
         in_order: OrderedDecisions | None = None
         if OrderedDecisions.available(encoding):
             in_order = stack.enter_context(OrderedDecisions(encoding, self.slots))
-            if beside:
-                in_order.begin(first.clauses.interrupt)
-                self.beside.append(in_order)
-        crowded = beside and in_order is not None and processors() == 2
-        self.advance(first, PAIRED if crowded else ALONE)
-        if self.finished or self.budget.steps == 0:
-            return
-        if not beside:
+        if self.budget.steps is None and Rival.available():
+            self._work_beside(first, encoding, in_order, stack)
+        else:
             self._take_turns(first, encoding, in_order, stack)
-            return
-        if crowded and in_order is not None:
-            in_order.pause()
-        self.beside.append(stack.enter_context(Rival(encoding, self.slots, self.least)))
-        if crowded and in_order is not None:
-            self.advance(first, TOGETHER)
+
+    def _work_beside(
+        self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
+    ) -> None:
+        """Let all solvers work, each beside the others, but two at a time for long where there are two processors."""
+        if in_order is not None:
             in_order.begin(first.clauses.interrupt)
+            self.beside.append(in_order)
+        crowding = in_order if processors() == 2 else None
+        self.advance(first, ALONE if crowding is None else ALONE_OF_TWO)
+        if self.finished:
+            return
+        if crowding is not None:
+            crowding.pause()
+        self.beside.append(stack.enter_context(Rival(encoding, self.slots, self.least)))
+        if crowding is not None:
+            self.advance(first, TWO_AT_A_TIME)
+            crowding.begin(first.clauses.interrupt)
         self.advance(first, None)
 
     def _search_in_order(self, search: OrderedDecisions, conflicts: int) -> None:
@@ -152,6 +157,9 @@ class _Descent:
         self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
     ) -> None:
         """Let one solver after the other work, each time for longer, until one has the answer or the budget ends."""
+        self.advance(first, ALONE)
+        if self.finished or self.budget.steps == 0:
+            return
         turns = [_Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER))), first]
         conflicts = ALONE
         while not self.finished and self.budget.steps != 0:

@@ -27,6 +27,7 @@ from selfconf.search.engines.encoding import Encoding, Implied
 
 if TYPE_CHECKING:
     import clingo
+    from clingo.backend import Backend
 
 LEVELS = 32_767
 """How many levels clasp tells apart; beyond, its order would be wrong without a warning."""
@@ -37,7 +38,6 @@ class OrderedDecisions:
 
     def __init__(self, encoding: Encoding, slots: Sequence[int]) -> None:
         import clingo
-        from clingo.backend import HeuristicType
 
         self._plays, self._slots = encoding.plays, slots
         self._control = clingo.Control(["--heuristic=Domain"], logger=lambda *_: None)
@@ -49,27 +49,37 @@ class OrderedDecisions:
             atoms = [backend.add_atom() for _ in range(encoding.top)]
             self._atom = [0, *atoms, *(-atom for atom in reversed(atoms))]
             """For each literal that of clasp; the one of a negative literal is found from the end."""
-            named = self._atom.__getitem__
-            implied = {one.literal for one in encoding.statements if isinstance(one, Implied)}
-            backend.add_rule([named(one) for one in range(1, encoding.top + 1) if one not in implied], choice=True)
-            negated = [0, *(-atom for atom in atoms), *reversed(atoms)].__getitem__
-            for statement in encoding.statements:
-                if isinstance(statement, Implied):
-                    # As nothing else brings the literal about, it holds iff one of these does.
-                    some = [(named(one), 1) for one in statement.literals]
-                    backend.add_weight_rule((named(statement.literal),), 1, some)
-                else:
-                    backend.add_rule((), list(map(negated, statement)))
-            for literals, most, force in encoding.bounds:
-                assert not force  # for there are no guards
-                backend.add_weight_rule((), most + 1, [(named(literal), 1) for literal in literals])
-            level = sum(map(len, self._plays))
-            for literals in self._plays:
-                for literal in literals:
-                    # Of two options the second one plays iff the first, which is decided before it, does not.
-                    if literal > 0:
-                        backend.add_heuristic(named(literal), HeuristicType.True_, level, 0, ())
-                    level -= 1
+            self._state(encoding, backend)
+            self._order(backend)
+
+    def _state(self, encoding: Encoding, backend: Backend) -> None:
+        """Hand over the clauses and bounds."""
+        named = self._atom.__getitem__
+        negated = [0, *(-atom for atom in self._atom[1:])].__getitem__
+        implied = {one.literal for one in encoding.statements if isinstance(one, Implied)}
+        backend.add_rule([named(one) for one in range(1, encoding.top + 1) if one not in implied], choice=True)
+        for statement in encoding.statements:
+            if isinstance(statement, Implied):
+                # As nothing else brings the literal about, it holds iff one of these does.
+                some = [(named(one), 1) for one in statement.literals]
+                backend.add_weight_rule((named(statement.literal),), 1, some)
+            else:
+                backend.add_rule((), list(map(negated, statement)))
+        for literals, most, force in encoding.bounds:
+            assert not force  # for there are no guards
+            backend.add_weight_rule((), most + 1, [(named(literal), 1) for literal in literals])
+
+    def _order(self, backend: Backend) -> None:
+        """Give each option its level."""
+        from clingo.backend import HeuristicType
+
+        level = sum(map(len, self._plays))
+        for literals in self._plays:
+            for literal in literals:
+                # Of two options the second one plays iff the first, which is decided before it, does not.
+                if literal > 0:
+                    backend.add_heuristic(self._atom[literal], HeuristicType.True_, level, 0, ())
+                level -= 1
 
     @staticmethod
     def available(encoding: Encoding) -> bool:

@@ -65,7 +65,7 @@ def test_what_several_settle_is_the_same_as_alone(number: int, monkeypatch: pyte
         with monkeypatch.context() as patch:
             patch.setattr(rival, "processors", lambda: number)
             patch.setattr(least_solution, "processors", lambda: number)
-            for moment in ("ALONE", "PAIRED", "TOGETHER"):
+            for moment in ("ALONE", "ALONE_OF_TWO", "TWO_AT_A_TIME"):
                 patch.setattr(least_solution, moment, 1)
             patch.setattr(least_solution, "BRIEF", 0)
             patch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20)
@@ -86,7 +86,7 @@ from benchmarks.search.families import satisfiability
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, least_solution, rival
 from selfconf.search.reduction import reduced
-least_solution.ALONE = least_solution.PAIRED = 1
+least_solution.ALONE = least_solution.ALONE_OF_TWO = 1
 popen = rival.subprocess.Popen
 def started(*arguments, **options):
     process = popen(*arguments, **options)
