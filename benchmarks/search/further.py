@@ -43,10 +43,10 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "further.md
 SETTING = """\
 One run on {machine}, {cores} cores, load {load:.1f}, Python {python}; {seeds} seeds, {limit:g} s for each answer. Every
 engine has a process of its own and starts from the same problem in its memory; building a model is part of the time,
-importing a library is not. selfconf answers with the first configuration, and starts CaDiCaL as a second process where
-its own solver does not end; every other engine has one thread. An engine that takes {patience:g} times as long as the
-best before it, and a second, is stopped, and its time is written as `>`. Ratios are of those instances that take
-selfconf or the best other engine {work:g} ms at least.
+importing a library is not. selfconf answers with the first configuration; where MiniCard does not end at once, clasp
+works beside it in a thread, and later CaDiCaL in a process. Every other engine has one thread. An engine that takes
+{patience:g} times as long as the best before it, and a second, is stopped, and its time is written as `>`. Ratios are
+of those instances that take selfconf or the best other engine {work:g} ms at least.
 
 The families `choosing` are those on which ideas and thresholds of the search were chosen; `reporting` were only
 measured; `unseen` were made after the search was finished. [Luck, and what was

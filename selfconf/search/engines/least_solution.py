@@ -115,9 +115,6 @@ class _Descent:
 
     def _search_together(self, first: _Turn, encoding: Encoding, stack: ExitStack) -> None:
         """Let all solvers work, beside each other or in turns."""
-        if any(bound.most > 1 for bound in encoding.bounds):
-            # Counted by clauses, numbers are something to learn about; until then that would have been a detour.
-            first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
         in_order: OrderedDecisions | None = None
         if OrderedDecisions.available(encoding):
             in_order = stack.enter_context(OrderedDecisions(encoding, self.slots))
@@ -126,13 +123,23 @@ class _Descent:
         else:
             self._take_turns(first, encoding, in_order, stack)
 
+    def _counting(self, first: _Turn, encoding: Encoding, stack: ExitStack) -> _Turn:
+        """Return the first solver, with numbers beyond one as clauses where there are any.
+
+        So they are something to learn about; until then that would have been a detour.
+        """
+        if all(bound.most <= 1 for bound in encoding.bounds):
+            return first
+        return _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
+
     def _work_beside(
         self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
     ) -> None:
         """Let all solvers work, each beside the others, but two at a time for long where there are two processors."""
         if in_order is not None:
-            in_order.begin(first.clauses.interrupt)
+            in_order.begin(lambda: first.clauses.interrupt())
             self.beside.append(in_order)
+        first = self._counting(first, encoding, stack)
         crowding = in_order if processors() == 2 else None
         self.advance(first, ALONE if crowding is None else ALONE_OF_TWO)
         if self.finished:
@@ -157,6 +164,7 @@ class _Descent:
         self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
     ) -> None:
         """Let one solver after the other work, each time for longer, until one has the answer or the budget ends."""
+        first = self._counting(first, encoding, stack)
         self.advance(first, ALONE)
         if self.finished or self.budget.steps == 0:
             return
