@@ -2,12 +2,14 @@
 
 The state of such a node is asked for, and changed step by step, by the services that every one of them has (the design
 "Managed nodes" of ROS 2; `lifecycle_msgs`). A transition that fails or is not answered is FAIL of the node, and so is
-one out of the active state that nobody here has asked for. A node that was active already stays so in the end.
+one out of the active state that nobody here has asked for. A node that was active already stays so in the end. Where a
+task ends while the node is being activated, the answer to that is awaited, and the node put back then.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -65,12 +67,14 @@ class NodeLifecycle:
         """Counts activations and their ends: an answer that belongs to an earlier one is passed over."""
         self._activated = self._active = False
         """Whether the node was activated here; whether it is active, as far as is known."""
+        self._resting = True
+        """Whether nobody wants the node to be active."""
         self._unfollow: Undo = lambda: None
 
     def activate(self) -> None:
         """Have the node be active."""
         self._turn += 1
-        self._activated = self._active = False
+        self._activated = self._active = self._resting = False
         event = self._endpoints.event
         if event is not None:
             key = event.key(self._domain.number)
@@ -80,6 +84,7 @@ class NodeLifecycle:
     def rest(self) -> None:
         """Have the node be inactive again, if it was activated here; what comes of that is only told."""
         self._turn += 1
+        self._resting = True
         self._unfollow()
         if self._activated:
             self._activated = self._active = False
@@ -96,7 +101,8 @@ class NodeLifecycle:
             turn = self._turn
             self._domain.bus.later(STATE_AGAIN, lambda: self._look() if turn == self._turn else None)
         elif state in STEPS:
-            self._change(STEPS[state], partial(self._changed, state), self._fail)
+            late = self._activated_late if state == INACTIVE else lambda: None
+            self._change(STEPS[state], partial(self._changed, state), self._fail, late)
         else:
             self._fail(f"the lifecycle node {self._name} is {label or state}, from where it cannot be activated")
 
@@ -104,7 +110,21 @@ class NodeLifecycle:
         self._activated = before == INACTIVE
         self._look()
 
-    def _change(self, transition: tuple[int, str], changed: Callable[[], None], failed: Callable[[str], None]) -> None:
+    def _activated_late(self) -> None:
+        """The node is active, or may be, by a transition that was asked for in an activation that has ended since."""
+        if self._resting:
+            self._change(DEACTIVATE, lambda: None, self._domain.tell)
+        else:
+            self._activated = True
+
+    def _change(
+        self,
+        transition: tuple[int, str],
+        changed: Callable[[], None],
+        failed: Callable[[str], None],
+        late: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Ask for a transition; `late` is called where this turn has ended before it is known to have failed."""
         number, label = transition
 
         def heard(answer: Mapping[str, Any]) -> None:
@@ -113,7 +133,11 @@ class NodeLifecycle:
             else:
                 failed(f"the transition {label!r} of the lifecycle node {self._name} has failed")
 
-        self._ask(self._endpoints.change, {"transition": {"id": number, "label": label}}, heard, failed)
+        def heard_late(answer: Mapping[str, Any] | None) -> None:
+            if answer is None or answer["success"]:
+                late()
+
+        self._ask(self._endpoints.change, {"transition": {"id": number, "label": label}}, heard, failed, heard_late)
 
     def _ask(
         self,
@@ -121,8 +145,9 @@ class NodeLifecycle:
         fields: Mapping[str, Any],
         heard: Callable[[Mapping[str, Any]], None],
         failed: Callable[[str], None],
+        late: Callable[[Mapping[str, Any] | None], None] = lambda _: None,
     ) -> None:
-        """Ask one of the services; what is answered after this turn is passed over."""
+        """Ask one of the services; what is answered after this turn is for `late`, None if that cannot be read."""
         # By the name alone: these definitions are older than hashes, and some implementations hash them in their way.
         kind = ros_messages.usual_type(endpoint.type.name)
         parts = None if kind is None else ros_messages.service_parts(kind)
@@ -131,6 +156,10 @@ class NodeLifecycle:
 
         def done(replies: Replies) -> None:
             if turn != self._turn:
+                answer: Mapping[str, Any] | None = None
+                with suppress(IndexError, MessageError):
+                    answer = ros_messages.message_fields(replies.samples[0].payload, answered)
+                late(answer)
                 return
             try:
                 heard(ros_messages.message_fields(replies.samples[0].payload, answered))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import struct
+import threading
 from pathlib import Path
 
 import pytest
 
 from selfconf import ros_messages
 from selfconf.bus.port import Urgency
-from selfconf.protocol.messages import Release
+from selfconf.protocol.messages import Apply, Release, Reserve
 from tests.bridging.ros2.nodes import DOMAIN, BridgedDomain, StandIn, bridging_domain, node
 from tests.sdk.living import LivingStage, until
 
@@ -77,6 +78,45 @@ def test_a_node_is_made_active_and_put_back(living: LivingStage, tmp_path: Path,
         released = found.stage.call(node("map"), "release", Release(2, living.supervisor, "task~1"))
         assert until(lambda: released)
         assert until(lambda: managed.made == made), managed.made
+        assert found.causes() == []
+
+
+class Slow(Managed):
+    """A lifecycle node that is active at once, and says so when it is let."""
+
+    let: threading.Event
+
+    def change(self, payload: bytes, attachment: bytes) -> tuple[bytes, bytes]:
+        """Make the transition of a request, and answer when that is let."""
+        answer = super().change(payload, attachment)
+        assert self.let.wait(30)
+        return answer
+
+
+@pytest.mark.parametrize("again", [False, True], ids=["ended", "and begun again"])
+def test_a_node_that_is_released_while_it_is_activated_is_put_back(
+    living: LivingStage, tmp_path: Path, again: bool
+) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        managed = Slow(found.node("map"), 2)
+        managed.let = threading.Event()
+        complete(found, managed)
+
+        def call(method: str, call: Reserve | Apply | Release) -> None:
+            answers = found.stage.call(node("map"), method, call)
+            assert until(lambda: answers)
+
+        found.activate("map")
+        assert until(lambda: managed.state == 3), found.complaints
+        call("release", Release(2, living.supervisor, "task~1"))
+        if again:
+            call("reserve", Reserve(3, living.supervisor, "task~1"))
+            call("apply", Apply(3, living.supervisor, "task~1"))
+        managed.let.set()
+        if again:
+            call("release", Release(4, living.supervisor, "task~1"))
+        assert until(lambda: managed.made == [3, 4]), managed.made
+        assert until(lambda: managed.state == 2)
         assert found.causes() == []
 
 
