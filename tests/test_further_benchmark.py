@@ -4,11 +4,24 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.search import families, further
+from benchmarks.search import families, first, further
 from benchmarks.search.further import Asked
+from benchmarks.search.further_families import counted
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row
+from selfconf.model.partition import Candidate
 from tests.benchmark import short_run
+
+
+def test_engines_agree_where_roles_draw_on_one_pool_each_in_an_order_of_its_own() -> None:
+    pool = [Candidate(families.profile(name)) for name in ("p0", "p1", "p2", "p3")]
+    problem = counted([pool, pool[::-1]], [2, 2], ())
+    found = first.selfconf(problem)
+    assert isinstance(found, tuple)
+    names = [one.rpartition(":")[2] for one in found]
+    assert names == ["p0", "p1", "p3", "p2"]
+    for engine in ("clingo, heuristic", "python-sat"):
+        assert first.ENGINES[engine](problem) == found
 
 
 @pytest.mark.process

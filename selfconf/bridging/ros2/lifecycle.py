@@ -9,7 +9,6 @@ task ends while the node is being activated, the answer to that is awaited, and 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -155,18 +154,20 @@ class NodeLifecycle:
         turn, answered = self._turn, parts.response
 
         def done(replies: Replies) -> None:
-            if turn != self._turn:
-                answer: Mapping[str, Any] | None = None
-                with suppress(IndexError, MessageError):
-                    answer = ros_messages.message_fields(replies.samples[0].payload, answered)
-                late(answer)
-                return
+            answer: Mapping[str, Any] | None = None
+            problem = ""
             try:
-                heard(ros_messages.message_fields(replies.samples[0].payload, answered))
+                answer = ros_messages.message_fields(replies.samples[0].payload, answered)
             except IndexError:
-                failed(f"the service {endpoint.topic} of a lifecycle node does not answer")
+                problem = f"the service {endpoint.topic} of a lifecycle node does not answer"
             except MessageError as error:
-                failed(f"what the service {endpoint.topic} answers {error}")
+                problem = f"what the service {endpoint.topic} answers {error}"
+            if turn != self._turn:
+                late(answer)
+            elif answer is None:
+                failed(problem)
+            else:
+                heard(answer)
 
         payload = ros_messages.message(fields, parts.request)
         self._domain.ask(endpoint, payload, TRANSITION_SECONDS, done)

@@ -70,6 +70,7 @@ class ClauseSolver:
         self._patience = CONFLICTS_PER_CALL
         """How many conflicts the next call has."""
         self._interrupted = False
+        """Whether an interrupt has to be cleared after the call that it ends."""
         self._counters = counters
         """Whether numbers beyond one are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
@@ -141,8 +142,8 @@ class ClauseSolver:
 
     def interrupt(self) -> None:
         """End the call that goes on in another thread, or else the next one, as if its conflicts were used up."""
-        self._interrupted = True
         self._solver.interrupt()
+        self._interrupted = True  # afterwards: else the call that ends just now would clear it before it is there
 
     def maximise(self, literals: Sequence[int], budget: Budget) -> bool:
         """Make as many of the literals hold as can hold, from the last model upwards; False if the budget ends before.

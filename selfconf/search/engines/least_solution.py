@@ -32,7 +32,7 @@ BRIEF = 1_000
 ALONE = 10_000
 """Conflicts of the first solver after that before CaDiCaL joins in, some tenths of a second."""
 ALONE_OF_TWO = 40_000
-"""The same where there are but two processors, for one of which it waits."""
+"""Conflicts of the first solver before CaDiCaL takes the place of clasp, where there are but two processors."""
 TWO_AT_A_TIME = 200_000
 """Conflicts of the first solver after that before there are three on two processors, some seconds."""
 
@@ -140,6 +140,8 @@ class _Descent:
             in_order.begin(lambda: first.clauses.interrupt())
             self.beside.append(in_order)
         first = self._counting(first, encoding, stack)
+        if in_order is not None:
+            stack.callback(in_order.pause)  # its thread interrupts a solver, which must not be deleted before
         crowding = in_order if processors() == 2 else None
         self.advance(first, ALONE if crowding is None else ALONE_OF_TWO)
         if self.finished:
@@ -151,14 +153,6 @@ class _Descent:
             self.advance(first, TWO_AT_A_TIME)
             crowding.begin(first.clauses.interrupt)
         self.advance(first, None)
-
-    def _search_in_order(self, search: OrderedDecisions, conflicts: int) -> None:
-        """Let the solver that decides in order work for a number of conflicts."""
-        part = conflicts if self.budget.steps is None else min(conflicts, self.budget.steps)
-        if part:
-            search.search(part)
-            self._hear(search)
-            self.budget.spend(1 if self.finished else part)
 
     def _take_turns(
         self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
@@ -172,7 +166,10 @@ class _Descent:
         conflicts = ALONE
         while not self.finished and self.budget.steps != 0:
             if in_order is not None:
-                self._search_in_order(in_order, conflicts)
+                part = conflicts if self.budget.steps is None else min(conflicts, self.budget.steps)
+                in_order.search(part)
+                self._hear(in_order)
+                self.budget.spend(1 if self.finished else part)
             for turn in turns:
                 self.advance(turn, conflicts)
             conflicts *= 2

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 LEVELS = 32_767
 """How many levels clasp tells apart; beyond, its order would be wrong without a warning."""
+SIGNALS_SECONDS = 0.1
+"""How long Python waits for a search before it looks for signals, which it cannot handle while it waits."""
 
 
 class OrderedDecisions:
@@ -94,22 +96,17 @@ class OrderedDecisions:
 
     def search(self, conflicts: int) -> None:
         """Look for the least solution until it is found, or so many conflicts are met."""
-        self._limit(f"{conflicts}")
-        with self._control.solve(yield_=True) as handle:
-            self._take(handle)
+        handle = self._handle = self._started(f"{conflicts}", lambda: None)
+        while not handle.wait(SIGNALS_SECONDS):
+            pass
+        self.settled()
 
     def begin(self, ended: Callable[[], None]) -> None:
         """Look for the least solution in a thread of clasp's own, until it is found, or this object is left.
 
         `ended` is called in that thread.
         """
-        self._limit("umax")
-
-        def found(_: object) -> None:
-            ended()
-
-        # A model is told of when it is met, that there is none at the end.
-        self._handle = self._control.solve(yield_=True, async_=True, on_model=found, on_finish=found)
+        self._handle = self._started("umax", ended)
 
     def pause(self) -> None:
         """End the thread; what was learned in it stays for the next one."""
@@ -124,9 +121,16 @@ class OrderedDecisions:
             self.pause()
         return self._found
 
-    def _limit(self, conflicts: str) -> None:
+    def _started(self, conflicts: str, ended: Callable[[], None]) -> clingo.SolveHandle:
+        """A search that goes on in a thread of clasp's own, for so many conflicts."""
         solving: Any = self._control.configuration.solve
         solving.solve_limit = f"{conflicts},umax"
+
+        def found(_: object) -> None:
+            ended()
+
+        # A model is told of when it is met, that there is none at the end.
+        return self._control.solve(yield_=True, async_=True, on_model=found, on_finish=found)
 
     def _take(self, handle: clingo.SolveHandle) -> None:
         """Draw from a search that has ended what it found."""

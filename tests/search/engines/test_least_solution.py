@@ -52,6 +52,7 @@ def test_a_rival_that_does_all_the_work_finds_the_least_solution(problem: Proble
 def test_one_that_decides_in_order_and_never_ends_stops_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = pruned(reduced(queens(14, 1, 3)))
     alone = numbers(least_by_clauses(problem, Budget()))
+    monkeypatch.setattr(least_solution, "BRIEF", 0)
     monkeypatch.setattr(OrderedDecisions, "search", lambda *_: None)
     monkeypatch.setattr(OrderedDecisions, "begin", lambda *_: None)
     assert numbers(least_by_clauses(problem, Budget())) == alone

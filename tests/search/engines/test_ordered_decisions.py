@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import threading
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -19,6 +21,7 @@ from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import ReducedProblem, pruned, reduced
+from tests.sdk.living import until
 from tests.search.comparison import least_numbers, numbers
 from tests.search.worlds import agreement, component, problem, problems, rivalries
 
@@ -104,12 +107,38 @@ def test_what_takes_more_conflicts_is_left_open_and_gone_on_with() -> None:
         assert search.possible is not None
 
 
+def threads() -> set[str]:
+    """The threads of this process, those that Python has not begun included."""
+    return {path.name for path in Path("/proc/self/task").iterdir()}
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="only Linux lists the threads of a process")
 def test_a_search_that_goes_on_ends_when_it_is_left() -> None:
-    threads = threading.active_count()
+    before = threads()
     with in_order(reduced(satisfiability(400, 4.26, 1))) as search:
         search.begin(lambda: None)
+        begun = threads() - before
+        assert begun
         assert search.possible is None
-    assert threading.active_count() == threads
+    assert until(lambda: not begun & threads())
+
+
+def test_a_signal_is_handled_while_a_search_lasts() -> None:
+    class OutOfTimeError(Exception):
+        """The search took as long as it may."""
+
+    def end(*_: object) -> None:
+        raise OutOfTimeError
+
+    before = signal.signal(signal.SIGALRM, end)
+    try:
+        with in_order(reduced(satisfiability(400, 4.26, 1))) as search:
+            signal.setitimer(signal.ITIMER_REAL, 0.2)
+            with pytest.raises(OutOfTimeError):
+                search.search(10**9)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def test_more_options_than_levels_are_not_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
