@@ -8,10 +8,10 @@ the same components.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import accumulate
-from typing import Any
 
 from benchmarks.search.engines import PROGRAM, clauses_of, cp_model_of, facts
 from selfconf.model.term import IRI
@@ -36,6 +36,8 @@ LEVELS = 32_767
 """How many decisions clingo can be told the order of."""
 WEIGHT = 2**40
 """How much a solution may weigh for CP-SAT."""
+BITS = 30
+"""How many candidates of a role with several players are weighed at once, as each has twice the weight of the next."""
 
 
 def able(engine: str, problem: Problem) -> bool:
@@ -80,32 +82,38 @@ def cp_sat(problem: Problem) -> First:
     model, plays = cp_model_of(problem)
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
-    found: list[list[bool]] = []
-    asked = [role.minimum for role in problem.roles]
-    while len(found) < len(plays):
-        weighed: list[list[Any]] = []
-        weight = 1
-        for literals, number in zip(plays[len(found) :], asked[len(found) :], strict=True):
-            span = len(literals) if number == 1 else 2 ** len(literals)
-            if weighed and weight * span > WEIGHT:
+    # What is weighed as one: a role with one player, or some candidates of one with several.
+    parts = [
+        (role, literals[start : start + size], asked == 1)
+        for role, (literals, asked) in enumerate(zip(plays, (role.minimum for role in problem.roles), strict=True))
+        for size in ([len(literals) or 1] if asked == 1 else [BITS])
+        for start in range(0, len(literals), size)
+    ]
+    found: list[list[bool]] = [[] for _ in plays]
+    settled = 0
+    while settled < len(parts):
+        spans: list[int] = []
+        for _, literals, single in parts[settled:]:
+            spans.append(len(literals) if single else 2 ** len(literals))
+            if len(spans) > 1 and math.prod(spans) > WEIGHT:
+                spans.pop()
                 break
-            weighed.append(literals)
-            weight *= span
+        weighed = parts[settled : settled + len(spans)]
+        weight = math.prod(spans)
         terms = []
-        for literals, number in zip(weighed, asked[len(found) :], strict=False):
-            weight //= len(literals) if number == 1 else 2 ** len(literals)
-            ranks = (
-                range(len(literals)) if number == 1 else [-(2 ** (len(literals) - 1 - k)) for k in range(len(literals))]
-            )
+        for (_, literals, single), span in zip(weighed, spans, strict=True):
+            weight //= span
+            ranks = range(span) if single else [-(2**k) for k in reversed(range(len(literals)))]
             terms += [weight * rank * literal for rank, literal in zip(ranks, literals, strict=True) if rank]
         model.minimize(cp_model.LinearExpr.sum(terms))
         if solver.solve(model) != cp_model.OPTIMAL:
             return False
-        for literals in weighed:
-            found.append([solver.boolean_value(literal) for literal in literals])
-            for literal, holds in zip(literals, found[-1], strict=True):
-                if holds:
-                    model.add(literal == 1)
+        for role, literals, _ in weighed:
+            values = [solver.boolean_value(literal) for literal in literals]
+            found[role] += values
+            for literal, holds in zip(literals, values, strict=True):
+                model.add(literal == holds)
+        settled += len(weighed)
     return _named(problem, found)
 
 

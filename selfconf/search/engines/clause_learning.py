@@ -72,7 +72,7 @@ class ClauseSolver:
         self._interrupted = False
         """Whether an interrupt has to be cleared after the call that it ends."""
         self._counters = counters
-        """Whether numbers beyond one are counted by clauses, about which the solver can learn."""
+        """Whether numbers beyond one, up to half of all, are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
         self.guards: dict[Constraint, int] = encoding.guards
         self.plays: tuple[tuple[int, ...], ...] = encoding.plays
@@ -108,7 +108,9 @@ class ClauseSolver:
         """Allow no more than a number of the literals to hold, under the guards given."""
         if most >= len(literals):
             return
-        if not force and not (self._counters and most > 1) and self._solver.supports_atmost():
+        # Of most of them there is little to learn, and counting so far would take many clauses.
+        counted = self._counters and 1 < most <= len(literals) // 2
+        if not force and not counted and self._solver.supports_atmost():
             self._solver.add_atmost(list(literals), most)
             return
         for clause in as_clauses(literals, most, self._top):

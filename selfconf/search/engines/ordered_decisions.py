@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 LEVELS = 32_767
 """How many levels clasp tells apart; beyond, its order would be wrong without a warning."""
+COUNTING = "--trans-ext=card"
+"""Bounds as rules that count, with an atom for each number reached, about which clasp can learn. On covers it meets a
+hundred times fewer conflicts than with bounds as constraints; of one alone, a constraint is the quicker."""
 SIGNALS_SECONDS = 0.1
 """How long Python waits for a search before it looks for signals, which it cannot handle while it waits."""
 
@@ -42,7 +45,10 @@ class OrderedDecisions:
         import clingo
 
         self._plays, self._slots = encoding.plays, slots
-        self._control = clingo.Control(["--heuristic=Domain"], logger=lambda *_: None)
+        options = ["--heuristic=Domain"]
+        if any(bound.most > 1 for bound in encoding.bounds):
+            options.append(COUNTING)
+        self._control = clingo.Control(options, logger=lambda *_: None)
         self._handle: clingo.SolveHandle | None = None
         self._found: list[int] = []
         self.possible: bool | None = None

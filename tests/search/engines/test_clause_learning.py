@@ -58,6 +58,19 @@ def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest
         assert clauses.conflicts - before >= 100
 
 
+def test_numbers_up_to_half_are_counted_by_clauses_and_greater_ones_by_the_solver() -> None:
+    pytest.importorskip("pysat")
+    with clause_learning.ClauseSolver(reduced(families.satisfiability(10, 2.0, 1)), counters=True) as clauses:
+        literals = [clauses.literal() for _ in range(10)]
+        for most, grown in ((1, False), (5, True), (6, False), (10, False)):
+            before = clauses.literal()
+            clauses.at_most(literals, most)
+            assert (clauses.literal() > before + 1) == grown, most
+        for literal in literals[:2]:
+            assert clauses.ask((literal,), Budget())
+        assert not clauses.ask(literals[:2], Budget())
+
+
 @pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_in_the_middle_of_a_call_reaches_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20_000)  # conflicts: calls of about a tenth of a second

@@ -90,6 +90,21 @@ def test_in_a_thread_of_its_own_it_finds_the_same_and_says_so() -> None:
         assert list(search.settled()) == expected
 
 
+def conflicts(given_: ReducedProblem) -> int:
+    """How many conflicts it meets until it has the least solution."""
+    with in_order(given_) as search:
+        search.search(ENOUGH)
+        assert search.possible
+        return int(search._control.statistics["solving"]["solvers"]["conflicts"])
+
+
+def test_it_learns_about_how_many_play_a_role(monkeypatch: pytest.MonkeyPatch) -> None:
+    given_ = pruned(reduced(cover(60, 40, 9, 0.2, 500)))
+    counting = conflicts(given_)
+    monkeypatch.setattr(ordered_decisions, "COUNTING", "--trans-ext=no")
+    assert 10 * counting < conflicts(given_)
+
+
 def test_that_there_is_no_solution_is_known_without_any_option() -> None:
     with in_order(reduced(BLIND)) as search:
         search.search(ENOUGH)
