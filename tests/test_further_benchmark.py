@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.search import families, first, further
 from benchmarks.search.further import Asked
-from benchmarks.search.further_families import counted
+from benchmarks.search.further_families import counted, cover
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row
 from selfconf.model.partition import Candidate
@@ -22,6 +22,14 @@ def test_engines_agree_where_roles_draw_on_one_pool_each_in_an_order_of_its_own(
     assert names == ["p0", "p1", "p3", "p2"]
     for engine in ("clingo, heuristic", "python-sat"):
         assert first.ENGINES[engine](problem) == found
+
+
+def test_more_candidates_than_an_integer_has_bits_are_weighed_in_parts() -> None:
+    pytest.importorskip("ortools", reason="CP-SAT is compared with where it is installed")
+    problem = cover(40, 70, 8, 0.2, 1)
+    found = first.selfconf(problem)
+    assert found
+    assert first.ENGINES["CP-SAT"](problem) == found
 
 
 @pytest.mark.process
