@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -86,16 +87,20 @@ def test_a_component_that_runs_is_not_started_twice_and_ends_with_its_site(
 def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_reported(
     network: Network, tmp_path: Path, sites: Callable[[Path], Site]
 ) -> None:
-    site = sites(dormant(tmp_path / "here", f"{sys.executable} -c 'raise SystemExit(3)'"))
+    end = tmp_path / "end"
+    os.mkfifo(end)  # each process ends when it has been read: not before it has been looked at
+    site = sites(dormant(tmp_path / "here", f"{sys.executable} -c 'open(\"{end}\").read(); raise SystemExit(3)'"))
     fails: list[Sample] = []
     network.node().subscribe(KEYS.any_fail(), fails.append)
     ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
     first = group_of(site)
+    end.write_text("")
     assert live(network, lambda: bool(fails))
     assert b"ended with code 3" in fails[0].payload
     ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
     second = group_of(site)
     assert second.number != first.number
+    end.write_text("")
     assert second.wait(10)
 
 
