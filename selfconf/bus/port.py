@@ -34,7 +34,7 @@ class Urgency(str, Enum):
     SIGNAL = "signal"
     """Small and frequent: the newest counts, an old one may be dropped."""
     BULK = "bulk"
-    """Images and the like: dropped first."""
+    """What comes in rushes and may wait a moment: many go in one message, and are dropped first."""
     EVENT = "event"
     """FAIL and the like: never dropped, and ahead of everything else, between nodes that reach each other.
 

@@ -2,7 +2,8 @@
 
 Nothing of a run depends on it: a notice is made only while somebody listens, and the network may drop it, so that an
 observer that is slow, frozen or gone holds nothing up. The latest events are kept, for one that comes late or has found
-a gap in the sequence.
+a gap in the sequence. How a run has ended is not dropped, as nobody could be asked for it any more: that is one notice,
+which goes the way of the end of its life.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from collections import deque
 
 from selfconf.bus.port import Bus, Request, Urgency
-from selfconf.model.run_event import RunEvent
+from selfconf.model.run_event import RunEvent, TaskDetached, TaskRefused, TaskStopped
 from selfconf.protocol.codec import LARGEST, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Notice
@@ -28,21 +29,25 @@ class RunNotices:
         self._latest: deque[tuple[int, RunEvent]] = deque(maxlen=LATEST)
         self._sequence = 0
         self._heard = False
-        # Urgency.SIGNAL is dropped where the network is short of room; EVENT would wait for a frozen observer.
-        self._publisher = bus.publisher(keys.notices(name), Urgency.SIGNAL, self._matched)
+        # What is not EVENT is dropped where the network is short of room; EVENT would wait for a frozen observer. In
+        # bulk many come in one message: as signals, each at once, a rush of five found no room on a busy machine.
+        self._publisher = bus.publisher(keys.notices(name), Urgency.BULK, self._matched)
+        self._last_words = bus.publisher(keys.notices(name), Urgency.EVENT)
         self._served = bus.serve(keys.notices(name), self._answer)
 
     def close(self) -> None:
         """Tell nothing any more."""
         self._served()
         self._publisher.undeclare()
+        self._last_words.undeclare()
 
     def put(self, event: RunEvent) -> None:
         """Tell an event."""
         self._sequence += 1
         self._latest.append((self._sequence, event))
         if self._heard:
-            self._publisher.put(self._notice(self._sequence, event))
+            ends = isinstance(event, TaskStopped | TaskRefused | TaskDetached)
+            (self._last_words if ends else self._publisher).put(self._notice(self._sequence, event))
 
     def _matched(self, heard: bool) -> None:
         self._heard = heard

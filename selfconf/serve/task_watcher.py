@@ -6,6 +6,7 @@ import logging
 import re
 from collections import deque
 from collections.abc import Callable, Iterable
+from functools import partial
 
 from selfconf.api.deployed import deployed_body
 from selfconf.bus.port import Bus, Replies, Sample
@@ -35,6 +36,8 @@ ENDED_TASKS = 12
 """How many tasks that are over are still shown."""
 TOLD_TASKS = 100
 """Of how many tasks it is kept what their configurators have told: with a template, each may be large."""
+EARLY = 64
+"""How many notices wait at most for those before them, which have been asked for."""
 MOST_TASKS = 1000
 """How many tasks are followed; what a stranger says of more is passed over."""
 
@@ -59,6 +62,8 @@ class TaskWatcher:
         self._deployed_text: dict[str, bytes] = {}
         """What each configurator has said last of what it has deployed."""
         self._asking: set[str] = set()
+        self._early: deque[Notice] = deque(maxlen=EARLY)
+        """What was told while something before it is missing: the configurator may end before it can say that."""
 
     def follow(self) -> None:
         """Follow every configurator from now on, those that are there first."""
@@ -142,7 +147,8 @@ class TaskWatcher:
             return
         task = self._task(notice.configurator)
         if notice.sequence > task.sequence + 1:
-            self._ask(self.keys.notices(task.configurator), self._hear_all)  # what was lost, in its order
+            self._early.append(notice)
+            self._ask(self.keys.notices(task.configurator), partial(self._catch_up, task))
         else:
             self._hear(task, notice)
             self._ask_soon(task.configurator)
@@ -155,6 +161,15 @@ class TaskWatcher:
                 self._put_graph(task.configurator, b"")
         if notice.event.get("act") == "running":
             self._ask(self.keys.configuration(task.configurator), self._take_deployed)
+
+    def _catch_up(self, task: WatchedTask, replies: Replies) -> None:
+        """Hear what was lost, if the configurator could still say it, and then what has come after it."""
+        self._hear_all(replies)
+        early, name = self._early, task.configurator
+        self._early = deque((notice for notice in early if notice.configurator != name), maxlen=EARLY)
+        for notice in sorted(early, key=lambda notice: notice.sequence):
+            if notice.configurator == name:
+                self._hear(task, notice)
 
     def _hear_all(self, replies: Replies) -> None:
         notices = []

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.deployment.notices import LATEST, RunNotices
 from selfconf.model.configuration import Configuration, ParameterSetting
-from selfconf.model.run_event import AnswerRejected, TaskRunning
+from selfconf.model.run_event import AnswerRejected, TaskRunning, TaskStopped
 from selfconf.model.term import Literal
 from selfconf.protocol.codec import LARGEST, decode
 from selfconf.protocol.keys import Keys
@@ -37,6 +38,19 @@ def test_an_observer_hears_what_fails_and_what_takes_over(lab: Lab) -> None:
     assert iri("absolute-odometry") in json.dumps(second["configuration"])
     assert [notice.sequence for notice in heard] == list(range(1, len(heard) + 1))
     assert {(notice.configurator, notice.task) for notice in heard} == {(agent.name, agent.identity.task)}
+
+
+def test_how_a_run_has_ended_is_heard_though_the_network_drops_what_it_may(lab: Lab) -> None:
+    heard: list[Notice] = []
+    lab.network.node().subscribe(lab.keys.notices(), lambda sample: heard.append(decode(sample.payload, Notice)))
+    told = RunNotices(lab.network.node(), lab.keys, "c1", "tidy~c1")
+    lab.let_pass(0.1)
+    lab.network.faults = replace(lab.network.faults, loss=1.0)
+    for event in (AnswerRejected("dropped"), TaskStopped()):
+        told.put(event)
+    told.close()
+    lab.let_pass(0.1)
+    assert [(notice.sequence, notice.event["act"]) for notice in heard] == [(2, "stopped")]
 
 
 def test_who_comes_late_is_told_the_latest_events(lab: Lab) -> None:
