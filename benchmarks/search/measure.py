@@ -19,12 +19,16 @@ from multiprocessing.connection import Connection
 from benchmarks.search import families as f
 from benchmarks.search.engines import ENGINES, SMALL
 from benchmarks.search.first import First
+from benchmarks.search.further_families import cover
 from selfconf.search.problem import Problem
 
 Engine = Callable[[Problem], First]
 
-WARMING = (f.navigation(3, 7001), f.navigation(3, 7001, solvable=False), f.satisfiability(50, 4.26, 7001))
-"""The last for the engines that are not hopeless on it."""
+WARMING = (
+    *(f.navigation(3, 7001), f.navigation(3, 7001, solvable=False)),
+    *(f.satisfiability(50, 4.26, 7001), cover(60, 40, 9, 0.2, 500)),
+)
+"""The last two for the engines that are not hopeless on them; on the very last one selfconf has all its solvers."""
 QUICK = 0.3
 """Seconds; what is quicker is measured several times, and the shortest time counts."""
 
