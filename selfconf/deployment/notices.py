@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import deque
 
 from selfconf.bus.port import Bus, Request, Urgency
-from selfconf.model.run_event import RunEvent, TaskDetached, TaskRefused, TaskStopped
+from selfconf.model.run_event import RunEvent, TaskRefused, TaskStopped
 from selfconf.protocol.codec import LARGEST, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Notice
@@ -46,7 +46,7 @@ class RunNotices:
         self._sequence += 1
         self._latest.append((self._sequence, event))
         if self._heard:
-            ends = isinstance(event, TaskStopped | TaskRefused | TaskDetached)
+            ends = isinstance(event, TaskStopped | TaskRefused)
             (self._last_words if ends else self._publisher).put(self._notice(self._sequence, event))
 
     def _matched(self, heard: bool) -> None:

@@ -62,7 +62,7 @@ class TaskWatcher:
         self._deployed_text: dict[str, bytes] = {}
         """What each configurator has said last of what it has deployed."""
         self._asking: set[str] = set()
-        self._early: deque[Notice] = deque(maxlen=EARLY)
+        self._early: deque[Sample] = deque(maxlen=EARLY)
         """What was told while something before it is missing: the configurator may end before it can say that."""
 
     def follow(self) -> None:
@@ -147,8 +147,8 @@ class TaskWatcher:
             return
         task = self._task(notice.configurator)
         if notice.sequence > task.sequence + 1:
-            self._early.append(notice)
-            self._ask(self.keys.notices(task.configurator), partial(self._catch_up, task))
+            self._early.append(sample)
+            self._ask(sample.key, partial(self._catch_up, sample.key))
         else:
             self._hear(task, notice)
             self._ask_soon(task.configurator)
@@ -162,14 +162,11 @@ class TaskWatcher:
         if notice.event.get("act") == "running":
             self._ask(self.keys.configuration(task.configurator), self._take_deployed)
 
-    def _catch_up(self, task: WatchedTask, replies: Replies) -> None:
-        """Hear what was lost, if the configurator could still say it, and then what has come after it."""
-        self._hear_all(replies)
-        early, name = self._early, task.configurator
-        self._early = deque((notice for notice in early if notice.configurator != name), maxlen=EARLY)
-        for notice in sorted(early, key=lambda notice: notice.sequence):
-            if notice.configurator == name:
-                self._hear(task, notice)
+    def _catch_up(self, key: str, replies: Replies) -> None:
+        """Hear what was lost, if the configurator could still say it, and what has come after it."""
+        early = [sample for sample in self._early if sample.key == key]
+        self._early = deque((sample for sample in self._early if sample.key != key), maxlen=EARLY)
+        self._hear_all(Replies((*replies.samples, *early)))
 
     def _hear_all(self, replies: Replies) -> None:
         notices = []

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.port import Replies, Sample, Urgency
+from selfconf.bus.port import Bus, Replies, Sample, Urgency
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.serve import task_watcher
@@ -68,32 +68,31 @@ def test_a_configurator_whose_life_ends_before_its_last_notice_comes_has_stopped
     assert tasks.watcher._tasks["c1"].alive, "it has come back before its end was believed"
 
 
+def tell(lab: Lab, node: Bus, *events: tuple[int, str]) -> None:
+    """Put notices of the configurator c1, by their numbers and acts."""
+    publisher = node.publisher(lab.keys.notices("c1"), Urgency.SIGNAL)
+    for sequence, act in events:
+        publisher.put(encode(Notice("c1", sequence, "tidy~c1", {"act": act, "time": 1.0, "message": act})))
+
+
 def test_what_comes_after_a_notice_that_was_lost_counts_also_if_nobody_can_say_that_any_more(lab: Lab) -> None:
     tasks = Tasks(lab)
-    node, key = lab.network.node(), lab.keys.notices("c1")
+    node = lab.network.node()
     node.announce(lab.keys.configurator_life("c1", "1"))
     lab.let_pass(1.0)
-    for sequence, act in ((1, "composed"), (3, "running"), (5, "released"), (4, "running"), (6, "stopped")):
-        event = {"act": act, "time": 1.0, "message": act}
-        node.publisher(key, Urgency.SIGNAL).put(encode(Notice("c1", sequence, "tidy~c1", event)))
+    tell(lab, node, (1, "composed"), (3, "running"), (5, "released"), (4, "running"), (6, "stopped"))
     node.close()
     lab.let_pass(3.0)
     assert [event["act"] for event in tasks.events] == ["composed", "running", "running", "released", "stopped"]
     assert tasks.phases() == ["stopped"]
 
 
-def test_of_what_comes_before_what_is_missing_some_is_kept_and_no_more(
-    lab: Lab, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_of_what_comes_too_early_some_is_kept_and_no_more(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(task_watcher, "EARLY", 2)
     tasks = Tasks(lab)
-    node = lab.network.node()
-    for sequence in (2, 3, 4, 5):
-        event = {"act": "released", "time": float(sequence), "message": ""}
-        notice = Notice("c1", sequence, "tidy~c1", event)
-        node.publisher(lab.keys.notices("c1"), Urgency.SIGNAL).put(encode(notice))
+    tell(lab, lab.network.node(), (2, "composed"), (3, "waking"), (4, "running"), (5, "lost"))
     lab.let_pass(3.0)
-    assert [event["time"] for event in tasks.events] == [4.0, 5.0]
+    assert [event["act"] for event in tasks.events] == ["running", "lost"]
 
 
 def test_a_configurator_that_comes_back_at_once_was_never_gone(lab: Lab) -> None:
