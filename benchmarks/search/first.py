@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import accumulate
+from typing import Any
 
 from benchmarks.search.engines import PROGRAM, clauses_of, cp_model_of, facts
 from selfconf.model.term import IRI
@@ -83,12 +84,11 @@ def cp_sat(problem: Problem) -> First:
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     # What is weighed as one: a role with one player, or some candidates of one with several.
-    parts = [
-        (role, literals[start : start + size], asked == 1)
-        for role, (literals, asked) in enumerate(zip(plays, (role.minimum for role in problem.roles), strict=True))
-        for size in ([len(literals) or 1] if asked == 1 else [BITS])
-        for start in range(0, len(literals), size)
-    ]
+    parts: list[tuple[int, list[Any], bool]] = []
+    for number, (role, literals) in enumerate(zip(problem.roles, plays, strict=True)):
+        size = max(1, len(literals)) if role.minimum == 1 else BITS
+        starts = range(0, len(literals), size)
+        parts += [(number, literals[start : start + size], role.minimum == 1) for start in starts]
     found: list[list[bool]] = [[] for _ in plays]
     settled = 0
     while settled < len(parts):
@@ -108,9 +108,9 @@ def cp_sat(problem: Problem) -> First:
         model.minimize(cp_model.LinearExpr.sum(terms))
         if solver.solve(model) != cp_model.OPTIMAL:
             return False
-        for role, literals, _ in weighed:
+        for number, literals, _ in weighed:
             values = [solver.boolean_value(literal) for literal in literals]
-            found[role] += values
+            found[number] += values
             for literal, holds in zip(literals, values, strict=True):
                 model.add(literal == holds)
         settled += len(weighed)

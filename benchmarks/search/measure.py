@@ -25,8 +25,10 @@ from selfconf.search.problem import Problem
 Engine = Callable[[Problem], First]
 
 WARMING = (
-    *(f.navigation(3, 7001), f.navigation(3, 7001, solvable=False)),
-    *(f.satisfiability(50, 4.26, 7001), cover(60, 40, 9, 0.2, 500)),
+    f.navigation(3, 7001),
+    f.navigation(3, 7001, solvable=False),
+    f.satisfiability(50, 4.26, 7001),
+    cover(60, 40, 9, 0.2, 500),
 )
 """The last two for the engines that are not hopeless on them; on the very last one selfconf has all its solvers."""
 QUICK = 0.3
