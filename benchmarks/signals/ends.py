@@ -139,9 +139,7 @@ def bare_end(role: str, endpoint: str) -> None:
     session = open_session("client", connect=[endpoint])
     if role == "source":
         publishers = {
-            form: session.declare_publisher(
-                f"{KEY}/{form}", congestion_control=zenoh.CongestionControl.DROP, express=True
-            )
+            form: session.declare_publisher(f"{KEY}/{form}", congestion_control=zenoh.CongestionControl.DROP)
             for form in OUTPUTS
         }
 

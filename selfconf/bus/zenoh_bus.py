@@ -47,7 +47,7 @@ _QUALITY: dict[Urgency, dict[str, Any]] = {
     Urgency.SIGNAL: {
         "congestion_control": zenoh.CongestionControl.DROP,
         "priority": zenoh.Priority.DATA,
-        "express": True,
+        "express": False,
     },
     Urgency.BULK: {
         "congestion_control": zenoh.CongestionControl.DROP,
@@ -352,14 +352,14 @@ class ZenohBus(Loop):
         def listen(replies: Sequence[zenoh.Reply]) -> None:
             nonlocal size
             for reply in replies:
-                said = reply.ok or reply.err
-                size += 0 if said is None else len(said.payload)
-                if size > LARGEST_REPLIES:
-                    continue
                 if reply.ok is not None:
-                    samples.append(_sample(reply.ok))
+                    size += len(reply.ok.payload) + len(reply.ok.attachment or b"")
+                    if size <= LARGEST_REPLIES:
+                        samples.append(_sample(reply.ok))
                 elif reply.err is not None:
-                    errors.append(bytes(reply.err.payload).decode(errors="replace"))
+                    size += len(reply.err.payload)
+                    if size <= LARGEST_REPLIES:
+                        errors.append(bytes(reply.err.payload).decode(errors="replace"))
 
         def end() -> None:
             late = "Timeout" in errors or size > LARGEST_REPLIES
