@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from selfconf.api.answer import Method
+from selfconf.api.arguments import option
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator.state import Policy
 from selfconf.deployment import RunRequest
 from selfconf.discovery import Beliefs
+from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome
@@ -79,12 +81,20 @@ def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Compos
             options.get("strategy") or "first",
             options.get("reasoning") or "syntactic",
             paths,
-            options.get("steps"),
-            options.get("seconds"),
+            _number(options, "steps", int),
+            _number(options, "seconds", int, float),
         )
         document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI(record.wanted))
         task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
         return task, method, method.composer(task)
+
+
+def _number(options: Mapping[str, Any], name: str, *kinds: type[int | float]) -> Any:
+    """A number, or None, of the options that a record has from the network. Raises PeerError for anything else."""
+    value = options.get(name)
+    if value is not None and (isinstance(value, bool) or not isinstance(value, kinds) or not value >= 0):
+        raise PeerError(f"the option {name!r} is no number of that kind: {value!r}")
+    return value
 
 
 def request_of(record: TaskRecord, aside: Aside, believed: Beliefs | None = None) -> RunRequest:
@@ -102,10 +112,10 @@ def request_of(record: TaskRecord, aside: Aside, believed: Beliefs | None = None
         standby=composer.standby,
         not_judged=composer.not_judged,
         passed_over=composer.passed_over,
-        policy=Policy(options.get("policy") or "repair"),
+        policy=option(Policy, "policy", options.get("policy") or "repair"),
         patient=True,
         priority=record.priority,
-        upgrade=options.get("upgrade"),
+        upgrade=_number(options, "upgrade", int, float),
         believed=believed,
         aside=aside,
         record=record,

@@ -87,9 +87,12 @@ class Keeper:
         self._take(sample)
 
     def _others_answered(self, replies: Replies) -> None:
+        self._other_answered(replies)
+        self._look()
+
+    def _other_answered(self, replies: Replies) -> None:
         for sample in replies.samples:
             self._take(sample)
-        self._look()
 
     def _take(self, sample: Sample) -> None:
         try:
@@ -99,18 +102,26 @@ class Keeper:
 
     def _learn(self, record: TaskRecord) -> None:
         if self.folder.learn(record):
-            if record.task not in self._requests and not record.ended:
-                self._requests[record.task] = self._read(record)
+            self._read(record)
             self.bus.wake_up(self._assign)
 
-    def _read(self, record: TaskRecord) -> RunRequest | None:
+    def _read(self, record: TaskRecord) -> None:
         """Read a task in advance, so that going on with it takes no time; one that cannot be read is never run."""
+        if record.ended:
+            self._requests.pop(record.task, None)
+            return
+        if record.task in self._requests:
+            return
+        self._requests[record.task] = None
         try:
             request = self._request_for(record)
         except SelfconfError as error:
             log.error("the task %s cannot be run: %s", record.task, error)
-            return None
-        return replace(request, report=lambda event: self._report(record.task, event))
+        except OSError as error:
+            log.warning("the task %s cannot be read now: %s", record.task, error)
+            del self._requests[record.task]
+        else:
+            self._requests[record.task] = replace(request, report=lambda event: self._report(record.task, event))
 
     # Who runs what.
 
@@ -120,6 +131,8 @@ class Keeper:
             return
         if alive:
             lives.setdefault(site, set()).add(key)
+            # When this site began it may have been cut off from that one, and nobody else will say what that one keeps.
+            self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._other_answered)
         elif site in lives:
             lives[site].discard(key)
             if not lives[site]:
@@ -130,8 +143,7 @@ class Keeper:
         """Look from time to time, as what was to be handed over may be free by now."""
         self.bus.later(KEEPER_LOOK, self._look)
         for record in list(self.folder.records.values()):
-            if record.task not in self._requests and not record.ended:
-                self._requests[record.task] = self._read(record)
+            self._read(record)
         self._assign()
 
     def _assign(self) -> None:

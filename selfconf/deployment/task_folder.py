@@ -38,7 +38,7 @@ class TaskFolder:
         is kept until this site ends, for other sites may have it on their disks, and count on this one to run it.
         """
         known = self.records.get(record.task)
-        if known is not None and known.revision >= record.revision:
+        if not record.supersedes(known):
             return False
         if known is None and len(self.records) >= MOST_RECORDS:
             self._forget_ended()

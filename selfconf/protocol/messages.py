@@ -373,7 +373,7 @@ class TaskRecord:
     task: str
     """Its identity."""
     revision: int
-    """Of two records of one task the one with the higher revision counts."""
+    """Of two records of one task that has not ended the one with the higher revision counts."""
     ended: bool = False
     """Whether it is to run no more; kept so that a site that was away hears of it."""
     priority: int = 0
@@ -393,6 +393,10 @@ class TaskRecord:
     """The newest epoch in which it was deployed; zero: never yet."""
     configuration: Mapping[str, Any] = field(default_factory=dict)
     """What is deployed, as `selfconf configure --format json` prints it; empty if nothing is."""
+
+    def supersedes(self, known: TaskRecord | None) -> bool:
+        """Whether this record counts, and not the one that is known of the same task: the end of a task is final."""
+        return known is None or (self.ended, self.revision) > (known.ended, known.revision)
 
 
 Message = (

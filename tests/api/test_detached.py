@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,7 +12,7 @@ import selfconf as sc
 from selfconf.api.answer import Method
 from selfconf.api.detached import request_of, task_record
 from selfconf.configurator.state import Policy
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
@@ -40,3 +42,22 @@ def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> Non
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")
     with pytest.raises(AuthorError, match="cannot name a task"):
         task_record(task, Method.of(), Policy.REPAIR, "no/name")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"policy": "x"},
+        {"policy": ["repair"]},
+        {"strategy": 3},
+        {"steps": 2.5},
+        {"steps": True},
+        {"seconds": "soon"},
+        {"seconds": -1},
+        {"upgrade": {}},
+    ],
+    ids=str,
+)
+def test_options_that_are_none_are_refused_by_the_reader_and_break_nothing_later(options: dict[str, Any]) -> None:
+    with pytest.raises(SelfconfError):
+        request_of(replace(record(), options=options), lambda work: work())

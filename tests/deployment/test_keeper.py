@@ -149,3 +149,37 @@ def test_a_task_that_was_ended_comes_to_rest_and_does_not_come_back(keepers: Kee
     keepers.begin("a")
     keepers.lab.let_pass(5.0)
     assert (keepers.running(), keepers.lab.active()) == ([], set())
+
+
+def test_a_site_that_was_cut_off_when_it_began_hears_later_of_the_task_that_it_is_to_run(keepers: Keepers) -> None:
+    first = keeper_of(RECORD.task, "abc")
+    keepers.end(first)
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.begin(first)
+    late = keepers.lab.network.nodes[-1]
+    others = keepers.lab.network.nodes[:-1]
+    for other in others:
+        keepers.lab.network.cut(late, other)
+    keepers.lab.let_pass(5.0)
+    assert not keepers.keepers[first].folder.records
+    for other in others:
+        keepers.lab.network.reconnect(late, other)
+    assert keepers.lab.until(lambda: keepers.running() == [first])
+    assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"tracker"})
+
+
+def test_a_task_that_cannot_be_read_keeps_no_site_from_its_other_tasks(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def request_or_not(record: TaskRecord) -> RunRequest:
+        if record.task != RECORD.task:
+            raise OSError("no space left on the device")
+        return request_for(record)
+
+    for keeper in keepers.keepers.values():
+        monkeypatch.setattr(keeper, "_request_for", request_or_not)
+    keepers.hand_over(TaskRecord("another~1", 1))
+    keepers.lab.let_pass(3.0)
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))

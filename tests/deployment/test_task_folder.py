@@ -117,3 +117,11 @@ def test_a_task_that_has_ended_does_not_come_back_though_there_was_no_room_to_sa
     request.getfixturevalue("full")
     assert folder.learn(SECOND)
     assert TaskFolder(tmp_path).records == {}
+
+
+def test_the_end_of_a_task_is_final_whatever_was_written_of_it_meanwhile(tmp_path: Path) -> None:
+    folder = TaskFolder(tmp_path)
+    folder.learn(TaskRecord("navigate~1", revision=7))
+    assert folder.learn(SECOND)
+    assert not folder.learn(TaskRecord("navigate~1", revision=9))
+    assert TaskFolder(tmp_path).records == {"navigate~1": SECOND}
