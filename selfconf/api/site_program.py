@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import logging
 import os
 import platform
 import re
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from selfconf.api.composites import Composites
     from selfconf.api.secured_site import SecuredSite
     from selfconf.deployment import RunRequest
+
+log = logging.getLogger(__name__)
 
 Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
 """Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
@@ -133,12 +136,20 @@ def serve(
     try:
         with beside(ecology, lambda: client(joining.endpoints, shared_memory=True, credentials=shown)):
             while not ended():
-                work.next(WORK_CHECK)
+                _do_next(work)
     finally:
         joining.leave()
         bus.wake_up(composites.close)
         bus.wake_up(keeper.close)
         site.close()
+
+
+def _do_next(work: WorkQueue) -> None:
+    """Do what waits: the outermost loop of a site, whose components do not end with what one task has asked for."""
+    try:
+        work.next(WORK_CHECK)
+    except Exception:
+        log.exception("a work broke; going on")
 
 
 def _check_readable(paths: Sequence[Path], ontologies: Sequence[Path]) -> None:

@@ -44,9 +44,8 @@ class WorkQueue:
             if not (self._works or self._events or self._woken) and seconds > 0:
                 self._more.wait(seconds)
             self._woken = False
-            works = list(self._works)
-            self._works.clear()
-        for work in works:
-            work()
+            waiting = len(self._works)
+        for _ in range(waiting):
+            self._works.popleft()()  # one at a time: where one breaks, the others wait for the next call
         with self._more:
             return self._events.popleft() if self._events else None

@@ -327,7 +327,7 @@ class Calls:
             self._left_behind[component] = left
 
     def _release_again(self, effect: ReleaseFrom) -> None:
-        if self._state().owed.get(effect.component) == effect.epoch:
+        if not self._state().ended and self._state().owed.get(effect.component) == effect.epoch:
             self.release(effect)
 
     def _is_gone(self, component: IRI) -> None:

@@ -220,7 +220,9 @@ class Liveness:
         self._step(Reconnected())
 
     def audit(self) -> None:
-        """Ask some of the components that run, in turns, whether they act for this task; again and again."""
+        """Ask some of the components that run, in turns, whether they act for this task; again, until it has ended."""
+        if self._state().ended:
+            return
         self.bus.later(AUDIT, self.audit)
         held = [component for component, one in self._state().held.items() if one.confirmed]
         if not self._runs_undisturbed(self._state().epoch) or not held:

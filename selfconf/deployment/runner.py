@@ -249,8 +249,9 @@ class TaskRunner:
         """Notice that this program was suspended: whatever has not been answered meanwhile says nothing."""
         now = self.bus.now()
         late, self._last_pulse = now - self._last_pulse - PULSE, now
-        if self.state.phase is not Phase.STOPPED:
-            self.bus.later(PULSE, self._pulse)
+        if self.state.ended:
+            return
+        self.bus.later(PULSE, self._pulse)
         if late > SUSPENDED:
             log.warning("this program was suspended for %.1f s; looking at what has become of the ecology", late)
             self._liveness.suspended()
@@ -417,6 +418,8 @@ class TaskRunner:
         self.ecology.discover(discovered)
 
     def _discovered(self, discovery: Discovery, holders: Mapping[IRI, Holder]) -> None:
+        if self.state.ended:
+            return
         self.ecology.discovery = discovery
         self._liveness.discovered(discovery)
         for complaint in discovery.complaints:
@@ -446,6 +449,11 @@ class TaskRunner:
             except SelfconfError as error:
                 trouble = error
                 self.bus.wake_up(lambda: self._give_up(trouble))
+                return
+            except Exception as error:  # nothing may wait for ever for a search that broke
+                log.exception("the search broke")
+                broken = ProgrammerError(f"the search broke: {type(error).__name__}: {error}")
+                self.bus.wake_up(lambda: self._give_up(broken))
                 return
             seconds, not_judged = time.monotonic() - began, dict(self.request.not_judged())
             self.bus.wake_up(lambda: self._composed(effect, outcome, seconds, not_judged))

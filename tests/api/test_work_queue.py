@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from selfconf.api.work_queue import WorkQueue
 from selfconf.model.run_event import EcologyAsked
 
@@ -20,3 +22,13 @@ def test_a_wake_up_ends_the_wait() -> None:
     queue = WorkQueue()
     queue.wake_up()
     assert queue.next(60.0) is None
+
+
+def test_what_breaks_takes_nothing_with_it_that_waits() -> None:
+    queue, done = WorkQueue(), list[str]()
+    queue.work(lambda: {}["nothing"])
+    queue.work(lambda: done.append("searched"))
+    with pytest.raises(KeyError):
+        queue.next(0.0)
+    queue.next(0.0)
+    assert done == ["searched"]

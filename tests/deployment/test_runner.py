@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.liveness import AUDIT
 from selfconf.deployment.runner import LONGEST_PAUSE, TRY_AGAIN
 from selfconf.errors import TemplateError
-from selfconf.model.refusal import TooFewEligible
+from selfconf.model.refusal import Outcome, TooFewEligible
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Verdict
 from selfconf.rdf import conformance as shacl
@@ -432,3 +433,24 @@ def test_what_it_does_is_reported_in_the_order_of_the_four_acts(lab: Lab) -> Non
     connected = {(str(a.source), str(a.output)) for a in lab.acts("connecting")}
     assert (str(iri("person-tracker")), "pose") in connected
     assert all(event_body(event) for event in lab.events)
+
+
+def test_a_search_that_breaks_ends_the_task_which_says_so(lab: Lab) -> None:
+    def broken(*_: object) -> Outcome:
+        raise TypeError("soon is no number")
+
+    agent = lab.agent(patient=True)
+    agent.request = replace(agent.request, compose=broken)
+    assert lab.until(lambda: bool(lab.ended))
+    assert "soon is no number" in str(agent.trouble)
+    assert lab.active() == set()
+
+
+def test_a_configurator_that_has_ended_asks_nobody_any_more(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    agent = lab.agent(bound=(("robot", ":Nobody"), ("goal", "(AT BEDROOM)")))
+    assert lab.until(lambda: bool(lab.ended))
+    lab.let_pass(10.0)
+    timers: list[float] = []
+    monkeypatch.setattr(agent.bus, "later", lambda seconds, action: timers.append(seconds))
+    lab.let_pass(10.0)
+    assert timers == []
