@@ -173,6 +173,7 @@ def end_deployment(state: State) -> Reaction:
         phase=Phase.RUNNING,
         fallback=None,
         queued=frozenset(),
+        repeats={},
         held={component: held for component, held in state.held.items() if component in wanted},
         owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},
         watched=state.watched & wanted,

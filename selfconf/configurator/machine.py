@@ -77,6 +77,10 @@ PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
 """The causes for which a component is started again: a site ends a process that hangs."""
 DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
 """The phases of act 4."""
+MOST_REPEATS = 10
+"""How often one component may make a deployment begin anew, by what it says of its epoch or of who holds it."""
+LATEST_EPOCH = 1 << 62
+"""An epoch that no clock comes to: a component that says it has obeyed such a one is not believed."""
 
 
 # complexity: one case for each event; what it does is a function of its own
@@ -127,7 +131,7 @@ def _adopted(state: State, event: Adopted) -> Reaction:
 
 
 def _discover(state: State) -> Reaction:
-    return replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False), (Discover(),)
+    return replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False, repeats={}), (Discover(),)
 
 
 def _discovered(state: State, event: Discovered) -> Reaction:
@@ -199,10 +203,12 @@ def _answered(state: State, event: Answered) -> Reaction:
 
 def _declined(state: State, event: Answered) -> Reaction:
     """A component has not done what it was asked: ask once more where that may help, else do without it."""
-    if event.verdict is Verdict.STALE and event.newest > event.epoch:
-        return deploying.deploy(replace(state, epoch=max(state.epoch, event.newest)))
-    if event.verdict is Verdict.NOT_HELD:
-        return _reserve_anew(state, event.component)
+    repeats = state.repeats.get(event.component, 0)
+    counted = replace(state, repeats={**state.repeats, event.component: repeats + 1})
+    if event.verdict is Verdict.STALE and event.epoch < event.newest < LATEST_EPOCH and repeats < MOST_REPEATS:
+        return deploying.deploy(replace(counted, epoch=max(state.epoch, event.newest)))
+    if event.verdict is Verdict.NOT_HELD and repeats < MOST_REPEATS:
+        return _reserve_anew(counted, event.component)
     if event.verdict is Verdict.BUSY:
         return _busy(replace(state, queued=state.queued | {event.component}), event)
     if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later

@@ -107,6 +107,8 @@ class State:
     afterwards: Phase = Phase.STOPPED
     """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""
     refusal: Refusal | Undecided | None = None
+    repeats: Mapping[IRI, int] = field(default_factory=dict)
+    """How often each component has made the deployment begin anew since the ecology was last asked."""
     rewired: frozenset[IRI] = frozenset()
     """The components whose outputs are issued by others than before, since the deployment that goes on began."""
     news: bool = False

@@ -32,6 +32,7 @@ from selfconf.configurator.events import (
     Reconnected,
     Stopped,
 )
+from selfconf.configurator.machine import MOST_REPEATS
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -537,3 +538,26 @@ def test_nothing_is_done_any_more_about_a_task_that_has_ended(state: Phase) -> N
     ):
         assert history.hear(event) == []
     assert kinds(history.hear(Freed(TRACKER))) == [Decline]
+
+
+@pytest.mark.parametrize("verdict", [Verdict.STALE, Verdict.NOT_HELD])
+def test_a_component_that_has_everything_begin_anew_without_end_is_given_up(verdict: Verdict) -> None:
+    history = History(TASK).reserved()
+    for _ in range(MOST_REPEATS + 1):
+        assert history.state.phase is Phase.DEPLOYING
+        epoch = history.state.epoch
+        history.hear(Answered(TRACKER, Call.APPLY, epoch, verdict, "1", newest=epoch + 1))
+        if history.state.phase is not Phase.COMPOSING:
+            history.all_answer(Call.WAKE, Call.RESERVE)
+    assert history.state.phase is Phase.COMPOSING
+    assert history.state.lost[TRACKER].cause is Cause.REFUSED
+    history.composed(navigation(ODOMETRY))
+    assert kinds(history.all_answer())[0] is Running
+
+
+def test_an_epoch_that_no_clock_comes_to_is_not_taken_over() -> None:
+    history = History(TASK).reserved()
+    epoch = history.state.epoch
+    history.hear(Answered(TRACKER, Call.APPLY, epoch, Verdict.STALE, "1", newest=(1 << 63) - 1))
+    assert history.state.epoch == epoch + 1
+    assert TRACKER in history.state.lost
