@@ -52,7 +52,7 @@ class ComponentCode:
         """Whether the code was told to stop, and is not at rest yet."""
         self.turn = 0
         """Counts starts and stops: what belongs to an earlier one is not run any more."""
-        self._acting_turn = self._started_turn = -1
+        self._wanted_turn = self._acting_turn = self._started_turn = -1
         self._rests = 0
         self._on = self._resting = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
@@ -93,7 +93,7 @@ class ComponentCode:
     def start(self, values: Mapping[str, Term], done: Done) -> None:
         """Set the parameters, then start."""
         self.turn += 1
-        turn = self.turn
+        turn = self._wanted_turn = self.turn
 
         def start() -> None:
             self._resting = False
@@ -129,8 +129,11 @@ class ComponentCode:
         self._thread.call(stop)
 
     def unfed(self, port: str) -> None:
-        """Tell the component that an input has lost its last source; an actuator rests if that lasts."""
-        if self.active and self._blindness.begin(port):
+        """Tell the component that an input has lost its last source; an actuator rests if that lasts.
+
+        It may have lost it while its code is about to start.
+        """
+        if self._wanted_turn == self.turn and self._blindness.begin(port):
             self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
 
     def connection_changed(self, operation: str, connected: bool) -> None:

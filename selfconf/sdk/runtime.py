@@ -263,6 +263,9 @@ class ComponentRuntime:
             self._when_at_rest(lambda: self._obey(message, reply))
 
     def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
+        if self._closed:  # while the call waited for the code to be at rest
+            reply(self._verdict(Verdict.REFUSED, message.task, "it is leaving the ecology"))
+            return
         after, verdict, step = table.obey(
             self.activation,
             message,
@@ -362,9 +365,10 @@ class ComponentRuntime:
     def _busy(self, task: str) -> CallAnswer:
         """Who stands in the way: a task that holds the component, or one for which it is kept."""
         first = self.activation.first
-        if first is None and not self.activation.kept_for:
+        kept = (one for one in self.activation.waiting if one.task == self.activation.kept_for)
+        claim = first.claim if first is not None else next(kept, None)
+        if claim is None:
             return self._verdict(Verdict.BUSY, task, "it is free, and tells so")
-        claim = first.claim if first is not None else self.activation.waiting[0]
         who = f"the task {task_name(claim.task)} (priority {claim.priority}, configurator {owner_of(claim.supervisor)})"
         return self._verdict(Verdict.BUSY, task, f"{who} holds it")
 
@@ -375,7 +379,7 @@ class ComponentRuntime:
         outranked = table.outranked(self.activation)
         if not outranked:
             return
-        claim = self.activation.waiting[0]
+        claim = next(one for one in self.activation.waiting if one.task not in self.activation.lapsed)
         detail = f"the task {task_name(claim.task)} of priority {claim.priority} asks for it"
         for task in outranked:
             self._put_fail(Cause.YIELD, detail, task)

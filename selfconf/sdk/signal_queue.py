@@ -34,10 +34,10 @@ class SignalQueue:
         """Let a signal wait, and drive out the oldest if these are too many; whether none was."""
         with self._lock:
             self._waiting.append(sample)
-            self._bytes += len(sample.payload)
+            self._bytes += _size(sample)
             dropped = 0
             while len(self._waiting) > self._depth or self._is_too_big():
-                self._bytes -= len(self._waiting.popleft().payload)
+                self._bytes -= _size(self._waiting.popleft())
                 dropped += 1
             self.dropped += dropped
             return not dropped
@@ -48,14 +48,18 @@ class SignalQueue:
             if not self._waiting:
                 return None
             sample = self._waiting.popleft()
-            self._bytes -= len(sample.payload)
+            self._bytes -= _size(sample)
             return sample
 
     def keep(self, newest: int) -> None:
         """Forget all but so many of the newest signals; these do not count as dropped."""
         with self._lock:
             while len(self._waiting) > newest:
-                self._bytes -= len(self._waiting.popleft().payload)
+                self._bytes -= _size(self._waiting.popleft())
 
     def _is_too_big(self) -> bool:
         return self._bytes > self._most_bytes and len(self._waiting) > 1
+
+
+def _size(sample: Sample) -> int:
+    return len(sample.payload) + len(sample.attachment)

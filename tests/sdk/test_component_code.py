@@ -22,7 +22,20 @@ from selfconf.sdk.runtime import YIELDING, ComponentRuntime
 from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.living import PATIENCE, LivingStage, until
-from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, THEM, TRACKER, US, apply, follow, release, reserve
+from tests.sdk.stage import (
+    CAP,
+    CAP_PROFILE,
+    DRIVE,
+    DRIVE_PROFILE,
+    KEYS,
+    THEM,
+    TRACKER,
+    US,
+    apply,
+    follow,
+    release,
+    reserve,
+)
 
 
 class Split:
@@ -335,3 +348,28 @@ def test_fail_may_be_raised_from_any_thread(living: LivingStage) -> None:
     assert not lamp.active
     assert until(lambda: living.fails)
     assert living.fails[0][1].detail == "told to"
+
+
+def test_an_actuator_that_loses_its_input_while_it_is_starting_rests_as_any_other() -> None:
+    network, code = Network(), CodeThread(inline=False)
+    caller, source = network.node(), network.node()
+    caller.announce(US)
+    leave = source.announce(KEYS.life(TRACKER, "1"))
+    recorder = Recorder()
+    runtime = ComponentRuntime(network.node(), KEYS, DRIVE_PROFILE, recorder, "life-1", code)
+
+    def call(name: str, message: Reserve | Apply) -> None:
+        caller.ask(KEYS.call(DRIVE, name), encode(message), 100.0, lambda replies: None)
+        network.run(lambda: False, 0.1)
+        if name == "reserve":
+            code.poll()
+
+    call("reserve", reserve(1, US))
+    call("apply", apply(1, US, {"position": (Wire(TRACKER, "pose"),)}))
+    leave()  # the code has not begun yet
+    network.run(lambda: False, 0.5)
+    code.poll()
+    assert runtime.active
+    network.run(lambda: False, 2.0)
+    code.poll()
+    assert recorder.said[-1] == ("stopped",)

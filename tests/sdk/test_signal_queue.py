@@ -56,3 +56,10 @@ def test_what_has_been_read_or_forgotten_makes_room_and_is_not_counted() -> None
     assert queue.append(Sample("k", bytes(half)))
     queue.keep(0)
     assert (queue.dropped, len(queue)) == (0, 0)
+
+
+def test_what_is_said_of_a_signal_takes_room_as_well() -> None:
+    queue = SignalQueue(None)
+    for _ in range(3):
+        queue.append(Sample("k", b"", bytes(EVENT_BYTES // 2)))
+    assert (queue.dropped, len(queue)) == (1, 2)
