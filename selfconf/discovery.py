@@ -106,8 +106,8 @@ class _SiteAnswer:
     revision: int
     total: int
     pages: dict[int, tuple[Page, Sample]] = field(default_factory=dict)
-    unchanged: bool = False
-    """Whether the site has said that what is known of it still holds."""
+    known: KnownSite | None = None
+    """What is known of the site already, where it has said that this still holds."""
     size: int = 0
     """How many bytes the pages have."""
     excess: int = 0
@@ -115,14 +115,14 @@ class _SiteAnswer:
 
     @property
     def complete(self) -> bool:
-        return self.unchanged or len(self.pages) == self.total or self.excess > 0
+        return self.known is not None or len(self.pages) == self.total or self.excess > 0
 
     def take(self, page: Page, sample: Sample) -> IRI | None:
         """Take a page, and return the component of that page, which differs where two pages have one number."""
         before = self.pages.get(page.index)
         if before is not None:
             return before[0].component
-        self.size += len(sample.payload)
+        self.size += len(sample.payload) + len(sample.attachment)
         if self.size > LARGEST_SITE or len(self.pages) >= MOST_ADVERTISED:
             self.excess += 1
         else:
@@ -378,7 +378,8 @@ class _Inquiry:
         if page.insecure:
             self._insecure.add(name)
         if page.component is None:
-            answer.unchanged = known is not None and (known.revision, known.total) == (page.revision, page.total)
+            same = known is not None and (known.revision, known.total) == (page.revision, page.total)
+            answer.known = known if same else None
             return
         of = answer.take(page, sample)
         if of != page.component:
@@ -451,8 +452,8 @@ class _Inquiry:
 
     def _read(self, site: SiteLife, answer: _SiteAnswer) -> KnownSite:
         """What a site has answered, now or before."""
-        if answer.unchanged:
-            return self.ecology.known[site]
+        if answer.known is not None:
+            return answer.known
         complaints, self._complaints = self._complaints, []
         found = []
         for _, (page, sample) in sorted(answer.pages.items()):

@@ -244,6 +244,16 @@ def _object(value: object) -> dict[str, Any]:
     return value
 
 
+def _sayable(value: object) -> dict[str, Any]:
+    """An object that is handed on as it is: every number in it is finite, and every text can be written."""
+    body = _object(value)
+    try:
+        json.dumps(body, ensure_ascii=False, allow_nan=False).encode()
+    except (ValueError, RecursionError):
+        raise PeerError("finite numbers and texts of whole characters were expected") from None
+    return body
+
+
 def _list(value: object) -> list[Any]:
     if not isinstance(value, list):
         raise PeerError("a list was expected")
@@ -376,7 +386,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (RefusedAttempt, "attempt"): _remark,
     (RefusedAttempt, "key"): _remark,
     (RefusedAttempt, "number"): _whole,
-    (RefusedAttempt, "latest"): _number,
+    (RefusedAttempt, "latest"): _moment,
     (Known, "revisions"): _revisions,
     (LogQuestion, "component"): _label,
     (LogQuestion, "lines"): _whole,
@@ -385,20 +395,20 @@ _READERS: dict[tuple[type, str], Any] = {
     (LogPart, "more"): _truth,
     (Notice, "configurator"): _label,
     (Notice, "sequence"): _whole,
-    (Notice, "event"): _object,
+    (Notice, "event"): _sayable,
     (Stamp, "sequence"): _whole,
     (Stamp, "time"): _number,
     (Stamp, "encoding"): _encoding,
     (Status, "configurator"): _label,
     (Status, "phase"): _remark,
     (Status, "template"): _iri,
-    (Status, "since"): _number,
+    (Status, "since"): _moment,
     (Status, "host"): _remark,
     (Status, "process"): _whole,
     (Status, "components"): _iris,
-    (Status, "lost"): _object,
+    (Status, "lost"): _sayable,
     (Status, "owed"): _iris,
-    (Status, "dropped"): _object,
+    (Status, "dropped"): _sayable,
     (TaskRecord, "revision"): _whole,
     (TaskRecord, "ended"): _truth,
     (TaskRecord, "document"): _text,
@@ -406,8 +416,8 @@ _READERS: dict[tuple[type, str], Any] = {
     (TaskRecord, "wanted"): _label,
     (TaskRecord, "bindings"): _values,
     (TaskRecord, "ontologies"): _texts,
-    (TaskRecord, "options"): _object,
-    (TaskRecord, "configuration"): _object,
+    (TaskRecord, "options"): _sayable,
+    (TaskRecord, "configuration"): _sayable,
 }
 
 _FIELDS: dict[type, tuple[tuple[str, Any, bool], ...]] = {

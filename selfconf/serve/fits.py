@@ -60,7 +60,10 @@ class Fits:
         async with self._one:
             judged, verdict = self._verdicts.pop(asked, (None, None))
             if judged is not advertisement:  # it is another object where the site tells another one
-                verdict = await _judged(asked[0], turtle.ntriples(advertisement.triples))
+                try:
+                    verdict = await _judged(asked[0], turtle.ntriples(advertisement.triples))
+                except asyncio.TimeoutError:  # not kept: the machine may have been busy
+                    return {"detail": f"what its roles ask for was not judged in {JUDGING:g} s"}
             self._verdicts[asked] = advertisement, verdict
             while len(self._verdicts) > VERDICTS_KEPT:
                 self._verdicts.popitem(last=False)
@@ -71,7 +74,5 @@ async def _judged(record: bytes, advertisement: bytes) -> Any:
     question = {"record": record.decode(), "advertisement": advertisement.decode()}
     try:
         return await judged_apart("selfconf.api.role_fits", question, JUDGING)
-    except asyncio.TimeoutError:
-        return {"detail": f"what its roles ask for was not judged in {JUDGING:g} s"}
     except ValueError:
         return {"detail": "what its roles ask for cannot be judged"}

@@ -5,8 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
+from selfconf.protocol.messages import Cause
+
 PROMETHEUS = "text/plain; version=0.0.4; charset=utf-8"
 _ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
+
+
+CAUSES = frozenset(cause.value for cause in Cause)
+"""The causes of a loss that have a count of their own: what a peer makes up has none."""
 
 
 class Metrics:
@@ -29,7 +35,7 @@ class Metrics:
         """Count an event of a run."""
         self._acts[act] += 1
         if act == "lost":
-            self._losses[cause] += 1
+            self._losses[cause if cause in CAUSES else "other"] += 1
 
     def text(self, gauges: Mapping[str, Iterable[tuple[Mapping[str, str], float]]]) -> str:
         """All metrics; `gauges` are those that the server reads off the ecology, each with its labels."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import signal
 import socket
@@ -33,6 +34,8 @@ from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 from selfconf.serve.watcher import EcologyWatcher
 from selfconf.termination import PARENT_CHECK, orphaned, started_by_another
+
+log = logging.getLogger(__name__)
 
 SETTLED = 15.0
 """Seconds after which every configurator that lives has said what it has deployed."""
@@ -145,7 +148,10 @@ async def _serve(
     app = application(board, metrics, sparql, onlookers, fits, mends, lambda: bool(bus.link), hosts, options.origins)
 
     def take(change: EcologyChange) -> None:
-        record.note(change)
+        try:
+            record.note(change)
+        except Exception:  # the disk may be full: the page shows all the same what the history lacks
+            log.exception("a change is missing in the history")
         loop.call_soon_threadsafe(board.apply, change)  # last: whoever hears of it finds it by SPARQL
 
     def tell(change: EcologyChange) -> None:

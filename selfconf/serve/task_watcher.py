@@ -22,6 +22,9 @@ from selfconf.serve.change import Body
 from selfconf.serve.watched_task import WatchedTask
 
 log = logging.getLogger(__name__)
+
+MOST_KEPT_TASKS = 1000
+"""How many tasks that live in the sites are shown at most, those that were heard of last: as many as a site keeps."""
 _EPOCH = re.compile("[0-9]{1,18}")
 
 LOOK_ANEW = 10.0
@@ -262,9 +265,11 @@ class TaskWatcher:
                 record = decode(sample.payload, TaskRecord)
             except PeerError:
                 continue
-            known = self._kept.get(record.task)
-            if known is None or known.revision < record.revision:
+            if record.supersedes(self._kept.get(record.task)):
+                self._kept.pop(record.task, None)  # the newest record stands last
                 self._kept[record.task] = record
+        while len(self._kept) > MOST_KEPT_TASKS:
+            del self._kept[next(iter(self._kept))]
         self._changed()
 
 

@@ -15,7 +15,7 @@ from selfconf.model.wording import one_line
 from selfconf.protocol.codec import KINDS as NAMES
 from selfconf.protocol.codec import LARGEST, decode, decode_term, encode, encode_term
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Fail, Message, Release, Reserve, Stamp, StateOf, TaskRecord, Wire
+from selfconf.protocol.messages import Apply, Fail, Message, Notice, Release, Reserve, Stamp, StateOf, TaskRecord, Wire
 from tests.protocol import strategies
 
 KINDS: tuple[type[Any], ...] = get_args(Message)
@@ -202,3 +202,12 @@ def test_whole_numbers_have_64_bits(number: int) -> None:
         assert decode(json.dumps(body).encode(), kind)
         with pytest.raises(PeerError, match="64 bits"):
             decode(json.dumps({**body, name: number}).encode(), kind)
+
+
+@pytest.mark.parametrize("value", ['{"message": "\\ud800"}', '{"\\ud800": 1}', '{"cost": [NaN]}', '{"cost": Infinity}'])
+def test_what_is_handed_on_as_it_is_can_be_written_again(value: str) -> None:
+    whole = json.loads(encode(Notice("c1", 1, "t~1", {})))
+    assert decode(json.dumps(whole | {"event": {"message": "ok"}}).encode(), Notice)
+    payload = json.dumps(whole | {"event": "HERE"}).replace('"HERE"', value).encode()
+    with pytest.raises(PeerError, match="whole characters"):
+        decode(payload, Notice)

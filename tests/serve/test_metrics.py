@@ -13,11 +13,14 @@ def test_what_was_counted_is_told_in_lines_that_prometheus_reads() -> None:
     metrics = Metrics()
     metrics.queried("200", 0.5)
     metrics.queried("200", 0.25)
-    metrics.happened("lost", 'a "quoted"\ncause')
+    metrics.happened("lost", "crash")
+    metrics.happened("lost", "what a stranger has made up")
     metrics.happened("running", "")
-    text = metrics.text({"selfconf_up": [({}, 1.0)]})
+    text = metrics.text({"selfconf_up": [({"of": 'a "quoted"\nlabel'}, 1.0)]})
     assert all(LINE.fullmatch(line) for line in text.splitlines())
     assert 'selfconf_queries_total{status="200"} 2' in text
     assert "selfconf_query_seconds_total 0.75" in text
-    assert r'selfconf_component_losses_total{cause="a \"quoted\"\ncause"} 1' in text
+    assert 'selfconf_component_losses_total{cause="crash"} 1' in text
+    assert 'selfconf_component_losses_total{cause="other"} 1' in text
+    assert r'selfconf_up{of="a \"quoted\"\nlabel"} 1' in text
     assert "selfconf_configurations_total 1" in text
