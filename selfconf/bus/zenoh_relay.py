@@ -14,6 +14,7 @@ not connect to each other, so each tree consists of hubs and uplinks in turn: ev
 
 from __future__ import annotations
 
+import logging
 import random
 import socket
 import threading
@@ -31,6 +32,8 @@ from zenoh.handlers import Callback
 from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh_session import Security, open_session, with_port
 from selfconf.errors import NetworkError
+
+log = logging.getLogger(__name__)
 
 REOPENING = 2.0
 """Seconds for which a hub that is opened anew tries to have its port again."""
@@ -144,7 +147,19 @@ class Relay:
         uplink.note(other, up)
         self._undo_replacement()
         if uplink.regained:
-            self._undo_replacement = self._loop.later(QUIET + random.uniform(0.0, RETRY_SPREAD), self._replace)
+            self._replace_soon()
+
+    def _replace_soon(self) -> None:
+        """Replace the uplink after a while; where no new one can be opened, the old one stays until it can."""
+
+        def replace_it() -> None:
+            try:
+                self._replace()
+            except NetworkError as error:
+                log.warning("no new link to other hubs can be opened yet: %s", error)
+                self._replace_soon()
+
+        self._undo_replacement = self._loop.later(QUIET + random.uniform(0.0, RETRY_SPREAD), replace_it)
 
     def _replace(self) -> None:
         self._undo_replacement()
@@ -172,7 +187,15 @@ class Relay:
             security = replace(security, access_control=security.at_uplinks)
         reached = [self._others] if security is None else [[other] for other in self._others]
         here = self._hub.from_here
-        return [open_session("router", connect=[here, *others], security=security) for others in reached]
+        opened: list[Any] = []
+        try:
+            for others in reached:
+                opened.append(open_session("router", connect=[here, *others], security=security))
+        except NetworkError:
+            for session in opened:
+                _close(session)
+            raise
+        return opened
 
     def tell(self, uplink: _Uplink, other: str, up: bool) -> None:
         """Have the change of a link noted on the loop's thread."""
