@@ -314,8 +314,8 @@ class LivingEcology(Ecology):
         self._told(self._ask(keys.wake(site), encode(Wake(one))), f"the site {site} did not start {one.short}")
         deadline = self._bus.now() + LIVES_AGAIN
         while self._bus.now() < deadline:
-            now = next(state for state in self.component_states() if state.component == one)
-            if now.life and now.life != life:
+            now = next((state for state in self.component_states() if state.component == one), None)
+            if now is not None and now.life and now.life != life:
                 return now
             self._bus.poll(0.1)
         raise NetworkError(
@@ -578,16 +578,15 @@ class LivingEcology(Ecology):
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them.
 
-        Returns the names of the tasks. Raises
-        NetworkError if there is none of that name, if one does not answer or does not end in time, or if a component
-        does not obey.
+        Returns the names of the tasks. Raises NetworkError if there is none of that name, if one does not answer or
+        does not end in time, or if a component does not obey; of all tasks those are taken down first that answer.
         """
         check_may_run(self._credentials)
         running = [s for s in self.tasks if name in (None, s.configurator, task_name(s.task))]
         kept = self._kept(name)
-        for silent in self.silent:
-            if name in (None, silent):
-                raise NetworkError(f"the configurator {silent!r} lives, but does not answer")
+        silent = [one for one in self.silent if name in (None, one)]
+        if name is not None:
+            self._refuse_silent(silent)
         if name is not None and not running and not kept:
             raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
         for record in kept:
@@ -595,8 +594,20 @@ class LivingEcology(Ecology):
         for status in running:
             self._ask(self._view.keys.configurator_call(status.configurator, "stop"))
         self._await_end({status.configurator for status in running})
+        self._refuse_silent(silent)
         names = {task_name(status.task) or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
+
+    @staticmethod
+    def _refuse_silent(silent: Sequence[str]) -> None:
+        """Raise NetworkError if there are configurators that live, but do not answer."""
+        if silent:
+            names = ", ".join(map(repr, silent))
+            raise NetworkError(
+                f"the configurator {names} lives, but does not answer"
+                if len(silent) == 1
+                else f"the configurators {names} live, but do not answer"
+            )
 
     def _kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""
@@ -606,8 +617,7 @@ class LivingEcology(Ecology):
                 record = decode(sample.payload, TaskRecord)
             except PeerError:
                 continue
-            known = newest.get(record.task)
-            if known is None or known.revision < record.revision:
+            if record.supersedes(newest.get(record.task)):
                 newest[record.task] = record
         return [r for r in newest.values() if not r.ended and name in (None, task_name(r.task))]
 

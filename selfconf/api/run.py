@@ -72,6 +72,7 @@ class Run:
         self._found: Mapping[IRI, Advertisement] = {}
         self._work = WorkQueue()
         self._ended = False
+        record = task_record(self.task, method, policy, name, priority, upgrade)
         self._bus = member(ecology, endpoints, credentials)
         self._runner = TaskRunner(
             self._bus,
@@ -89,7 +90,7 @@ class Run:
                 priority=self.task.document.task.priority if priority is None else priority,
                 upgrade=upgrade,
                 aside=self._work.work,
-                record=task_record(self.task, method, policy, name, priority, upgrade),
+                record=record,
                 report=self._work.report,
                 ended=self._settle,
             ),

@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--connect",
+        dest="router",  # of ROS 2, and not where a site listens, as `connect` of the project file says
         metavar="ENDPOINT",
         help="for ros2, in the place of sources: where the router of ROS 2 listens; what lives now is imported",
     )
@@ -69,7 +70,7 @@ def run(given: argparse.Namespace) -> int:
 
 
 def _imported(given: argparse.Namespace) -> ImportReport:
-    if given.connect is None:
+    if given.router is None:
         from selfconf.importing import import_descriptions
 
         if not given.sources:
@@ -79,7 +80,7 @@ def _imported(given: argparse.Namespace) -> ImportReport:
 
     if given.form != "ros2" or given.sources:
         raise AuthorError("--connect imports the nodes that live in a domain of ROS 2; it goes with ros2 and no SOURCE")
-    return import_living_nodes(given.connect, given.domain, given.out, given.namespace)
+    return import_living_nodes(given.router, given.domain, given.out, given.namespace)
 
 
 def _print_table(report: ImportReport) -> None:

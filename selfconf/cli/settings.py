@@ -39,8 +39,15 @@ class Settings:
         """Whether the command has an option that a project file can have a value for."""
 
     def declare(self, parser: argparse.ArgumentParser) -> None:
-        """Let the options of a command have their values from elsewhere, and their help say from where."""
+        """Let the options of a command have their values from elsewhere, and their help say from where.
+
+        Those of the commands below it, too.
+        """
         for action in parser._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                for below in dict.fromkeys(action.choices.values()):
+                    self.declare(below)
+                continue
             self.concerned |= action.dest in PROJECT_KEYS
             source = self._source(action.dest) if action.option_strings else ""
             if source:

@@ -201,3 +201,20 @@ def test_keys_in_a_project_file_are_one_folder_that_is_there(
         assert outcome.code == 1
         assert f"selfconf.toml:1:1: error[{code}]" in outcome.out
         assert words in outcome.out
+
+
+def test_the_file_counts_for_the_commands_below_a_command_too(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "selfconf.toml").write_text('ecology = "house"\n')
+    assert "(now house, from" in run(capsys, "bridge", "wot", "--help").out
+
+
+def test_where_sites_listen_is_not_where_the_router_of_ros_2_does(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "selfconf.toml").write_text('connect = ["tcp/127.0.0.1:7447"]\n')
+    lamp = project / "lamp.td.json"
+    lamp.write_text('{"@context": "https://www.w3.org/2022/wot/td/v1.1", "id": "urn:lamp", "title": "lamp"}')
+    outcome = run(capsys, "import", "wot", str(lamp), "--out", str(project / "ads"))
+    assert "--connect" not in outcome.err
