@@ -219,7 +219,7 @@ def _declined(state: State, event: Answered) -> Reaction:
 
 def _busy(state: State, event: Answered) -> Reaction:
     """Another task holds a component: wait for it, or do without it."""
-    if event.holder is not None and event.holder.task == state.task:
+    if event.holder is not None and event.holder.task == state.task and not state.alone:
         return _stand_down(state)
     if deploying.may_wait_for(state, event.component, event.holder):
         if event.call is Call.RESERVE:

@@ -79,6 +79,8 @@ class State:
     """Whether a refusal does not end the task: the configurator waits until the ecology has what it needs."""
     task: str = ""
     """The identity of the task."""
+    alone: bool = False
+    """Whether no other configurator can go on with the task: this one has begun it, and it ends with this one."""
     priority: int = 0
     phase: Phase = Phase.IDLE
     epoch: int = 0

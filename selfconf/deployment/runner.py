@@ -119,10 +119,13 @@ class TaskRunner:
         self.ecology.aside = request.aside
         self.keys = self.ecology.keys
         self.name = name or f"c{secrets.token_hex(4)}"
+        alone = not task
         task = task or task_identity(request.name or safe_name(request.task.template.iri.short), self.name)
         self.identity = TaskIdentity(task, request.priority, clock() if beginning is None else beginning)
         self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
-        self.state = State(policy=request.policy, patient=request.patient, task=task, priority=self.identity.priority)
+        self.state = State(
+            policy=request.policy, patient=request.patient, task=task, alone=alone, priority=self.identity.priority
+        )
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""

@@ -561,3 +561,13 @@ def test_an_epoch_that_no_clock_comes_to_is_not_taken_over() -> None:
     history.hear(Answered(TRACKER, Call.APPLY, epoch, Verdict.STALE, "1", newest=(1 << 63) - 1))
     assert history.state.epoch == epoch + 1
     assert TRACKER in history.state.lost
+
+
+@pytest.mark.parametrize("alone", [True, False], ids=["its own", "kept by sites"])
+def test_only_a_task_that_another_configurator_may_have_is_left_to_that_one(alone: bool) -> None:
+    history = History(State(task="navigate~1", alone=alone)).accepted()
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    component, _ = min(history.state.pending)
+    history.busy(component, replace(OTHERS, task="navigate~1"))
+    assert history.state.phase is (Phase.COMPOSING if alone else Phase.STOPPED)
