@@ -587,16 +587,22 @@ class LivingEcology(Ecology):
         silent = [one for one in self.silent if name in (None, one)]
         if name is not None:
             self._refuse_silent(silent)
-        if name is not None and not running and not kept:
-            raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
+            if not running and not kept:
+                raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
+        self._take_down(running, kept)
+        if silent:  # one that was only slow may have ended meanwhile
+            lives = self._wait(partial(self._bus.roll_call, self._view.keys.any_configurator_life(), ROLL_CALL))
+            self._refuse_silent(sorted({owner_of(key) for key in lives}.intersection(silent)))
+        names = {task_name(status.task) or status.configurator for status in running}
+        return tuple(sorted(names | {task_name(record.task) for record in kept}))
+
+    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
+        """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
         for record in kept:
             self._keep(replace(record, revision=record.revision + 1, ended=True))
         for status in running:
             self._ask(self._view.keys.configurator_call(status.configurator, "stop"))
         self._await_end({status.configurator for status in running})
-        self._refuse_silent(silent)
-        names = {task_name(status.task) or status.configurator for status in running}
-        return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
     @staticmethod
     def _refuse_silent(silent: Sequence[str]) -> None:

@@ -162,8 +162,8 @@ class Relay:
         self._undo_replacement = self._loop.later(QUIET + random.uniform(0.0, RETRY_SPREAD), replace_it)
 
     def _replace(self) -> None:
-        self._undo_replacement()
         old, self._uplink = self._uplink, _Uplink(self)
+        self._undo_replacement()
         if old is not None:
             self._lingering.append(old)
             self._loop.later(LINGER * random.uniform(1.0, 2.0), partial(self._let_go, old))
@@ -193,7 +193,7 @@ class Relay:
                 opened.append(open_session("router", connect=[here, *others], security=security))
         except NetworkError:
             for session in opened:
-                _close(session)
+                threading.Thread(target=_close, args=(session,), daemon=True).start()
             raise
         return opened
 

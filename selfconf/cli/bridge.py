@@ -67,6 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     ros2.add_argument(
         "--connect",
+        dest="router",  # of ROS 2, and not where a site listens, as `connect` of the project file says
         metavar="ENDPOINT",
         default="tcp/127.0.0.1:7447",
         help="where the router of ROS 2 listens (default: %(default)s)",
@@ -119,7 +120,7 @@ def run(given: argparse.Namespace) -> int:
     site = BridgeSite(given.ecology, given.name, given.listen, given.sites, given.keys, given.insecure)
     with complaining_aside() as complain:
         if given.world == "ros2":
-            serve_nodes(given.connect, given.domain, given.definitions, site, complain)
+            serve_nodes(given.router, given.domain, given.definitions, site, complain)
         else:
             serve_things(given.sources, given.rate, given.credentials, given.host, site, complain)
     return 0

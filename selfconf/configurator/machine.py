@@ -79,8 +79,8 @@ DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
 """The phases of act 4."""
 MOST_REPEATS = 10
 """How often one component may make a deployment begin anew, by what it says of its epoch or of who holds it."""
-LATEST_EPOCH = 1 << 62
-"""An epoch that no clock comes to: a component that says it has obeyed such a one is not believed."""
+MOST_AHEAD = 100 * 366 * 86_400_000
+"""By how much a component may say that a newer epoch was, in milliseconds as epochs are: no clock is that wrong."""
 
 
 # complexity: one case for each event; what it does is a function of its own
@@ -205,12 +205,13 @@ def _declined(state: State, event: Answered) -> Reaction:
     """A component has not done what it was asked: ask once more where that may help, else do without it."""
     repeats = state.repeats.get(event.component, 0)
     counted = replace(state, repeats={**state.repeats, event.component: repeats + 1})
-    if event.verdict is Verdict.STALE and event.epoch < event.newest < LATEST_EPOCH and repeats < MOST_REPEATS:
+    ahead = event.newest - event.epoch
+    if event.verdict is Verdict.STALE and 0 < ahead < MOST_AHEAD and repeats < MOST_REPEATS:
         return deploying.deploy(replace(counted, epoch=max(state.epoch, event.newest)))
     if event.verdict is Verdict.NOT_HELD and repeats < MOST_REPEATS:
         return _reserve_anew(counted, event.component)
     if event.verdict is Verdict.BUSY:
-        return _busy(replace(state, queued=state.queued | {event.component}), event)
+        return _busy(replace(counted, queued=state.queued | {event.component}), event)
     if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
         return _lose(state, event.component, Loss(Cause.CRASH, "it has begun another life", ""))
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
@@ -224,7 +225,8 @@ def _busy(state: State, event: Answered) -> Reaction:
     if deploying.may_wait_for(state, event.component, event.holder):
         if event.call is Call.RESERVE:
             return deploying.await_release(state, event.component)
-        return _reserve_anew(state, event.component)
+        if state.repeats[event.component] <= MOST_REPEATS:
+            return _reserve_anew(state, event.component)
     return _lose(state, event.component, Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True))
 
 

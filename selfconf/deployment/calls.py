@@ -302,7 +302,8 @@ class Calls:
 
         Unless it is wanted again: then it is told so.
         """
-        if life not in self._left_behind.get(component, ()) or not self.ecology.lives_on(component, life):
+        left = life in self._left_behind.get(component, ()) and self.ecology.lives_on(component, life)
+        if not left or self._state().ended:
             return
         again = partial(self._release_left_behind, component, life)
         wanted = component in self._waking or component in self._state().held

@@ -12,6 +12,7 @@ import hashlib
 import logging
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
@@ -33,6 +34,8 @@ KEEPER_LOOK = 1.0
 """Seconds between two looks at which tasks this site is to run."""
 OTHERS = 2.0
 """Seconds that the other sites may take to say what they keep."""
+RESPITE = 60.0
+"""Seconds after which a task is tried again that could not be read for want of room, or whose search broke."""
 
 
 def keeper_of(task: str, sites: Iterable[str]) -> str:
@@ -51,7 +54,11 @@ class Keeper:
         self.folder, self._request_for = folder, request_for
         self.runners: dict[str, TaskRunner] = {}
         self._requests: dict[str, RunRequest | None] = {}
+        self._respites: dict[str, float] = {}
+        """Until when each task is left alone that has given trouble."""
         self._living: dict[str, set[str]] = {site: {""}}
+        self._to_ask: set[str] = set()
+        """The sites that have come and were not asked once more since: they may not have been reached at first."""
         bus.serve(self.keys.keep(site), self._keep)
         bus.serve(self.keys.kept_tasks(site), self._answer)
         bus.subscribe(self.keys.task(), self._heard, Urgency.EVENT)
@@ -94,6 +101,11 @@ class Keeper:
         for sample in replies.samples:
             self._take(sample)
 
+    def _asked_again(self, site: str, replies: Replies) -> None:
+        if replies.complete or site not in self._living:
+            self._to_ask.discard(site)
+        self._other_answered(replies)
+
     def _take(self, sample: Sample) -> None:
         try:
             self._learn(decode(sample.payload, TaskRecord))
@@ -109,8 +121,9 @@ class Keeper:
         """Read a task in advance, so that going on with it takes no time; one that cannot be read is never run."""
         if record.ended:
             self._requests.pop(record.task, None)
+            self._respites.pop(record.task, None)
             return
-        if record.task in self._requests:
+        if record.task in self._requests or self._has_respite(record.task):
             return
         self._requests[record.task] = None
         try:
@@ -118,8 +131,9 @@ class Keeper:
         except SelfconfError as error:
             log.error("the task %s cannot be run: %s", record.task, error)
         except OSError as error:
-            log.warning("the task %s cannot be read now: %s", record.task, error)
+            log.error("the task %s cannot be read now: %s; trying again in %.0f s", record.task, error, RESPITE)
             del self._requests[record.task]
+            self._respites[record.task] = self.bus.now() + RESPITE
         else:
             self._requests[record.task] = replace(request, report=lambda event: self._report(record.task, event))
 
@@ -132,6 +146,7 @@ class Keeper:
         if alive:
             lives.setdefault(site, set()).add(key)
             # When this site began it may have been cut off from that one, and nobody else will say what that one keeps.
+            self._to_ask.add(site)
             self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._other_answered)
         elif site in lives:
             lives[site].discard(key)
@@ -144,6 +159,8 @@ class Keeper:
         self.bus.later(KEEPER_LOOK, self._look)
         for record in list(self.folder.records.values()):
             self._read(record)
+        for site in sorted(self._to_ask):
+            self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, partial(self._asked_again, site))
         self._assign()
 
     def _assign(self) -> None:
@@ -155,8 +172,11 @@ class Keeper:
                 runner.stop()
             elif runner is not None and not mine:
                 runner.hand_over()
-            elif runner is None and mine and not record.ended:
+            elif runner is None and mine and not record.ended and not self._has_respite(task):
                 self._run(record)
+
+    def _has_respite(self, task: str) -> bool:
+        return self._respites.get(task, 0.0) > self.bus.now()
 
     def _run(self, record: TaskRecord) -> None:
         request = self._requests.get(record.task)
@@ -165,7 +185,10 @@ class Keeper:
         from selfconf.deployment.runner import TaskRunner  # what a site without tasks does not need
 
         def ended(_: object) -> None:
-            self.runners.pop(record.task, None)
+            runner = self.runners.pop(record.task, None)
+            if runner is not None and runner.trouble is not None:
+                log.error("%s: %s; trying again in %.0f s", record.task, runner.trouble, RESPITE)
+                self._respites[record.task] = self.bus.now() + RESPITE
 
         runner = TaskRunner(
             self.bus, self.ecology, replace(request, ended=ended), task=record.task, beginning=record.beginning

@@ -30,7 +30,7 @@ class RunNotices:
         self._sequence = 0
         self._heard = False
         # What is not EVENT is dropped where the network is short of room; EVENT would wait for a frozen observer. In
-        # bulk many come in one message: as signals, each at once, a rush of five found no room on a busy machine.
+        # bulk many come in one message; each at once, a rush of five found no room on a busy machine.
         self._publisher = bus.publisher(keys.notices(name), Urgency.BULK, self._matched)
         self._last_words = bus.publisher(keys.notices(name), Urgency.EVENT)
         self._served = bus.serve(keys.notices(name), self._answer)

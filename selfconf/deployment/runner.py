@@ -150,6 +150,8 @@ class TaskRunner:
         """How often the ecology was asked."""
         self._look_again: Undo = lambda: None
         self._pause = TRY_AGAIN
+        self._chance_at = float("-inf")
+        """When lost components are tried again, which may be overdue; minus infinity: no time is set."""
         self._improve: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
@@ -223,6 +225,7 @@ class TaskRunner:
         before, known = self.state.phase, self.state.lost
         if isinstance(event, Appeared):
             self._pause = TRY_AGAIN
+            self._chance_at = min(self._chance_at, self.bus.now() + TRY_AGAIN)
         self.state, effects = machine.step(self.state, event)
         if self.state.lost is not known:
             self._notice(known)
@@ -285,20 +288,25 @@ class TaskRunner:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
         if self.state.phase is Phase.RUNNING:
-            self._pause = TRY_AGAIN
+            self._pause, self._chance_at = TRY_AGAIN, float("-inf")
         if self.state.phase is Phase.REFUSED and self.state.patient:
             self._report(TaskWaiting(self.state.refusal, self.losses))
             self._await_another_chance()
 
     def _await_another_chance(self) -> None:
+        """Set the time for that; one that is set stays, or a site that is asked again and again would put it off."""
+        now = self.bus.now()
+        if self._chance_at == float("-inf"):
+            self._chance_at = now + self._pause
+            self._pause = min(2 * self._pause, LONGEST_PAUSE)
         self._look_again()
-        self._look_again = self.bus.later(self._pause, self._forgive)
-        self._pause = min(2 * self._pause, LONGEST_PAUSE)
+        self._look_again = self.bus.later(max(0.0, self._chance_at - now), self._forgive)
 
     def _forgive(self) -> None:
         """While the task is refused, try lost components again that may be able to act by now."""
         if self.state.phase is not Phase.REFUSED:
-            return
+            return  # it is overdue when the task is refused again
+        self._chance_at = float("-inf")
         again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
         if again or self.state.lost:
             pause = self._pause
@@ -449,6 +457,7 @@ class TaskRunner:
             began = time.monotonic()
             try:
                 outcome = self.request.compose(found, effect.lost, effect.running)
+                not_judged = dict(self.request.not_judged())
             except SelfconfError as error:
                 trouble = error
                 self.bus.wake_up(lambda: self._give_up(trouble))
@@ -458,7 +467,7 @@ class TaskRunner:
                 broken = ProgrammerError(f"the search broke: {type(error).__name__}: {error}")
                 self.bus.wake_up(lambda: self._give_up(broken))
                 return
-            seconds, not_judged = time.monotonic() - began, dict(self.request.not_judged())
+            seconds = time.monotonic() - began
             self.bus.wake_up(lambda: self._composed(effect, outcome, seconds, not_judged))
 
         self.request.aside(work)

@@ -264,7 +264,8 @@ class ComponentRuntime:
 
     def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
         if self._closed:  # while the call waited for the code to be at rest
-            reply(self._verdict(Verdict.REFUSED, message.task, "it is leaving the ecology"))
+            verdict = Verdict.DONE if isinstance(message, Release) else Verdict.REFUSED
+            reply(self._verdict(verdict, message.task, "it is leaving the ecology"))
             return
         after, verdict, step = table.obey(
             self.activation,

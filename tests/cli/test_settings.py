@@ -210,6 +210,15 @@ def test_the_file_counts_for_the_commands_below_a_command_too(
     assert "(now house, from" in run(capsys, "bridge", "wot", "--help").out
 
 
+def test_the_router_of_ros_2_is_none_of_the_endpoints_of_the_file(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "selfconf.toml").write_text('connect = ["tcp/127.0.0.1:7450"]\n')
+    help_ = run(capsys, "bridge", "ros2", "--help").out
+    assert "7450" not in help_
+    assert "tcp/127.0.0.1:7447" in help_
+
+
 def test_where_sites_listen_is_not_where_the_router_of_ros_2_does(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -454,3 +454,12 @@ def test_a_configurator_that_has_ended_asks_nobody_any_more(lab: Lab, monkeypatc
     monkeypatch.setattr(agent.bus, "later", lambda seconds, action: timers.append(seconds))
     lab.let_pass(10.0)
     assert timers == []
+
+
+def test_a_site_that_never_answers_does_not_put_off_another_chance(lab: Lab) -> None:
+    lab.network.node().announce(lab.keys.site_life("silent", "1"))
+    agent = lab.agent(patient=True)
+    assert lab.running(agent)
+    lab.components["drive"].fail("jammed")
+    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 3 * TRY_AGAIN)

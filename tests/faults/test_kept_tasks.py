@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.bus.port import Replies
 from selfconf.deployment import Keeper, TaskRunner
-from selfconf.protocol.keys import owner_of
 from selfconf.protocol.messages import TaskRecord
 from tests.effort import NIGHTLY, examples
 from tests.faults.kept_tasks import account, played
@@ -28,16 +28,13 @@ def counts_revisions_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def asks_no_site_that_comes(monkeypatch: pytest.MonkeyPatch) -> None:
-    hear = Keeper._site_changed
+    def others_answered(self: Keeper, replies: Replies) -> None:
+        for sample in replies.samples:
+            self._take(sample)
+        self._look()
 
-    def heard(self: Keeper, key: str, alive: bool) -> None:
-        ask = self.bus.ask
-        with pytest.MonkeyPatch.context() as meanwhile:
-            asked = self.keys.kept_tasks(owner_of(key))
-            meanwhile.setattr(self.bus, "ask", lambda key, *rest: None if key == asked else ask(key, *rest))
-            hear(self, key, alive)
-
-    monkeypatch.setattr(Keeper, "_site_changed", heard)
+    monkeypatch.setattr(Keeper, "_others_answered", others_answered)
+    monkeypatch.setattr(Keeper, "_other_answered", lambda self, replies: None)
 
 
 def lets_go_of_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
