@@ -571,3 +571,14 @@ def test_only_a_task_that_another_configurator_may_have_is_left_to_that_one(alon
     component, _ = min(history.state.pending)
     history.busy(component, replace(OTHERS, task="navigate~1"))
     assert history.state.phase is (Phase.COMPOSING if alone else Phase.STOPPED)
+
+
+def test_a_component_that_says_at_each_apply_that_another_task_holds_it_is_given_up() -> None:
+    history = History(State(task="navigate~1", priority=5)).reserved()
+    for _ in range(MOST_REPEATS + 1):
+        assert history.state.phase is Phase.DEPLOYING
+        history.busy(TRACKER, call=Call.APPLY)
+        if history.state.phase is not Phase.COMPOSING:
+            history.all_answer(Call.WAKE, Call.RESERVE)
+    assert history.state.phase is Phase.COMPOSING
+    assert history.state.lost[TRACKER].busy
