@@ -373,3 +373,15 @@ def test_an_actuator_that_loses_its_input_while_it_is_starting_rests_as_any_othe
     network.run(lambda: False, 2.0)
     code.poll()
     assert recorder.said[-1] == ("stopped",)
+
+
+def test_a_component_that_leaves_does_not_start_for_a_call_that_waited_for_its_rest() -> None:
+    split = Split(recorder := Recorder())
+    split.call(apply(1, US))
+    split.run_code()
+    split.call(release(2, US))
+    split.call(apply(3, US))  # waits until the code is at rest
+    split.runtime.close()
+    split.run_code()
+    assert recorder.said == [("started",), ("stopped",)]
+    assert split.verdicts[-1] is Verdict.REFUSED
