@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from selfconf.api.membership import configurator_name
 from tests.cli.command import run
 from tests.cli.processes import Home
 
@@ -19,6 +20,22 @@ def test_stop_tells_programs_what_it_took_down(inhabited: Home, capsys: pytest.C
     assert run(capsys, "stop", "--format", "json", *where).body == stopped
     assert program.ended() == 0
     assert run(capsys, "stop", "--format", "json", *where).body == {**stopped, "stopped": []}
+
+
+def test_what_answers_is_taken_down_though_a_configurator_lives_that_does_not(
+    inhabited: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = inhabited.run()
+    program.act("running")
+    mute, name = inhabited.node(), configurator_name(inhabited.credentials()) or "mute"
+    try:
+        mute.announce(inhabited.keys.configurator_life(name, "1"))
+        outcome = run(capsys, "stop", *inhabited.arguments())
+    finally:
+        mute.close()
+    assert outcome.code == 2
+    assert f"the configurator '{name}' lives, but does not answer" in outcome.err
+    assert program.ended() == 0
 
 
 def test_without_an_ecology_it_says_what_to_start(capsys: pytest.CaptureFixture[str]) -> None:
