@@ -161,6 +161,10 @@ def _links(sample: Sample) -> Iterator[tuple[IRI, IRI]]:
                     yield source, sink
 
 
+def _said_of_silent(configurator: str) -> str:
+    return f"the configurator {configurator!r} lives, but does not answer"
+
+
 class LivingEcology(Ecology):
     """Everything that is alive under one name, as seen over the network; use it in a `with` statement.
 
@@ -360,7 +364,7 @@ class LivingEcology(Ecology):
             else:
                 rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
         self.silent = tuple(sorted(living - {status.configurator for status in found}))
-        rejected += [f"the configurator {name!r} lives, but does not answer" for name in self.silent]
+        rejected += map(_said_of_silent, self.silent)
         self.complaints = tuple(rejected)
         return tuple(sorted(found, key=lambda status: status.configurator))
 
@@ -608,12 +612,7 @@ class LivingEcology(Ecology):
     def _refuse_silent(silent: Sequence[str]) -> None:
         """Raise NetworkError if there are configurators that live, but do not answer."""
         if silent:
-            names = ", ".join(map(repr, silent))
-            raise NetworkError(
-                f"the configurator {names} lives, but does not answer"
-                if len(silent) == 1
-                else f"the configurators {names} live, but do not answer"
-            )
+            raise NetworkError("; ".join(map(_said_of_silent, silent)))
 
     def _kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""

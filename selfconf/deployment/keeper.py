@@ -61,9 +61,9 @@ class Keeper:
         """The sites that have come and were not asked once more since: they may not have been reached at first."""
         bus.serve(self.keys.keep(site), self._keep)
         bus.serve(self.keys.kept_tasks(site), self._answer)
-        bus.subscribe(self.keys.task(), self._heard, Urgency.EVENT)
+        bus.subscribe(self.keys.task(), self._take, Urgency.EVENT)
         bus.watch(self.keys.any_site_life(), self._site_changed)
-        bus.ask(self.keys.kept_tasks(), b"", OTHERS, self._others_answered)
+        bus.ask(self.keys.kept_tasks(), b"", OTHERS, self._all_answered)
 
     def close(self) -> None:
         """Leave the tasks as they run to whichever site is next."""
@@ -90,21 +90,18 @@ class Keeper:
         finally:
             request.finish()
 
-    def _heard(self, sample: Sample) -> None:
-        self._take(sample)
-
-    def _others_answered(self, replies: Replies) -> None:
-        self._other_answered(replies)
+    def _all_answered(self, replies: Replies) -> None:
+        self._take_all(replies)
         self._look()
 
-    def _other_answered(self, replies: Replies) -> None:
+    def _take_all(self, replies: Replies) -> None:
         for sample in replies.samples:
             self._take(sample)
 
     def _asked_again(self, site: str, replies: Replies) -> None:
         if replies.complete or site not in self._living:
             self._to_ask.discard(site)
-        self._other_answered(replies)
+        self._take_all(replies)
 
     def _take(self, sample: Sample) -> None:
         try:
@@ -147,7 +144,7 @@ class Keeper:
             lives.setdefault(site, set()).add(key)
             # When this site began it may have been cut off from that one, and nobody else will say what that one keeps.
             self._to_ask.add(site)
-            self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._other_answered)
+            self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._take_all)
         elif site in lives:
             lives[site].discard(key)
             if not lives[site]:

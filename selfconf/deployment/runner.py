@@ -150,8 +150,8 @@ class TaskRunner:
         """How often the ecology was asked."""
         self._look_again: Undo = lambda: None
         self._pause = TRY_AGAIN
-        self._chance_at = float("-inf")
-        """When lost components are tried again, which may be overdue; minus infinity: no time is set."""
+        self._chance_at: float | None = None
+        """When lost components are tried again, which may be overdue; None: no time is set."""
         self._improve: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
@@ -225,7 +225,8 @@ class TaskRunner:
         before, known = self.state.phase, self.state.lost
         if isinstance(event, Appeared):
             self._pause = TRY_AGAIN
-            self._chance_at = min(self._chance_at, self.bus.now() + TRY_AGAIN)
+            if self._chance_at is not None:
+                self._chance_at = min(self._chance_at, self.bus.now() + TRY_AGAIN)
         self.state, effects = machine.step(self.state, event)
         if self.state.lost is not known:
             self._notice(known)
@@ -288,7 +289,7 @@ class TaskRunner:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
         if self.state.phase is Phase.RUNNING:
-            self._pause, self._chance_at = TRY_AGAIN, float("-inf")
+            self._pause, self._chance_at = TRY_AGAIN, None
         if self.state.phase is Phase.REFUSED and self.state.patient:
             self._report(TaskWaiting(self.state.refusal, self.losses))
             self._await_another_chance()
@@ -296,7 +297,7 @@ class TaskRunner:
     def _await_another_chance(self) -> None:
         """Set the time for that; one that is set stays, or a site that is asked again and again would put it off."""
         now = self.bus.now()
-        if self._chance_at == float("-inf"):
+        if self._chance_at is None:
             self._chance_at = now + self._pause
             self._pause = min(2 * self._pause, LONGEST_PAUSE)
         self._look_again()
@@ -306,7 +307,7 @@ class TaskRunner:
         """While the task is refused, try lost components again that may be able to act by now."""
         if self.state.phase is not Phase.REFUSED:
             return  # it is overdue when the task is refused again
-        self._chance_at = float("-inf")
+        self._chance_at = None
         again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
         if again or self.state.lost:
             pause = self._pause

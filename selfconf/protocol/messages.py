@@ -373,7 +373,7 @@ class TaskRecord:
     task: str
     """Its identity."""
     revision: int
-    """Of two records of one task that has not ended the one with the higher revision counts."""
+    """Of two records of a task that has not ended, the one with the higher revision counts."""
     ended: bool = False
     """Whether it is to run no more; kept so that a site that was away hears of it."""
     priority: int = 0

@@ -9,8 +9,6 @@ from selfconf.protocol.messages import Cause
 
 PROMETHEUS = "text/plain; version=0.0.4; charset=utf-8"
 _ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
-
-
 CAUSES = frozenset(cause.value for cause in Cause)
 """The causes of a loss that have a count of their own: what a peer makes up has none."""
 

@@ -22,9 +22,6 @@ from selfconf.serve.change import Body
 from selfconf.serve.watched_task import WatchedTask
 
 log = logging.getLogger(__name__)
-
-MOST_KEPT_TASKS = 1000
-"""How many tasks that live in the sites are shown at most, those that were heard of last: as many as a site keeps."""
 _EPOCH = re.compile("[0-9]{1,18}")
 
 LOOK_ANEW = 10.0
@@ -42,7 +39,7 @@ TOLD_TASKS = 100
 EARLY = 64
 """How many notices wait at most for those before them, which have been asked for."""
 MOST_TASKS = 1000
-"""How many tasks are followed; what a stranger says of more is passed over."""
+"""How many tasks are followed; what a stranger says of more is passed over. Of those that the sites keep the latest."""
 
 
 class TaskWatcher:
@@ -268,7 +265,7 @@ class TaskWatcher:
             if record.supersedes(self._kept.get(record.task)):
                 self._kept.pop(record.task, None)  # the newest record stands last
                 self._kept[record.task] = record
-        while len(self._kept) > MOST_KEPT_TASKS:
+        while len(self._kept) > MOST_TASKS:
             del self._kept[next(iter(self._kept))]
         self._changed()
 

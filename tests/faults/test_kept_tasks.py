@@ -28,13 +28,13 @@ def counts_revisions_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def asks_no_site_that_comes(monkeypatch: pytest.MonkeyPatch) -> None:
-    def others_answered(self: Keeper, replies: Replies) -> None:
+    def all_answered(self: Keeper, replies: Replies) -> None:
         for sample in replies.samples:
             self._take(sample)
         self._look()
 
-    monkeypatch.setattr(Keeper, "_others_answered", others_answered)
-    monkeypatch.setattr(Keeper, "_other_answered", lambda self, replies: None)
+    monkeypatch.setattr(Keeper, "_all_answered", all_answered)
+    monkeypatch.setattr(Keeper, "_take_all", lambda self, replies: None)
 
 
 def lets_go_of_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
