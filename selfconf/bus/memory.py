@@ -373,8 +373,9 @@ class MemoryBus:
         """Ask all queryables of a key; a question or a reply that is lost shows as a time-out."""
         question = _Question(self, done)
         for node in self.network.nodes:
-            for served, answer in list(node._queryables.values()):
-                if self.network.reaches(self, node) and intersects(key, served):
+            reached = bool(node._queryables) and self.network.reaches(self, node)
+            for served, answer in list(node._queryables.values()) if reached else ():
+                if intersects(key, served):
                     question.asked(node, Sample(key, payload, attachment), answer)
         question.sent(seconds)
 
@@ -547,8 +548,9 @@ class _Publisher:
         """Call `matched` if it has changed whether there is a subscriber."""
         network = self._bus.network
         matching = any(
-            network.reaches(node, self._bus) and intersects(key, self._key)
+            intersects(key, self._key)
             for node in network.nodes
+            if node._subscribers and network.reaches(node, self._bus)
             for key, _ in node._subscribers.values()
         )
         if matching != self._matching:

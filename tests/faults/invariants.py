@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from operator import is_
+from operator import attrgetter
 
 from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import LEASE, MemoryBus
@@ -30,6 +30,7 @@ CALLS = 2.0
 """Seconds after which a configurator looks again at a call that was not answered."""
 MOST_WAITING = 2_000
 """How many messages and timers may wait in the network."""
+_OF_LIFE = attrgetter("runtime.activation", "runtime.code.active")
 LOOKS = 10.0
 """Seconds within which a configurator notices that a component does not act any more without having said so."""
 
@@ -393,8 +394,7 @@ class Watch:
         self._bounds = {invariant.name: invariant.bound(history) for invariant in STEPS}
         self._since: dict[tuple[str, str], float] = {}
         self._noted: set[tuple[str, str]] = set()
-        self._seen: list[int] = []
-        self._kept: list[object] = []
+        self._seen: list[object] = []
         self.broken: list[str] = []
         self.names: set[str] = set()
         """The names of the invariants that were broken."""
@@ -487,26 +487,22 @@ class Watch:
     def _is_changed(self) -> bool:
         """Whether anything that the conditions depend on is another than at the last look.
 
-        Values that are replaced when they change are compared by identity; they are kept, or another value might come
-        to lie at the same place.
+        A value that is the one of the last look is not looked into: to compare these lists costs little.
         """
         history, network = self._history, self._history.network
-        insides = list(history.insides())
+        insides, living = list(history.insides()), [life for life in history.processes if life.node.open]
         runners = [inside.runner for inside in insides if inside.runner is not None]
-        kept: list[object] = [agent.state for agent in chain(history.agents, runners)]
-        seen: list[int] = [len(history.processes), len(insides)]
-        for life in history.processes:
-            if life.node.open:
-                kept.append(life.runtime.activation)
-                seen += life.node.paused, life.thread.hangs, life.runtime.code.active, len(life.recorder.said)
-            else:
-                seen.append(-1)
-        for inside in insides:
-            kept.append(inside.runtime.activation)
-            seen.append(inside.runtime.code.active)
-        for node in network.nodes:
-            seen.append(4 * node.open + 2 * node.paused + node.expelled)
-        seen += len(network._cut), len(network._events) > MOST_WAITING
-        changed = seen != self._seen or len(kept) != len(self._kept) or not all(map(is_, kept, self._kept))
-        self._seen, self._kept = seen, kept
+        seen: list[object] = [
+            [agent.state for agent in chain(history.agents, runners)],
+            list(map(_OF_LIFE, living)),
+            [len(life.recorder.said) for life in living],
+            [life.name for life in living if life.thread.limit_until < network.time and life.thread.hangs],
+            list(map(_OF_LIFE, insides)),
+            [4 * node.open + 2 * node.paused + node.expelled for node in network.nodes],
+            len(history.processes),
+            len(network._cut),
+            len(network._events) > MOST_WAITING,
+        ]
+        changed = seen != self._seen
+        self._seen = seen
         return changed
