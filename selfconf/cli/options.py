@@ -27,8 +27,8 @@ MOST_DOMAIN = 232
 """The greatest ROS_DOMAIN_ID that ROS 2 takes."""
 
 
-def add_task_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options by which a task is given: template, bindings, reasoning, strategy."""
+def add_task_arguments(parser: argparse.ArgumentParser, strategy: str = "how to search") -> None:
+    """The options by which a task is given: template, bindings, reasoning, strategy; `strategy` says what that does."""
     parser.add_argument(
         "template", metavar="TEMPLATE", type=Path, help="a Turtle file with a template or a task, or - for stdin"
     )
@@ -49,7 +49,7 @@ def add_task_arguments(parser: argparse.ArgumentParser) -> None:
     add_reasoning_argument(parser, "which triples the shape of a role sees")
     add_ontology_argument(parser)
     parser.add_argument(
-        "--strategy", choices=STRATEGIES, default=STRATEGIES[0], help="how to search (default: %(default)s)"
+        "--strategy", choices=STRATEGIES, default=STRATEGIES[0], help=f"{strategy} (default: %(default)s)"
     )
 
 

@@ -38,7 +38,7 @@ SHOWN = 8
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    add_task_arguments(parser)
+    add_task_arguments(parser, "as for configure; a partition is the same for each")
     add_endpoint_argument(parser)
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     parser.add_argument(

@@ -38,6 +38,9 @@ from selfconf.model.term import IRI
 
 Reaction = tuple[State, tuple[Effect, ...]]
 """The next state, and what is to be done."""
+MOST_ASKED = 40
+"""How often a component is asked again that is to be taken from a task of lower priority, each time half a second
+later: one that obeys takes two seconds for that, and some more to come to rest."""
 
 
 def then(effects: Iterable[Effect], following: Reaction) -> Reaction:
@@ -203,8 +206,8 @@ def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:
     """
     if holder is None:
         return False
-    if holder.priority < state.priority:
-        return True  # it is asked to yield, and made to
+    if holder.priority < state.priority:  # it is asked to yield, and made to: the component waits two seconds for that
+        return state.repeats.get(component, 0) <= MOST_ASKED
     return (
         state.patient
         and not holder.acting

@@ -164,11 +164,11 @@ def _composed(state: State, event: Composed) -> Reaction:
     if state.despite:
         return _refuse(_coveted(state, event))
     if isinstance(event.outcome, Configuration):
-        return deploying.deploy(replace(state, target=event.outcome, refusal=None))
+        return deploying.deploy(replace(state, target=event.outcome, refusal=None, put_off=0))
     if any(loss.startable for loss in state.lost.values()):
         return _compose(replace(state, lost={c: loss for c, loss in state.lost.items() if not loss.startable}))
-    if state.news:
-        return _discover(state)
+    if state.asks_again:
+        return _discover(replace(state, put_off=state.put_off + 1))
     refused = replace(state, refusal=event.outcome)
     return _compose(refused, despite=True) if state.taken else _refuse(refused)
 
@@ -186,7 +186,7 @@ def _coveted(state: State, event: Composed) -> State:
 
 
 def _refuse(state: State) -> Reaction:
-    return _dismantle(state, Phase.REFUSED)
+    return _dismantle(replace(state, put_off=0), Phase.REFUSED)
 
 
 def _answered(state: State, event: Answered) -> Reaction:

@@ -15,6 +15,9 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause
 
+MOST_PUT_OFF = 10
+"""How many searches in a row may find nothing and not count, because something has appeared meanwhile."""
+
 
 class Phase(str, Enum):
     """Where the configurator is."""
@@ -115,6 +118,8 @@ class State:
     """The components whose outputs are issued by others than before, since the deployment that goes on began."""
     news: bool = False
     """Whether something has appeared since the ecology was last asked."""
+    put_off: int = 0
+    """How many searches in a row have found nothing and did not count, because something had appeared meanwhile."""
 
     @property
     def ended(self) -> bool:
@@ -124,4 +129,9 @@ class State:
     @property
     def searches_again(self) -> bool:
         """Whether a search that finds nothing does not count yet: the next one has more to choose from."""
-        return self.news or any(loss.startable for loss in self.lost.values())
+        return self.asks_again or any(loss.startable for loss in self.lost.values())
+
+    @property
+    def asks_again(self) -> bool:
+        """Whether the ecology is asked again before a refusal; where something appears all the time, not for ever."""
+        return self.news and self.put_off < MOST_PUT_OFF

@@ -176,6 +176,8 @@ class Fail:
     detail: str = ""
     task: str = ""
     """The identity of the task that it is put for; empty: every task that the component acts for."""
+    sequence: int = 0
+    """The number of the last signal that this life has issued: what comes of it later, up to that, is no news."""
 
 
 @immutable

@@ -280,6 +280,8 @@ class InputSubscription:
         """Whether the output can issue nothing any more, as far as is known."""
         self._life, self._sequence = "", 0
         """The newest signal that was delivered, by the life of its source and its number in it."""
+        self._over = "", 0
+        """The last signal of a source that has failed since, which ends no blindness: it may be read after FAIL."""
         self._queue = queue
         self._stamps = StampReader()
         self._heard_at = -JUST_COME
@@ -362,6 +364,8 @@ class InputSubscription:
             return
         if stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE:
             return  # late, doubled, or a latched signal that was issued again for another input
+        if lost and stamp.life == self._over[0] and stamp.sequence <= self._over[1]:
+            return
         self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
         self._events.deliver(
             self._port, Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
@@ -413,6 +417,7 @@ class InputSubscription:
         if fail.cause is Cause.LET_GO:
             self._look_whether_it_acts(self._heard_at)
         else:
+            self._over = fail.life, fail.sequence
             self._lose(self._heard_at)
 
     def _look_whether_it_acts(self, heard: float) -> None:

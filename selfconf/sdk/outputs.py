@@ -53,6 +53,8 @@ class Outputs:
         }
         self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.signal_outputs}
         self._sequence = itertools.count(1)
+        self.newest = 0
+        """The number of the last signal that was issued in this life; 0 if none was."""
         self.issued = {port.name: 0 for port in profile.outputs}
         """How many signals each output has issued in this life."""
         self._last: dict[str, tuple[bytes, bytes]] = {}
@@ -88,7 +90,8 @@ class Outputs:
         except UnsayableError as error:
             name = self._profile.component.short
             raise ProgrammerError(f"{name} cannot emit that on {port!r}: {error}") from None
-        number, moment = next(self._sequence), time.time() if moment is None else moment
+        self.newest = number = next(self._sequence)
+        moment = time.time() if moment is None else moment
         stamp = self._stamps[port].write(number, moment, packed is not None, encoding)
         self._last[port] = payload, stamp
         self.issued[port] += 1  # a count for people: where two threads emit on one output, one may be missed

@@ -215,7 +215,8 @@ class ComponentRuntime:
 
     def _put_fail(self, cause: Cause, detail: str, task: str = "", epoch: int | None = None) -> None:
         epoch = self.activation.epoch if epoch is None else epoch
-        self._fail.put(encode(Fail(self.profile.component, self.life, epoch, cause, detail, task)))
+        newest = self.outputs.newest
+        self._fail.put(encode(Fail(self.profile.component, self.life, epoch, cause, detail, task, newest)))
 
     # Control calls.
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.configurator.deploying import may_wait_for
+from selfconf.configurator.deploying import MOST_ASKED, may_wait_for
 from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
@@ -446,6 +446,15 @@ def test_a_component_of_a_task_of_lower_priority_is_waited_for() -> None:
     assert history.busy(CONTROL, LOWER) == [AwaitRelease(CONTROL, epoch)]
     assert reserved(history.hear(Freed(CONTROL))) == [CONTROL]
     assert reserved(history.answer(CONTROL, Call.RESERVE)) == [DRIVE]
+
+
+def test_a_component_that_is_never_taken_from_a_task_of_lower_priority_is_given_up() -> None:
+    history = reserving()
+    for _ in range(MOST_ASKED):
+        assert kinds(history.busy(CONTROL, LOWER)) == [AwaitRelease]
+        history.hear(WaitedLong(CONTROL, history.state.epoch))
+    history.busy(CONTROL, LOWER)
+    assert history.state.lost[CONTROL].busy
 
 
 def test_a_component_that_was_waited_for_is_asked_again_only_while_it_is_waited_for() -> None:

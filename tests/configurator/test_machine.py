@@ -33,7 +33,7 @@ from selfconf.configurator.events import (
     Stopped,
 )
 from selfconf.configurator.machine import MOST_REPEATS
-from selfconf.configurator.state import Phase, Policy, State
+from selfconf.configurator.state import MOST_PUT_OFF, Phase, Policy, State
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
@@ -224,6 +224,16 @@ def test_a_refusal_does_not_count_if_something_has_appeared_since_the_ecology_wa
     assert history.composed(REFUSAL) == [Discover()]
     assert history.hear(Discovered()) == [Compose(3, frozenset({TRACKER}), navigation())]
     assert history.composed(REFUSAL)[-1] != Discover()
+
+
+def test_where_something_appears_all_the_time_a_task_is_refused_all_the_same() -> None:
+    history = History().accepted()
+    for _ in range(MOST_PUT_OFF):
+        history.hear(Appeared({ODOMETRY: "1"}))
+        assert history.composed(REFUSAL) == [Discover()]
+        history.hear(Discovered())
+    history.hear(Appeared({ODOMETRY: "1"}))
+    assert history.composed(REFUSAL) == [Finish(REFUSAL)]
 
 
 def test_a_loss_while_the_ecology_is_asked_waits_for_its_answer() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
@@ -199,6 +199,25 @@ def test_an_input_that_has_lost_its_only_source_says_so_and_again_when_there_is_
     stage.neighbour(life="life-u").component.emit("pose", 2)
     stage.let_pass(0.1)
     assert stage.recorder.said[2:] == [("unfed", "position"), ("fed", "position"), ("position", 2)]
+
+
+def test_a_signal_that_is_overtaken_by_its_sources_fail_feeds_nothing() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", 1)
+    stage.let_pass(0.1)
+    stage.network.faults = Faults(least_delay=0.02, most_delay=0.02)
+    tracker.component.emit("pose", 2)
+    stage.network.faults = Faults()
+    raise_fail(tracker)
+    stage.let_pass(0.5)
+    assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
+    stage.caller.ask(KEYS.call(TRACKER, "apply"), encode(apply(2)), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    tracker.component.emit("pose", 3)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[3:] == [("fed", "position"), ("position", 3)]
 
 
 def test_an_input_whose_source_was_never_in_reach_says_so_and_is_fed_when_it_is() -> None:
