@@ -35,8 +35,7 @@ import selfconf as sc
 from benchmarks.live.__main__ import act_until_stdin_ends, line, program, until
 from benchmarks.machine import described, quantile, table
 from selfconf import rendezvous
-from selfconf.sdk import Component, Signal
-from selfconf.sdk.program import open_host
+from selfconf.sdk import Component, Signal, open_host
 
 SENSORS, DRIVES = 4, 3
 TASKS = (2, 3, 4, 6, 8)

@@ -12,8 +12,7 @@ import threading
 import time
 from pathlib import Path
 
-from selfconf.sdk import Component, Host, Signal, Termination
-from selfconf.sdk.program import open_host
+from selfconf.sdk import Component, Host, Signal, Termination, open_host
 
 UNTIL_OFF = 0.05
 """Seconds after FAIL, in which it is turned off, until it comes back."""

@@ -27,8 +27,7 @@ from typing import Any, NamedTuple
 from benchmarks.failover import PAUSE, Lines, Process
 from benchmarks.machine import described, quantile, table
 from selfconf.bus.zenoh_bus import router
-from selfconf.sdk import Component, Termination
-from selfconf.sdk.program import open_host
+from selfconf.sdk import Component, Termination, open_host
 
 DOMAIN = 7
 TEXT = "https://w3id.org/selfconf/ros2/std_msgs/msg/String"

@@ -32,8 +32,7 @@ from benchmarks.live.__main__ import act_until_stdin_ends, line, program, until
 from benchmarks.machine import described, table
 from benchmarks.validate import run
 from selfconf import rendezvous
-from selfconf.sdk import Component
-from selfconf.sdk.program import open_host
+from selfconf.sdk import Component, open_host
 from tests.hostile_words import HONEST, KINDS, TEMPLATE, stranger
 
 NUMBER = 1_000

@@ -17,8 +17,7 @@ import argparse
 import time
 from pathlib import Path
 
-from selfconf.sdk import Host, Termination
-from selfconf.sdk.program import add_connection_arguments, open_host
+from selfconf.sdk import Host, Termination, add_connection_arguments, open_host
 from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
 from sim.eyes import UPPER, SpareEye, StereoEye, curtain

@@ -15,8 +15,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from selfconf.sdk import Component, Host, Signal, Termination
-from selfconf.sdk.program import open_host
+from selfconf.sdk import Component, Host, Signal, Termination, open_host
 
 ADVERTISEMENTS = Path(__file__).parent / "ads"
 OUTPUTS = {

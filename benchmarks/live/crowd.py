@@ -14,8 +14,7 @@ from benchmarks.live.world import bystander, written_for
 from selfconf import rendezvous
 from selfconf.bus.zenoh_bus import client
 from selfconf.protocol.keys import Keys
-from selfconf.sdk import Component, Signal
-from selfconf.sdk.program import open_host
+from selfconf.sdk import Component, Signal, open_host
 
 
 class Source(Component):

@@ -43,8 +43,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys, safe_name
 from selfconf.protocol.messages import Apply, Moved, Wire
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.sdk import Component, Refused, Signal
-from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk import Component, ComponentRuntime, Refused, Signal
 
 log = logging.getLogger(__name__)
 

@@ -7,7 +7,7 @@ from typing import Any
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
-from selfconf.render.bodies import value_body
+from selfconf.render import value_body
 
 
 def deployed_body(document: Document) -> dict[str, Any] | None:

@@ -13,7 +13,7 @@ from selfconf.api.answer import Method
 from selfconf.api.arguments import option
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
-from selfconf.configurator.state import Policy
+from selfconf.configurator import Policy
 from selfconf.deployment import RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError

@@ -525,7 +525,7 @@ class LivingEcology(Ecology):
         """
         from selfconf.api.answer import Method
         from selfconf.api.run import Run
-        from selfconf.configurator.state import Policy
+        from selfconf.configurator import Policy
 
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         chosen = option(Policy, "policy", policy)
@@ -563,7 +563,7 @@ class LivingEcology(Ecology):
         """
         from selfconf.api.answer import Method
         from selfconf.api.detached import task_record
-        from selfconf.configurator.state import Policy
+        from selfconf.configurator import Policy
 
         check_may_run(self._credentials)
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)

@@ -22,7 +22,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.advertisements import Advertisement, read_advertisements
-from selfconf.render.bodies import refusal_body
+from selfconf.render import refusal_body
 
 MENDING_SECONDS = 10.0
 """How long the search and its explanation may take, where the task does not say."""

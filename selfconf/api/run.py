@@ -14,7 +14,7 @@ from selfconf.api.task import TaskSpecification
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.credentials import Credentials
 from selfconf.composition import TimeLimit, composed
-from selfconf.configurator.state import Loss, Policy
+from selfconf.configurator import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum

@@ -147,7 +147,7 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     from selfconf.api.local_site import SiteProcess
     from selfconf.api.membership import MEMBERS
     from selfconf.api.run import Run
-    from selfconf.configurator.state import Policy
+    from selfconf.configurator import Policy
 
     policy, method = Policy(given.policy), method_of(given, task)
     upgrade = given.settle if given.upgrade else None

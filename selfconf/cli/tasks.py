@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once every configurator has answered, also if there is no task; else 2."""
-    from selfconf.render.tables import table
+    from selfconf.render import table
 
     with joined(given) as ecology:
         found = ecology.all_tasks()

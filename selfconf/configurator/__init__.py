@@ -1,5 +1,99 @@
 """The reactive configurator as a pure machine, with no network, clock or thread in it.
 
-`machine.step(state, event)` gives the next state (`state`) and what is to be done (`effects`) about what the
-configurator has heard (`events`).
+`step(state, event)` returns the next `State` and what is to be done about what the configurator has heard.
+
+*What it hears*, each an `Event`: its task begins (`Accepted`), is taken over as it runs (`Adopted`), is handed over
+(`HandedOver`) or ends (`Stopped`); the ecology has answered (`Discovered`), and a search has (`Composed`); a component
+has `Answered` a `Call`, has `Failed`, is `Freed` by another task, is still not free (`WaitedLong`), has `Appeared`, or
+has others behind its outputs (`Rewired`); something better may be had (`Improvable`); the bus is back (`Reconnected`).
+
+*What is to be done*, each an `Effect`: ask the ecology (`Discover`), search (`Compose`); `WakeUp` a component, reserve
+it (`ReserveOf`), wait for it (`QueueFor`, `AwaitRelease`) or not (`Decline`), apply to it (`ApplyTo`), let go of it
+(`ReleaseFrom`), follow its life or not (`Watch`, `Unwatch`); tell that the task is `Running`, or over (`Finish`).
+
+Of a state: its `Phase` (`DEPLOYING` are those of a deployment), its `Policy` after a failure, and why a component is
+lost (`Loss`). Of a configuration: which outputs each input follows (`wiring`), which values each component gets
+(`parameter_values`), and who may call whom (`callers`: a `Caller` by component, operation by operation in `Callers`).
 """
+
+from selfconf.configurator.effects import (
+    ApplyTo,
+    AwaitRelease,
+    Compose,
+    Decline,
+    Discover,
+    Effect,
+    Finish,
+    QueueFor,
+    ReleaseFrom,
+    ReserveOf,
+    Running,
+    Unwatch,
+    WakeUp,
+    Watch,
+)
+from selfconf.configurator.events import (
+    Accepted,
+    Adopted,
+    Answered,
+    Appeared,
+    Call,
+    Composed,
+    Discovered,
+    Event,
+    Failed,
+    Freed,
+    HandedOver,
+    Improvable,
+    Reconnected,
+    Rewired,
+    Stopped,
+    WaitedLong,
+)
+from selfconf.configurator.machine import DEPLOYING, step
+from selfconf.configurator.order import Caller, Callers, callers, parameter_values, wiring
+from selfconf.configurator.state import Loss, Phase, Policy, State
+
+__all__ = [
+    "DEPLOYING",
+    "Accepted",
+    "Adopted",
+    "Answered",
+    "Appeared",
+    "ApplyTo",
+    "AwaitRelease",
+    "Call",
+    "Caller",
+    "Callers",
+    "Compose",
+    "Composed",
+    "Decline",
+    "Discover",
+    "Discovered",
+    "Effect",
+    "Event",
+    "Failed",
+    "Finish",
+    "Freed",
+    "HandedOver",
+    "Improvable",
+    "Loss",
+    "Phase",
+    "Policy",
+    "QueueFor",
+    "Reconnected",
+    "ReleaseFrom",
+    "ReserveOf",
+    "Rewired",
+    "Running",
+    "State",
+    "Stopped",
+    "Unwatch",
+    "WaitedLong",
+    "WakeUp",
+    "Watch",
+    "callers",
+    "parameter_values",
+    "step",
+    "wiring",
+]

@@ -14,10 +14,27 @@ from functools import partial
 from typing import TypedDict
 
 from selfconf.bus.port import Replies, Undo
-from selfconf.configurator.effects import ApplyTo, AwaitRelease, Decline, QueueFor, ReleaseFrom, ReserveOf, WakeUp
-from selfconf.configurator.events import Answered, Appeared, Call, Event, Rewired, WaitedLong
-from selfconf.configurator.order import Caller, Callers, callers, parameter_values, wiring
-from selfconf.configurator.state import State
+from selfconf.configurator import (
+    Answered,
+    Appeared,
+    ApplyTo,
+    AwaitRelease,
+    Call,
+    Caller,
+    Callers,
+    Decline,
+    Event,
+    QueueFor,
+    ReleaseFrom,
+    ReserveOf,
+    Rewired,
+    State,
+    WaitedLong,
+    WakeUp,
+    callers,
+    parameter_values,
+    wiring,
+)
 from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.run_request import EventListener, Outside, Standby
 from selfconf.discovery import EcologyView, FoundAdvertisement

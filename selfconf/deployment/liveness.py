@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from selfconf.bus.port import Undo
-from selfconf.configurator.events import Appeared, Event, Failed, Reconnected
-from selfconf.configurator.state import Phase, State
+from selfconf.configurator import Appeared, Event, Failed, Phase, Reconnected, State
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView

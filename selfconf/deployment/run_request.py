@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from selfconf.configurator.state import Policy
+from selfconf.configurator import Policy
 from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable

@@ -13,40 +13,41 @@ from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Sample, Undo, Urgency
-from selfconf.configurator import machine
-from selfconf.configurator.effects import (
-    ApplyTo,
-    AwaitRelease,
-    Compose,
-    Decline,
-    Discover,
-    Effect,
-    Finish,
-    QueueFor,
-    ReleaseFrom,
-    ReserveOf,
-    Running,
-    Unwatch,
-    WakeUp,
-    Watch,
-)
-from selfconf.configurator.events import (
+from selfconf.configurator import (
+    DEPLOYING,
     Accepted,
     Adopted,
     Appeared,
+    ApplyTo,
+    AwaitRelease,
+    Compose,
     Composed,
+    Decline,
+    Discover,
     Discovered,
+    Effect,
     Event,
     Failed,
+    Finish,
     Freed,
     HandedOver,
     Improvable,
+    Loss,
+    Phase,
+    QueueFor,
     Reconnected,
+    ReleaseFrom,
+    ReserveOf,
     Rewired,
+    Running,
+    State,
     Stopped,
+    Unwatch,
     WaitedLong,
+    WakeUp,
+    Watch,
+    step,
 )
-from selfconf.configurator.state import Loss, Phase, State
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.holders import ask_holders
 from selfconf.deployment.identity import TaskIdentity
@@ -227,7 +228,7 @@ class TaskRunner:
             self._pause = TRY_AGAIN
             if self._chance_at is not None:
                 self._chance_at = min(self._chance_at, self.bus.now() + TRY_AGAIN)
-        self.state, effects = machine.step(self.state, event)
+        self.state, effects = step(self.state, event)
         if self.state.lost is not known:
             self._notice(known)
         for effect in effects:
@@ -379,7 +380,7 @@ class TaskRunner:
             case ApplyTo():
                 self._calls.apply(effect)
             case ReleaseFrom():
-                leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, *machine.DEPLOYING) else 0.0
+                leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, *DEPLOYING) else 0.0
                 self.bus.later(leisure, partial(self._calls.release, effect))
             case Running():
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())

@@ -4,7 +4,8 @@ Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `u
 `Names` shortens IRIs by prefixes, `short` without, `ecology_names` makes
 them for an ecology; `duration` is how long something has lasted. JSON: the functions that end in `_body`. Diagrams:
 `mermaid`, and `diagram` for notebooks, whose tables and texts are `html_table`, `html_text`, `html_sections`.
-The events of a run are worded in `selfconf.render.run_events`, which is loaded where a task runs.
+Two doors of their own are loaded where they are needed: `selfconf.render.run_events` words the events of a run, and
+`selfconf.render.why` what a history says of a moment.
 """
 
 from selfconf.render.bodies import (
@@ -19,7 +20,7 @@ from selfconf.render.bodies import (
     value_body,
 )
 from selfconf.render.html import diagram, html_sections, html_table, html_text
-from selfconf.render.mermaid import mermaid
+from selfconf.render.mermaid_diagram import mermaid
 from selfconf.render.names import Names, ecology_names, short
 from selfconf.render.tables import count, duration, table
 from selfconf.render.text import (

@@ -19,17 +19,21 @@ be called from any thread. Work that takes long belongs on a thread of its own, 
 
 from selfconf.sdk.component import CallStatus, Component, Refused, Response, Signal
 from selfconf.sdk.host import Host
-from selfconf.sdk.program import main
+from selfconf.sdk.program import add_connection_arguments, main, open_host
+from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.termination import Termination, parent_environment
 
 __all__ = [
     "CallStatus",
     "Component",
+    "ComponentRuntime",
     "Host",
     "Refused",
     "Response",
     "Signal",
     "Termination",
+    "add_connection_arguments",
     "main",
+    "open_host",
     "parent_environment",
 ]

@@ -14,7 +14,7 @@ from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification
 from selfconf.bus.memory import Faults, MemoryBus, Network
-from selfconf.configurator.state import Phase, Policy
+from selfconf.configurator import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.configuration import Configuration
@@ -24,8 +24,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import Document, parse
-from selfconf.sdk import Component
-from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk import Component, ComponentRuntime
 from selfconf.site import Shelf, Site
 
 ECOLOGY_NAME = "memory"
