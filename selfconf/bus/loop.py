@@ -1,8 +1,11 @@
 """The event loop of a bus in real time: callbacks from a queue, and timers, on one thread.
 
-What is urgent (`wake_up`) stands in one queue, what comes in bulk (`enqueue_bulk`) in another that is bounded. The
-queue of the urgent holds at most one mark that says "now one of the bulk": so an urgent callback waits for the urgent
-ones before it and for one of the bulk, however many of these there are, and the bulk is not starved either.
+What is urgent (`wake_up`) stands in one queue, what comes in bulk (`enqueue_bulk`) in another. The queue of the urgent
+holds at most one mark that says "now one of the bulk": so an urgent callback waits for the urgent ones before it and
+for one of the bulk, however many of these there are, and the bulk is not starved either.
+
+What others send is bounded, in bytes: of the bulk the oldest make room, while an urgent message (`enqueue_urgent`) that
+finds none is dropped itself, as those before it may say the same. What a program asks of its own loop is not.
 """
 
 from __future__ import annotations
@@ -29,15 +32,23 @@ class Loop:
     """How many timers are kept without asking how many of them were taken back."""
     MOST_IN_BULK = 10_000
     """How many callbacks wait in bulk at most; then each that comes drives out the oldest one."""
+    MOST_BYTES = 64_000_000
+    """How large what others have sent may be together, in bulk and of the urgent; one message may always wait."""
+    OVERHEAD = 500
+    """Bytes that a message takes besides what it says."""
 
     def __init__(self) -> None:
         self._waiting: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self._bulk: deque[Callable[[], None]] = deque()
+        self._urgent_bytes = 0
+        """The size of the urgent messages that wait."""
+        self._bulk: deque[tuple[Callable[[], None], int]] = deque()
+        self._bulk_bytes = 0
+        self._size_lock = threading.Lock()
         self._bulk_lock = threading.Lock()
         self._bulk_is_marked = False
         """Whether `_waiting` holds the mark that lets one of the bulk run."""
         self.dropped = 0
-        """How many callbacks were driven out of the bulk."""
+        """How many messages were driven out of the bulk, or found no room among the urgent."""
         self._timers: list[tuple[float, int, _Timer]] = []
         self._timer_lock = threading.Lock()
         self._taken_back = 0
@@ -54,14 +65,40 @@ class Loop:
         """Call `action` on the loop's thread, soon; may be called from any thread."""
         self._waiting.put(action)
 
-    def enqueue_bulk(self, action: Callable[[], None]) -> None:
-        """Call `action` on the loop's thread, unless newer ones drive it out; may be called from any thread."""
-        with self._bulk_lock:
-            if len(self._bulk) >= self.MOST_IN_BULK:
-                self._bulk.popleft()
+    def enqueue_urgent(self, action: Callable[[], None], size: int) -> bool:
+        """Call `action` on the loop's thread, soon, for a message of so many bytes; False if there is no room for it.
+
+        May be called from any thread.
+        """
+        size += self.OVERHEAD
+        with self._size_lock:
+            if self._urgent_bytes and self._urgent_bytes + size > self.MOST_BYTES:
                 self.dropped += 1
-            self._bulk.append(action)
+                return False
+            self._urgent_bytes += size
+
+        def run() -> None:
+            with self._size_lock:
+                self._urgent_bytes -= size
+            action()
+
+        self._waiting.put(run)
+        return True
+
+    def enqueue_bulk(self, action: Callable[[], None], size: int = 0) -> bool:
+        """Call `action` on the loop's thread, for a message of so many bytes, unless newer ones drive it out.
+
+        May be called from any thread. Returns True: there is always room for the newest.
+        """
+        size += self.OVERHEAD
+        with self._bulk_lock:
+            self._bulk.append((action, size))
+            self._bulk_bytes += size
+            while len(self._bulk) > self.MOST_IN_BULK or (self._bulk_bytes > self.MOST_BYTES and len(self._bulk) > 1):
+                self._bulk_bytes -= self._bulk.popleft()[1]
+                self.dropped += 1
             self._mark_bulk()
+        return True
 
     def _mark_bulk(self) -> None:
         if self._bulk and not self._bulk_is_marked:
@@ -71,7 +108,8 @@ class Loop:
     def _run_one_of_bulk(self) -> None:
         with self._bulk_lock:
             self._bulk_is_marked = False
-            action = self._bulk.popleft() if self._bulk else None
+            action, size = self._bulk.popleft() if self._bulk else (None, 0)
+            self._bulk_bytes -= size
             self._mark_bulk()
         if action is not None:
             action()
@@ -123,6 +161,7 @@ class Loop:
         self._taken_back = 0
         with self._bulk_lock:
             self._bulk.clear()
+            self._bulk_bytes = 0
 
     def _due(self) -> Callable[[], None] | None:
         """The timer whose time has come; timers go before the queue, or a flood in the queue would hold them up."""

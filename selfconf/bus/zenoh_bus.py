@@ -177,14 +177,19 @@ class _Request:
 class _Receiver:
     """Calls back on the loop's thread for what a declaration receives, until the declaration is taken back."""
 
-    def __init__(self, bus: ZenohBus, call: Callable[..., None], urgent: bool = True) -> None:
+    def __init__(self, bus: ZenohBus, call: Callable[..., None]) -> None:
         self._bus, self._call = bus, call
-        self._enqueue = bus.wake_up if urgent else bus.enqueue_bulk
         self._listening = True
 
     def received(self, *arguments: Any) -> None:
-        """Called by Zenoh, on a thread of its own."""
-        self._enqueue(lambda: self._call(*arguments) if self._listening else None)
+        """Called by Zenoh, on a thread of its own, for what may not be missed: it waits however much else does."""
+        self._bus.wake_up(lambda: self._call(*arguments) if self._listening else None)
+
+    def received_message(self, message: Sample | _Request, urgent: bool = True) -> bool:
+        """Called by Zenoh, on a thread of its own, for what others say; whether there is room for it."""
+        enqueue = self._bus.enqueue_urgent if urgent else self._bus.enqueue_bulk
+        size = len(message.payload) + len(message.attachment)
+        return enqueue(lambda: self._call(message) if self._listening else None, size)
 
     def open(self, declared: Any) -> Callable[[], None]:
         """Begin, for what has been declared; the result takes it back, with every callback that has not run yet."""
@@ -324,22 +329,24 @@ class ZenohBus(Loop):
         if direct:
             immediate = _DirectReceiver(self, receive)
             return immediate.open(self._session.declare_subscriber(key, Callback(immediate.received, indirect=False)))
-        receiver = _Receiver(self, receive, urgent=urgency is Urgency.EVENT)
-        return receiver.open(
-            self._session.declare_subscriber(
-                key, Callback(lambda sample: receiver.received(_sample(sample)), indirect=False)
-            )
-        )
+        receiver, urgent = _Receiver(self, receive), urgency is Urgency.EVENT
+
+        def arrived(sample: zenoh.Sample) -> None:
+            receiver.received_message(_sample(sample), urgent)
+
+        return receiver.open(self._session.declare_subscriber(key, Callback(arrived, indirect=False)))
 
     def serve(self, key: str, answer: Callable[[_Request], None], *, complete: bool = False) -> Callable[[], None]:
         """Answer questions to a key."""
 
         receiver = _Receiver(self, answer)
-        return receiver.open(
-            self._session.declare_queryable(
-                key, Callback(lambda query: receiver.received(_Request(query)), indirect=False), complete=complete
-            )
-        )
+
+        def asked(query: zenoh.Query) -> None:
+            request = _Request(query)
+            if not receiver.received_message(request):
+                request.finish()
+
+        return receiver.open(self._session.declare_queryable(key, Callback(asked, indirect=False), complete=complete))
 
     def ask(
         self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None], attachment: bytes = b""

@@ -194,6 +194,28 @@ def test_a_bulk_that_is_full_drops_the_oldest_and_counts_them() -> None:
     assert loop.dropped == 5
 
 
+def test_a_bulk_that_is_too_large_drops_the_oldest_but_never_the_newest() -> None:
+    loop = Loop()
+    said: list[int] = []
+    for number in range(5):
+        loop.enqueue_bulk(partial(said.append, number), Loop.MOST_BYTES // 2 - Loop.OVERHEAD)
+    loop.enqueue_bulk(partial(said.append, 5), 2 * Loop.MOST_BYTES)
+    loop.poll()
+    assert (said, loop.dropped) == ([5], 5)
+
+
+def test_urgent_messages_that_find_no_room_are_dropped_until_those_before_have_run() -> None:
+    loop = Loop()
+    said: list[int] = []
+    half = Loop.MOST_BYTES // 2 - Loop.OVERHEAD
+    assert [loop.enqueue_urgent(partial(said.append, number), half) for number in range(3)] == [True, True, False]
+    loop.wake_up(partial(said.append, 3))
+    loop.poll()
+    assert loop.enqueue_urgent(partial(said.append, 4), 2 * Loop.MOST_BYTES)
+    loop.poll()
+    assert (said, loop.dropped) == ([0, 1, 3, 4], 1)
+
+
 def test_nothing_of_the_bulk_is_lost_or_doubled_among_many_threads() -> None:
     loop = Loop()
     said: list[int] = []

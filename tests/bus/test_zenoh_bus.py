@@ -223,6 +223,23 @@ def test_a_flood_of_signals_delays_no_call(zenoh_router: ZenohBus, top: str) -> 
         bus.close()
 
 
+def test_a_question_for_which_there_is_no_room_is_ended_at_once(
+    zenoh_router: ZenohBus, top: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    busy, asker = client([zenoh_router.endpoint]), client([zenoh_router.endpoint])
+    monkeypatch.setattr(ZenohBus, "MOST_BYTES", 1000)
+    said: list[Replies] = []
+    try:
+        busy.serve(f"{top}/busy", lambda request: request.finish())
+        for _ in range(3):
+            asker.ask(f"{top}/busy", b"x" * 400, 10.0, said.append)
+        assert until(lambda: len(said) == 2, asker)
+        assert until(lambda: len(said) == 3, asker, busy)
+    finally:
+        busy.close()
+        asker.close()
+
+
 def test_a_roll_call_of_hundreds_and_a_watch_of_them_miss_nobody(zenoh_router: ZenohBus, top: str) -> None:
     crowd, bus = client([zenoh_router.endpoint]), client([zenoh_router.endpoint])
     names = {f"{top}/{number}/live" for number in range(450)}
