@@ -158,6 +158,20 @@ def test_a_site_is_not_read_again_as_long_as_its_advertisements_are_the_same(
     assert len(replied) == 3 + 2 + 1 + 2
 
 
+def test_what_a_site_has_said_to_hold_still_holds_though_another_discovery_forgets_it(
+    field: Field, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    field.site("living-room", "tracker")
+    first, found, work = field.discover(), [], []
+    monkeypatch.setattr(field.ecology, "aside", work.append)
+    field.ecology.discover(found.append)
+    assert field.network.run(lambda: bool(work), DISCOVERY)
+    field.ecology.known = {}  # as by a discovery to which the site has not answered
+    work.pop()()
+    assert field.network.run(lambda: bool(found), DISCOVERY)
+    assert found[0].found == first.found
+
+
 def test_two_pages_of_one_number_are_not_both_passed_over(field: Field) -> None:
     def answer(request: Request) -> None:
         for name in ("tracker", "drive"):

@@ -106,10 +106,16 @@ class Record:
             self._replace(self._history.past())
 
     def note(self, change: EcologyChange) -> None:
-        """Note a change."""
+        """Note a change; where the disk is full it is missing in the history, and can be asked for all the same."""
         self._replace(change.graphs)
-        if self._history is not None:
-            self._replace(self._history.note(change.graphs))
+        if self._history is None:
+            return
+        try:
+            past = self._history.note(change.graphs)
+        except (OSError, RuntimeError):  # the latter is how Oxigraph says that a store cannot be written
+            log.exception("a change is missing in the history")
+        else:
+            self._replace(past)
 
     def settle(self) -> None:
         """Take what the last server has left running, and does not run any more, for the past."""
@@ -150,8 +156,8 @@ async def _serve(
     def take(change: EcologyChange) -> None:
         try:
             record.note(change)
-        except Exception:  # the disk may be full: the page shows all the same what the history lacks
-            log.exception("a change is missing in the history")
+        except Exception:  # an outermost loop: the page shows all the same what cannot be asked for
+            log.exception("a change is missing in what is asked; going on")
         loop.call_soon_threadsafe(board.apply, change)  # last: whoever hears of it finds it by SPARQL
 
     def tell(change: EcologyChange) -> None:

@@ -130,3 +130,22 @@ def test_few_replaced_uplinks_stay_however_fast_links_change(relay: CountedRelay
     for _ in range(zenoh_relay.MOST_LINGERING + 3):
         relay.connect([NOBODY])
     assert len(relay._lingering) == zenoh_relay.MOST_LINGERING
+
+
+def test_an_uplink_for_which_no_new_one_can_be_opened_stays_until_one_can(
+    relay: CountedRelay, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    relay.connect([NOBODY])
+    old = relay._uplink
+    with monkeypatch.context() as refusing:
+
+        def refuse(_: CountedRelay) -> list[Any]:
+            refusing.undo()
+            assert relay._uplink is old
+            raise NetworkError("too many open files")
+
+        refusing.setattr(CountedRelay, "open_uplink", refuse)
+        notice(relay, False, True)
+    assert "too many open files" in caplog.text
+    relay._loop.run(lambda: relay._uplink is not old)
+    assert relay.opened == 2

@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+import errno
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
 import pytest
 
 from selfconf.errors import AuthorError, NetworkError
-from selfconf.serve.server import bound
+from selfconf.query import StandingQuestion
+from selfconf.rdf.vocabulary import ROB
+from selfconf.serve.history import History
+from selfconf.serve.server import Record, bound
+from tests.lab import ADVERTISEMENTS
+from tests.serve.shown import advertised
 
 
 def test_a_port_that_is_taken_is_a_sentence() -> None:
@@ -22,3 +32,20 @@ def test_what_is_no_address_is_a_sentence() -> None:
         bound("no such host", 0)
     with pytest.raises(NetworkError, match="cannot listen"):
         bound("192.0.2.1", 0)
+
+
+def test_what_a_full_disk_keeps_from_the_history_can_be_asked_for_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def full(history: History, graphs: Mapping[str, bytes]) -> Mapping[str, bytes]:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(History, "note", full)
+    record = Record(tmp_path)
+    try:
+        record.note(advertised(*ADVERTISEMENTS))
+        asked = StandingQuestion(f"ASK {{ ?c a <{ROB.PositionSensor}> }}", ["application/sparql-results+json"])
+        assert b"true" in record.dataset.ask(asked)[1]
+    finally:
+        record.close()
+    assert "missing in the history" in caplog.text
