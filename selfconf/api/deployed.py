@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
+from selfconf.bus.port import Sample
+from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
 from selfconf.render import value_body
@@ -69,3 +73,16 @@ def local_name(term: Term | None) -> str:
 
 def _value(value: Term | None) -> object:
     return None if value is None else value_body(value)
+
+
+def connected(sample: Sample) -> Iterator[tuple[IRI, IRI]]:
+    """Yield who feeds whom in the deployed configuration that a configurator has answered; nothing for no Turtle."""
+    try:
+        document = turtle.parse(sample.payload, sample.key)
+    except TurtleError:
+        return
+    for node in document.instances(SC.Connection):
+        for source in document.values(node, SC["from"]):
+            for sink in document.values(node, SC.to):
+                if isinstance(source, IRI) and isinstance(sink, IRI):
+                    yield source, sink

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -13,38 +11,36 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from selfconf import rendezvous
 from selfconf.api.arguments import Paths, option
 from selfconf.api.component_states import ComponentState, component_states
-from selfconf.api.deployed import deployed_body
+from selfconf.api.deployed import connected, deployed_body
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
+from selfconf.api.living_tasks import LivingTask, LivingTasks
 from selfconf.api.membership import MEMBERS, beliefs, check_may_run, member
 from selfconf.api.output_sources import follow_output
+from selfconf.api.site_access import SiteAccess, site_accesses
 from selfconf.api.site_logs import LogSource
+from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.port import Replies, Sample
+from selfconf.bus.port import Replies
 from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
 from selfconf.errors import AuthorError, NetworkError, PeerError, TurtleError
 from selfconf.model.holder import Holder
-from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import component_chunk, owner_of, site_of, task_name
+from selfconf.protocol.keys import component_chunk, owner_of, task_name
 from selfconf.protocol.messages import (
-    Access,
     End,
     LogPart,
     LogQuestion,
     Notice,
-    RefusedAttempt,
     Status,
-    TaskRecord,
     Wake,
 )
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
-from selfconf.rdf.vocabulary import SC
 from selfconf.render.why import told_why
 
 if TYPE_CHECKING:
@@ -53,8 +49,6 @@ if TYPE_CHECKING:
     from selfconf.api.task import TaskSpecification
     from selfconf.model.refusal import Refusal, Undecided
 
-ROLL_CALL = 3.0
-"""How long, in seconds, a roll-call may take."""
 STATES = 1.0
 """How long, in seconds, the components may take to say how they are."""
 ENDING_PROCESS = 10.0
@@ -63,106 +57,7 @@ LIVES_AGAIN = 20.0
 """How long, in seconds, a component that is started again may take until it lives."""
 PAUSES = (0.0, 0.1, 0.4)
 """Seconds before each call of the sites, until one answers: one that has just begun may not be known to its hub."""
-ANSWER_PATIENCE = 20.0
-"""How long, in seconds, an answer is waited for that the bus itself should end earlier."""
 _Result = TypeVar("_Result")
-
-
-@immutable
-class LivingTask:
-    """A task of an ecology: who runs it, since when, and with which components."""
-
-    name: str
-    priority: int
-    beginning: float
-    """When it began, in seconds of the Unix epoch."""
-    phase: str
-    template: IRI
-    configurator: str
-    """The name of the configurator that runs it; empty if no site has begun to."""
-    detached: bool
-    """Whether it lives in the sites."""
-    components: tuple[IRI, ...] = ()
-    inside_of: IRI | None = None
-    """The composite of which it is the inside, if it is one: its site runs it."""
-
-    @classmethod
-    def of(cls, status: Status, detached: bool) -> LivingTask:
-        """A task that a configurator runs."""
-        name = task_name(status.task)
-        return cls(
-            name,
-            status.priority,
-            status.beginning,
-            status.phase,
-            status.template,
-            status.configurator,
-            detached,
-            status.components,
-            status.outside,
-        )
-
-    @property
-    def lives_in(self) -> str:
-        """What goes on with it: the sites, the command that runs it, or the composite of which it is the inside."""
-        if self.inside_of is not None:
-            return f"composite {self.inside_of.short}"
-        return "sites" if self.detached else "command"
-
-    @classmethod
-    def kept(cls, record: TaskRecord) -> LivingTask:
-        """A task that the sites keep and that none runs now."""
-        return cls(
-            task_name(record.task), record.priority, record.beginning, "kept", IRI(record.wanted), "", detached=True
-        )
-
-    def body(self) -> dict[str, object]:
-        """The task as JSON."""
-        return {
-            "task": self.name,
-            "priority": self.priority,
-            "beginning": self.beginning,
-            "phase": self.phase,
-            "template": self.template,
-            "inside_of": self.inside_of,
-            "configurator": self.configurator,
-            "detached": self.detached,
-            "components": list(self.components),
-        }
-
-
-@immutable
-class SiteAccess:
-    """Who may do what at the hub of a site with keys, and what was refused there, the latest first."""
-
-    site: str
-    accesses: tuple[Access, ...]
-    refused: tuple[RefusedAttempt, ...]
-    components: Mapping[str, IRI]
-    """The components of the ecology, by their chunks in keys and common names."""
-
-    def access_control(self) -> dict[str, Any]:
-        """The rules as Zenoh has them, at the member `access_control` of a configuration."""
-        from selfconf.access import AccessRules  # what it needs is an extra
-
-        return AccessRules(self.accesses).access_control()
-
-
-def _links(sample: Sample) -> Iterator[tuple[IRI, IRI]]:
-    """The connections of a deployed configuration: who feeds whom. Nothing for what is no Turtle."""
-    try:
-        document = turtle.parse(sample.payload, sample.key)
-    except TurtleError:
-        return
-    for node in document.instances(SC.Connection):
-        for source in document.values(node, SC["from"]):
-            for sink in document.values(node, SC.to):
-                if isinstance(source, IRI) and isinstance(sink, IRI):
-                    yield source, sink
-
-
-def _said_of_silent(configurator: str) -> str:
-    return f"the configurator {configurator!r} lives, but does not answer"
 
 
 class LivingEcology(Ecology):
@@ -182,8 +77,8 @@ class LivingEcology(Ecology):
         self._view = EcologyView(self._bus, name, beliefs(credentials), selects=True)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
-        self.silent: tuple[str, ...] = ()
-        """The configurators that live, but did not answer when they were asked for their `tasks`, sorted."""
+        self._synchronous = SynchronousBus(self._bus)
+        self._tasks = LivingTasks(self._synchronous, self._view.keys)
         try:
             if not any(self._sites_answer(pause) for pause in PAUSES):
                 raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
@@ -205,7 +100,7 @@ class LivingEcology(Ecology):
 
     def discover(self) -> Discovery:
         """Acts 1 and 2 of the paper: ask everything that is alive what it advertises. Raises NetworkError."""
-        self.discovery = self._wait(self._view.discover)
+        self.discovery = self._synchronous.wait(self._view.discover)
         missing = (
             f"site {site} lives, but did not answer in full; what it advertises may be missing"
             for site in self.discovery.missing
@@ -219,7 +114,7 @@ class LivingEcology(Ecology):
 
     def holders(self) -> Mapping[IRI, Holder]:
         """The tasks that hold components which they do not share, by component; as of the last discovery."""
-        replies = self._ask(self._view.keys.configurator_call("*", "status"))
+        replies = self._synchronous.ask(self._view.keys.configurator_call("*", "status"))
         held, found = holders_in(replies, self._view.keys), self.discovery.found
         shared = {c for c in held if c in found and found[c].advertisement.profile.is_shareable}
         return {c: holder for c, holder in held.items() if c not in shared}
@@ -241,7 +136,9 @@ class LivingEcology(Ecology):
         """
         discovery = self.discover()
         asked = self._view.keys.any_call("state")
-        replies = Replies() if self._looks_on_only else self._ask(asked, seconds=STATES)  # nobody would hear it
+        replies = (
+            Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATES)
+        )  # nobody would hear it
         found = []
         silent: list[str] = []
         for one in component_states(discovery, self._view.keys, replies):
@@ -257,7 +154,7 @@ class LivingEcology(Ecology):
     def _life(self, component: IRI) -> str | None:
         """The life of a component; those of a large ecology, which most who look on need not, are called now."""
         if not self._view.knows(component_chunk(component)):
-            self._view.called(self._wait(partial(self._bus.roll_call, self._view.keys.any_life(), ROLL_CALL)))
+            self._view.called(self._synchronous.living(self._view.keys.any_life()))
         return self._view.life(component)
 
     @property
@@ -314,8 +211,8 @@ class LivingEcology(Ecology):
             )
         if life is not None:
             trouble = f"the site {site} did not end {one.short}"
-            self._told(self._ask(keys.end(site), encode(End(one)), ENDING_PROCESS), trouble)
-        self._told(self._ask(keys.wake(site), encode(Wake(one))), f"the site {site} did not start {one.short}")
+            self._synchronous.demand(keys.end(site), encode(End(one)), trouble, ENDING_PROCESS)
+        self._synchronous.demand(keys.wake(site), encode(Wake(one)), f"the site {site} did not start {one.short}")
         deadline = self._bus.now() + LIVES_AGAIN
         while self._bus.now() < deadline:
             now = next((state for state in self.component_states() if state.component == one), None)
@@ -330,7 +227,7 @@ class LivingEcology(Ecology):
     def deployed(self) -> dict[str, dict[str, Any]]:
         """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
         found = {}
-        for sample in self._ask(self._view.keys.configuration()).samples:
+        for sample in self._synchronous.ask(self._view.keys.configuration()).samples:
             try:
                 body = deployed_body(turtle.parse(sample.payload, sample.key))
             except TurtleError:
@@ -347,65 +244,38 @@ class LivingEcology(Ecology):
     @property
     def tasks(self) -> tuple[Status, ...]:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
-        found: list[Status] = []
-        rejected: list[str] = []
-        keys = self._view.keys
-        living = {
-            owner_of(key) for key in self._wait(partial(self._bus.roll_call, keys.any_configurator_life(), ROLL_CALL))
-        }
-        for sample in self._ask(keys.configurator_call("*", "status")).samples:
-            try:
-                status = decode(sample.payload, Status)
-            except PeerError as error:
-                rejected.append(f"left out an answer: {error}")
-                continue
-            if sample.key == keys.configurator_call(status.configurator, "status"):
-                found.append(status)
-            else:
-                rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
-        self.silent = tuple(sorted(living - {status.configurator for status in found}))
-        rejected += map(_said_of_silent, self.silent)
-        self.complaints = tuple(rejected)
-        return tuple(sorted(found, key=lambda status: status.configurator))
+        return self._complaining(self._tasks.running())
 
     def all_tasks(self) -> tuple[LivingTask, ...]:
         """The tasks that run and those that live in the sites, sorted by name."""
-        running = self.tasks
-        kept = {record.task: record for record in self._kept()}
-        found = [LivingTask.of(status, status.task in kept) for status in running]
-        known = {status.task for status in running}
-        found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
-        return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
+        return self._complaining(self._tasks.all())
+
+    @property
+    def silent(self) -> tuple[str, ...]:
+        """The configurators that live, but did not answer when they were asked for their `tasks`, sorted."""
+        return self._tasks.silent
+
+    def _complaining(self, found: _Result) -> _Result:
+        """Take over what was wrong with what configurators have answered."""
+        self.complaints = self._tasks.complaints
+        return found
 
     def access(self) -> tuple[SiteAccess, ...]:
         """Who may do what at the hub of each site that has keys, and what was refused there; sorted by site."""
-        found: dict[str, list[Access]] = {}
-        refused: dict[str, list[RefusedAttempt]] = {}
-        rejected = []
-        for sample in self._ask(self._view.keys.access()).samples:
-            try:
-                site = site_of(sample.key)
-                if b'"kind": "refused"' in sample.payload or b'"kind":"refused"' in sample.payload:
-                    refused.setdefault(site, []).append(decode(sample.payload, RefusedAttempt))
-                else:
-                    found.setdefault(site, []).append(decode(sample.payload, Access))
-            except PeerError as error:
-                rejected.append(f"left out an answer: {error}")
-        components = {component_chunk(component): component for component in self.discover().found}
-        self.complaints = tuple(rejected)
-        return tuple(
-            SiteAccess(site, tuple(found[site]), tuple(refused.get(site, ())), components) for site in sorted(found)
-        )
+        replies = self._synchronous.ask(self._view.keys.access())
+        found, complaints = site_accesses(replies, self.discover().found)
+        self.complaints = complaints
+        return found
 
     def other_logs(self, known: Collection[str], complain: Callable[[str], None]) -> list[LogSource]:
         """The logs of the sites that live, but for those that are known; `complain` hears once of each silent one."""
-        lives = self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL))
+        lives = self._synchronous.living(self._view.keys.any_site_life())
         silent = set[str]()
         return [partial(self._log_part, site, silent, complain) for site in sorted({*map(owner_of, lives)} - {*known})]
 
     def _log_part(self, site: str, silent: set[str], complain: Callable[[str], None], question: LogQuestion) -> LogPart:
         """What a site tells of its log; nothing new where it does not answer."""
-        replies = self._ask(self._view.keys.log(site), encode(question))
+        replies = self._synchronous.ask(self._view.keys.log(site), encode(question))
         trouble = [*replies.errors, *(["that takes keys of conf.NAME"] if self._looks_on_only else [])]
         try:
             return decode(replies.samples[0].payload, LogPart)
@@ -424,9 +294,9 @@ class LivingEcology(Ecology):
         if not names:
             return None
         heard: dict[IRI, set[IRI]] = {c: set() for s in self.tasks if s.configurator in names for c in s.components}
-        for sample in self._ask(self._view.keys.configuration()).samples:
+        for sample in self._synchronous.ask(self._view.keys.configuration()).samples:
             if sample.key.split("/")[-2] in names:
-                for source, sink in _links(sample):
+                for source, sink in connected(sample):
                     heard.setdefault(sink, set()).add(source)
         return {component: tuple(sorted(sources)) for component, sources in sorted(heard.items())}
 
@@ -434,7 +304,7 @@ class LivingEcology(Ecology):
         """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
         dataset = super().dataset()
         complaints = list(self.complaints)
-        for sample in self._ask(self._view.keys.configuration()).samples:
+        for sample in self._synchronous.ask(self._view.keys.configuration()).samples:
             try:
                 document = turtle.parse(sample.payload, sample.key)
             except TurtleError as error:
@@ -452,7 +322,7 @@ class LivingEcology(Ecology):
         """
         told: dict[str, list[Notice]] = {}
         rejected = []
-        for sample in self._ask(self._view.keys.notices()).samples:
+        for sample in self._synchronous.ask(self._view.keys.notices()).samples:
             try:
                 notice = decode(sample.payload, Notice)
             except PeerError as error:
@@ -568,16 +438,7 @@ class LivingEcology(Ecology):
         check_may_run(self._credentials)
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         record = task_record(task.complete(), method, option(Policy, "policy", policy), name, priority, upgrade)
-        wanted = task_name(record.task)
-        if any(task_name(status.task) == wanted for status in self.tasks) or self._kept(wanted):
-            raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
-        try:
-            self._keep(record)
-        except NetworkError:
-            with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
-                self._keep(replace(record, revision=record.revision + 1, ended=True))
-            raise
-        return wanted
+        return self._complaining(self._tasks.detach(record))
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them.
@@ -586,88 +447,12 @@ class LivingEcology(Ecology):
         does not end in time, or if a component does not obey; of all tasks those are taken down first that answer.
         """
         check_may_run(self._credentials)
-        running = [s for s in self.tasks if name in (None, s.configurator, task_name(s.task))]
-        kept = self._kept(name)
-        silent = [one for one in self.silent if name in (None, one)]
-        if name is not None:
-            self._refuse_silent(silent)
-            if not running and not kept:
-                raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
-        self._take_down(running, kept)
-        if silent:  # one that was only slow may have ended meanwhile
-            lives = self._wait(partial(self._bus.roll_call, self._view.keys.any_configurator_life(), ROLL_CALL))
-            self._refuse_silent(sorted({owner_of(key) for key in lives}.intersection(silent)))
-        names = {task_name(status.task) or status.configurator for status in running}
-        return tuple(sorted(names | {task_name(record.task) for record in kept}))
-
-    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
-        """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
-        for record in kept:
-            self._keep(replace(record, revision=record.revision + 1, ended=True))
-        for status in running:
-            self._ask(self._view.keys.configurator_call(status.configurator, "stop"))
-        self._await_end({status.configurator for status in running})
-
-    @staticmethod
-    def _refuse_silent(silent: Sequence[str]) -> None:
-        """Raise NetworkError if there are configurators that live, but do not answer."""
-        if silent:
-            raise NetworkError("; ".join(map(_said_of_silent, silent)))
-
-    def _kept(self, name: str | None = None) -> list[TaskRecord]:
-        """The tasks that live in the sites, each by its newest record."""
-        newest: dict[str, TaskRecord] = {}
-        for sample in self._ask(self._view.keys.kept_tasks()).samples:
-            try:
-                record = decode(sample.payload, TaskRecord)
-            except PeerError:
-                continue
-            if record.supersedes(newest.get(record.task)):
-                newest[record.task] = record
-        return [r for r in newest.values() if not r.ended and name in (None, task_name(r.task))]
-
-    def _told(self, replies: Replies, trouble: str) -> None:
-        """Raise NetworkError, which begins with the trouble, where no site has obeyed."""
-        if not replies.samples:
-            raise NetworkError(f"{trouble}: {'; '.join(replies.errors) or 'it does not answer'}")
-
-    def _keep(self, record: TaskRecord) -> None:
-        replies = self._ask(self._view.keys.keep(), encode(record))
-        if not replies.samples:
-            raise NetworkError("; ".join(replies.errors) or "no site of the ecology keeps tasks")
-
-    def _await_end(self, names: set[str]) -> None:
-        """Wait until configurators have released everything and left."""
-        from selfconf.api.run import TAKING_DOWN
-
-        deadline = self._bus.now() + TAKING_DOWN
-        lives = partial(self._bus.roll_call, self._view.keys.any_configurator_life(), ROLL_CALL)
-        while names:
-            names &= {owner_of(key) for key in self._wait(lives)}
-            if names and self._bus.now() > deadline:
-                raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")
-            self._bus.poll(0.02)
+        return self._complaining(self._tasks.stop(name))
 
     def _sites_answer(self, pause: float) -> bool:
         """Whether any site of the ecology lives, as it is found after a pause in seconds."""
         self._bus.poll(pause)
-        return bool(self._wait(partial(self._bus.roll_call, self._view.keys.any_site_life(), ROLL_CALL)))
-
-    def _ask(self, key: str, payload: bytes = b"", seconds: float = ROLL_CALL) -> Replies:
-        def begin(done: Callable[[Replies], None]) -> None:
-            self._bus.ask(key, payload, seconds, done)
-
-        return self._wait(begin)
-
-    def _wait(self, begin: Callable[[Callable[[_Result], None]], None]) -> _Result:
-        """Begin something that says when it is done, and let the bus run until then."""
-        results: list[_Result] = []
-        begin(results.append)
-        deadline = self._bus.now() + ANSWER_PATIENCE
-        self._bus.run(lambda: bool(results) or self._bus.now() > deadline)
-        if not results:
-            raise NetworkError("the ecology does not answer")
-        return results[0]
+        return bool(self._synchronous.living(self._view.keys.any_site_life()))
 
     def __repr__(self) -> str:
         return f"<living ecology {self.name}>"

@@ -13,7 +13,8 @@ from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
 
 if TYPE_CHECKING:
-    from selfconf.api.living import LivingEcology, SiteAccess
+    from selfconf.api.living import LivingEcology
+    from selfconf.api.site_access import SiteAccess
 
 EXAMPLE = """  selfconf access --keys keys
   selfconf access --keys keys --task tidy           # whom each component of a deployed task may hear

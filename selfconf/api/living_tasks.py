@@ -1,0 +1,201 @@
+"""The tasks of a living ecology: those that configurators run, and those that its sites keep."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.errors import NetworkError, PeerError
+from selfconf.model.immutable import immutable
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, owner_of, task_name
+from selfconf.protocol.messages import Status, TaskRecord
+
+
+@immutable
+class LivingTask:
+    """A task of an ecology: who runs it, since when, and with which components."""
+
+    name: str
+    priority: int
+    beginning: float
+    """When it began, in seconds of the Unix epoch."""
+    phase: str
+    template: IRI
+    configurator: str
+    """The name of the configurator that runs it; empty if no site has begun to."""
+    detached: bool
+    """Whether it lives in the sites."""
+    components: tuple[IRI, ...] = ()
+    inside_of: IRI | None = None
+    """The composite of which it is the inside, if it is one: its site runs it."""
+
+    @classmethod
+    def of(cls, status: Status, detached: bool) -> LivingTask:
+        """A task that a configurator runs."""
+        name = task_name(status.task)
+        return cls(
+            name,
+            status.priority,
+            status.beginning,
+            status.phase,
+            status.template,
+            status.configurator,
+            detached,
+            status.components,
+            status.outside,
+        )
+
+    @property
+    def lives_in(self) -> str:
+        """What goes on with it: the sites, the command that runs it, or the composite of which it is the inside."""
+        if self.inside_of is not None:
+            return f"composite {self.inside_of.short}"
+        return "sites" if self.detached else "command"
+
+    @classmethod
+    def kept(cls, record: TaskRecord) -> LivingTask:
+        """A task that the sites keep and that none runs now."""
+        return cls(
+            task_name(record.task), record.priority, record.beginning, "kept", IRI(record.wanted), "", detached=True
+        )
+
+    def body(self) -> dict[str, object]:
+        """The task as JSON."""
+        return {
+            "task": self.name,
+            "priority": self.priority,
+            "beginning": self.beginning,
+            "phase": self.phase,
+            "template": self.template,
+            "inside_of": self.inside_of,
+            "configurator": self.configurator,
+            "detached": self.detached,
+            "components": list(self.components),
+        }
+
+
+class LivingTasks:
+    """Lists the tasks of an ecology, hands it others, and takes them down."""
+
+    def __init__(self, bus: SynchronousBus, keys: Keys) -> None:
+        self._bus, self._keys = bus, keys
+        self.silent: tuple[str, ...] = ()
+        """The configurators that live, but did not answer when they were asked for their tasks, sorted."""
+        self.complaints: tuple[str, ...] = ()
+        """What was wrong with the answers of configurators, as of the last question."""
+
+    def running(self) -> tuple[Status, ...]:
+        """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
+        found: list[Status] = []
+        rejected: list[str] = []
+        keys = self._keys
+        living = {owner_of(key) for key in self._bus.living(keys.any_configurator_life())}
+        for sample in self._bus.ask(keys.configurator_call("*", "status")).samples:
+            try:
+                status = decode(sample.payload, Status)
+            except PeerError as error:
+                rejected.append(f"left out an answer: {error}")
+                continue
+            if sample.key == keys.configurator_call(status.configurator, "status"):
+                found.append(status)
+            else:
+                rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
+        self.silent = tuple(sorted(living - {status.configurator for status in found}))
+        rejected += map(_said_of_silent, self.silent)
+        self.complaints = tuple(rejected)
+        return tuple(sorted(found, key=lambda status: status.configurator))
+
+    def kept(self, name: str | None = None) -> list[TaskRecord]:
+        """The tasks that live in the sites, each by its newest record."""
+        newest: dict[str, TaskRecord] = {}
+        for sample in self._bus.ask(self._keys.kept_tasks()).samples:
+            try:
+                record = decode(sample.payload, TaskRecord)
+            except PeerError:
+                continue
+            if record.supersedes(newest.get(record.task)):
+                newest[record.task] = record
+        return [r for r in newest.values() if not r.ended and name in (None, task_name(r.task))]
+
+    def all(self) -> tuple[LivingTask, ...]:
+        """The tasks that run and those that live in the sites, sorted by name."""
+        running = self.running()
+        kept = {record.task: record for record in self.kept()}
+        found = [LivingTask.of(status, status.task in kept) for status in running]
+        known = {status.task for status in running}
+        found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
+        return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
+
+    def detach(self, record: TaskRecord) -> str:
+        """Hand a task to the sites; returns its name. Raises NetworkError if none keeps it, or if its name is taken."""
+        wanted = task_name(record.task)
+        if any(task_name(status.task) == wanted for status in self.running()) or self.kept(wanted):
+            raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
+        try:
+            self._keep(record)
+        except NetworkError:
+            with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
+                self._end_record(record)
+            raise
+        return wanted
+
+    def stop(self, name: str | None = None) -> tuple[str, ...]:
+        """Take down a task, given by its name or that of its configurator, or all of them; returns their names.
+
+        Raises NetworkError if there is none of that name, or if one does not answer or does not end in time; of all
+        tasks those are taken down first that answer.
+        """
+        running = [s for s in self.running() if name in (None, s.configurator, task_name(s.task))]
+        kept = self.kept(name)
+        silent = [one for one in self.silent if name in (None, one)]
+        if name is not None:
+            _refuse_silent(silent)
+            if not running and not kept:
+                raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
+        self._take_down(running, kept)
+        if silent:  # one that was only slow may have ended meanwhile
+            lives = self._bus.living(self._keys.any_configurator_life())
+            _refuse_silent(sorted({owner_of(key) for key in lives}.intersection(silent)))
+        names = {task_name(status.task) or status.configurator for status in running}
+        return tuple(sorted(names | {task_name(record.task) for record in kept}))
+
+    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
+        """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
+        for record in kept:
+            self._end_record(record)
+        for status in running:
+            self._bus.ask(self._keys.configurator_call(status.configurator, "stop"))
+        self._await_end({status.configurator for status in running})
+
+    def _end_record(self, record: TaskRecord) -> None:
+        self._keep(replace(record, revision=record.revision + 1, ended=True))
+
+    def _keep(self, record: TaskRecord) -> None:
+        replies = self._bus.ask(self._keys.keep(), encode(record))
+        if not replies.samples:
+            raise NetworkError("; ".join(replies.errors) or "no site of the ecology keeps tasks")
+
+    def _await_end(self, names: set[str]) -> None:
+        """Wait until configurators have released everything and left."""
+        from selfconf.api.run import TAKING_DOWN  # here: a program that only looks on runs nothing
+
+        deadline = self._bus.now() + TAKING_DOWN
+        while names:
+            names &= {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
+            if names and self._bus.now() > deadline:
+                raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")
+            self._bus.pause(0.02)
+
+
+def _said_of_silent(configurator: str) -> str:
+    return f"the configurator {configurator!r} lives, but does not answer"
+
+
+def _refuse_silent(silent: Sequence[str]) -> None:
+    """Raise NetworkError if there are configurators that live, but do not answer."""
+    if silent:
+        raise NetworkError("; ".join(map(_said_of_silent, silent)))

@@ -1,0 +1,62 @@
+"""A bus whose questions are waited for: what the library asks the living ecology, it answers before it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from selfconf.bus.port import Bus, Replies
+from selfconf.errors import NetworkError
+
+ROLL_CALL = 3.0
+"""How long, in seconds, a roll-call or a question may take."""
+ANSWER_PATIENCE = 20.0
+"""How long, in seconds, an answer is waited for that the bus itself should end earlier."""
+_Result = TypeVar("_Result")
+
+
+class SynchronousBus:
+    """Asks over a bus, and lets that run until the answer is there."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
+
+    def wait(self, begin: Callable[[Callable[[_Result], None]], None]) -> _Result:
+        """Begin something that says when it is done, and return its result. Raises NetworkError if it never does."""
+        results: list[_Result] = []
+        begin(results.append)
+        deadline = self._bus.now() + ANSWER_PATIENCE
+        self._bus.run(lambda: bool(results) or self._bus.now() > deadline)
+        if not results:
+            raise NetworkError("the ecology does not answer")
+        return results[0]
+
+    def ask(self, key: str, payload: bytes = b"", seconds: float = ROLL_CALL) -> Replies:
+        """Return all answers to a question."""
+
+        def begin(done: Callable[[Replies], None]) -> None:
+            self._bus.ask(key, payload, seconds, done)
+
+        return self.wait(begin)
+
+    def demand(self, key: str, payload: bytes, trouble: str, seconds: float = ROLL_CALL) -> None:
+        """Have something done. Raises NetworkError, which begins with the trouble, where nobody has done it."""
+        replies = self.ask(key, payload, seconds)
+        if not replies.samples:
+            raise NetworkError(f"{trouble}: {'; '.join(replies.errors) or 'it does not answer'}")
+
+    def living(self, key: str) -> tuple[str, ...]:
+        """Return the liveliness keys that match a key."""
+
+        def begin(done: Callable[[tuple[str, ...]], None]) -> None:
+            self._bus.roll_call(key, ROLL_CALL, done)
+
+        return self.wait(begin)
+
+    def pause(self, seconds: float) -> None:
+        """Let the bus run for some time."""
+        self._bus.poll(seconds)
+
+    def now(self) -> float:
+        """Seconds of the bus's clock."""
+        return self._bus.now()

@@ -1,0 +1,149 @@
+"""The tasks of an ecology, asked for over a simulated network: who answers, who is silent, and how they are ended."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from selfconf.api.living_tasks import LivingTask, LivingTasks
+from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.port import Request
+from selfconf.errors import NetworkError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Status, TaskRecord
+
+KEYS = Keys("lab")
+TEMPLATE = IRI("urn:t:navigate")
+PATROL, TIDY = TaskRecord("patrol~1", 1, beginning=5.0, wanted=TEMPLATE), TaskRecord("tidy~2", 1, wanted=TEMPLATE)
+
+
+class Tasks:
+    """Configurators that run tasks, and sites that keep them, on a network of their own."""
+
+    def __init__(self) -> None:
+        self.network = Network()
+        self.asked = LivingTasks(SynchronousBus(self.network.node()), KEYS)
+        self.kept: list[TaskRecord] = []
+
+    def configurator(self, name: str, task: str, answers: bool = True, speaks_of: str = "") -> MemoryBus:
+        """A configurator that runs a task until it is stopped."""
+        node = self.network.node()
+        node.announce(KEYS.configurator_life(name, "1"))
+        status = Status(speaks_of or name, "running", TEMPLATE, 3, 1.5, task=task)
+
+        def answer(request: Request) -> None:
+            if answers:
+                request.reply(KEYS.configurator_call(name, "status"), encode(status))
+            request.finish()
+
+        def stop(request: Request) -> None:
+            request.reply(KEYS.configurator_call(name, "stop"), encode(status))
+            request.finish()
+            node.later(0.1, node.close)
+
+        node.serve(KEYS.configurator_call(name, "status"), answer)
+        node.serve(KEYS.configurator_call(name, "stop"), stop)
+        return node
+
+    def site(self, *records: TaskRecord, keeps: bool = True) -> None:
+        """A site that keeps tasks, or says that it cannot."""
+        node = self.network.node()
+
+        def tell(request: Request) -> None:
+            for record in records:
+                request.reply(KEYS.kept_tasks(), encode(record))
+            request.finish()
+
+        def keep(request: Request) -> None:
+            if keeps:
+                self.kept.append(decode(request.payload, TaskRecord))
+                request.reply(request.key, b"")
+            else:
+                request.refuse("the disk is full")
+            request.finish()
+
+        node.serve(KEYS.kept_tasks(), tell)
+        node.serve(KEYS.keep(), keep)
+
+
+@pytest.fixture
+def tasks() -> Tasks:
+    """An empty ecology."""
+    return Tasks()
+
+
+def test_tasks_that_run_and_tasks_that_are_kept_are_listed_once_each(tasks: Tasks) -> None:
+    tasks.configurator("c1", PATROL.task)
+    tasks.configurator("c2", "watch~3")
+    tasks.site(PATROL, TIDY)
+    found = tasks.asked.all()
+    assert [(task.name, task.configurator, task.detached) for task in found] == [
+        ("patrol", "c1", True),
+        ("tidy", "", True),
+        ("watch", "c2", False),
+    ]
+    assert [task.lives_in for task in found] == ["sites", "sites", "command"]
+
+
+def test_of_several_records_of_a_task_the_newest_counts_and_its_end_is_final(tasks: Tasks) -> None:
+    tasks.site(replace(PATROL, revision=2, priority=7), replace(TIDY, revision=2, ended=True))
+    tasks.site(PATROL, replace(TIDY, revision=9))
+    assert tasks.asked.all() == (LivingTask.kept(replace(PATROL, revision=2, priority=7)),)
+
+
+def test_who_lives_and_does_not_answer_is_named_and_who_speaks_for_another_is_left_out(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1", answers=False)
+    tasks.configurator("c2", "tidy~2", speaks_of="c3")
+    assert tasks.asked.running() == ()
+    assert tasks.asked.silent == ("c1", "c2")
+    assert "c2" in tasks.asked.complaints[0]
+    assert [text for text in tasks.asked.complaints if "'c1' lives, but does not answer" in text]
+
+
+def test_a_task_is_stopped_by_its_name_or_by_that_of_its_configurator(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.configurator("c2", "tidy~2")
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+    assert tasks.asked.stop("c2") == ("tidy",)
+    assert tasks.asked.running() == ()
+
+
+def test_what_the_sites_keep_is_ended_by_a_newer_record(tasks: Tasks) -> None:
+    tasks.site(PATROL, TIDY)
+    assert tasks.asked.stop("tidy") == ("tidy",)
+    assert tasks.kept == [replace(TIDY, revision=2, ended=True)]
+
+
+def test_nothing_is_stopped_by_a_name_that_is_nobodys(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    with pytest.raises(NetworkError, match="no task or configurator 'tidy' answers"):
+        tasks.asked.stop("tidy")
+    assert len(tasks.asked.running()) == 1
+
+
+def test_of_all_tasks_those_that_answer_are_stopped_before_one_that_does_not_is_named(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.configurator("c2", "tidy~2", answers=False)
+    with pytest.raises(NetworkError, match="'c2' lives, but does not answer"):
+        tasks.asked.stop()
+    assert tasks.asked.running() == ()
+    assert tasks.asked.silent == ("c2",)
+
+
+def test_a_task_is_handed_over_once(tasks: Tasks) -> None:
+    tasks.site(TIDY)
+    assert tasks.asked.detach(PATROL) == "patrol"
+    assert tasks.kept == [PATROL]
+    with pytest.raises(NetworkError, match="a task 'tidy' lives already"):
+        tasks.asked.detach(replace(TIDY, task="tidy~3"))
+
+
+def test_a_task_that_no_site_can_keep_is_refused_and_called_off(tasks: Tasks) -> None:
+    tasks.site(keeps=False)
+    with pytest.raises(NetworkError, match="the disk is full"):
+        tasks.asked.detach(PATROL)

@@ -1,0 +1,53 @@
+"""Questions that are waited for: all answers, none, and what never ends."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.api.synchronous_bus import ANSWER_PATIENCE, SynchronousBus
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Request
+from selfconf.errors import NetworkError
+
+
+@pytest.fixture
+def network() -> Network:
+    """A network on which one node answers, and another refuses."""
+    network = Network()
+
+    def answer(request: Request) -> None:
+        request.reply(request.key, b"said " + request.payload)
+        request.finish()
+
+    def refuse(request: Request) -> None:
+        request.refuse("not today")
+        request.finish()
+
+    network.node().serve("k/answers", answer)
+    network.node().serve("k/refuses", refuse)
+    network.node().announce("k/life/1")
+    return network
+
+
+def test_a_question_returns_its_answers(network: Network) -> None:
+    bus = SynchronousBus(network.node())
+    assert [sample.payload for sample in bus.ask("k/answers", b"x").samples] == [b"said x"]
+    assert bus.ask("k/nobody").samples == ()
+    assert bus.living("k/life/*") == ("k/life/1",)
+
+
+def test_what_is_not_done_is_trouble_with_its_reason(network: Network) -> None:
+    bus = SynchronousBus(network.node())
+    bus.demand("k/answers", b"", "it did not move")
+    with pytest.raises(NetworkError, match="it did not move: not today"):
+        bus.demand("k/refuses", b"", "it did not move")
+    with pytest.raises(NetworkError, match="it did not move: it does not answer"):
+        bus.demand("k/nobody", b"", "it did not move")
+
+
+def test_what_never_ends_is_given_up(network: Network) -> None:
+    node = network.node()
+    bus = SynchronousBus(node)
+    node.later(2 * ANSWER_PATIENCE, lambda: None)
+    with pytest.raises(NetworkError, match="the ecology does not answer"):
+        bus.wait(lambda done: None)
