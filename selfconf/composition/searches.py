@@ -73,11 +73,12 @@ class Searches:
     ) -> Iterator[Optimum | Outcome]:
         """The answers of a search; where there is no configuration, with the optional roles that it takes."""
         for answer in search(problem, running):
-            raised = with_additions(problem) if isinstance(answer, Refusal) else None
-            if raised is not None:
-                yield from search(raised, running)
-                return
-            yield answer
+            raised = with_additions(problem, self.steps) if isinstance(answer, Refusal) else None
+            if raised is None:
+                yield answer
+                continue
+            yield from (raised,) if isinstance(raised, Undecided) else search(raised, running)
+            return
 
     def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         found = self._best if self.strategy is Strategy.BEST else self._first_or_nearest

@@ -2,58 +2,114 @@
 
 A role with `sc:minCount 0` that feeds another may be left unplayed. Where there is no solution without its components,
 but one with some of them, the fewest are asked for: by their number, and of equally few by the order of the roles.
+
+*How they are found.* Each optional role is given slots, and for each slot a candidate that is absent: it has no ports,
+and stands for a slot that stays empty. To ask for the fewest components is then a matter of cost: the fewest slots that
+are not empty, and of equally few the most of the first optional role, then of the second, and so on. So the search for
+the best finds them. How many slots a role needs follows from the answer: a solution with so many additions says that no
+role needs more.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import replace
-from itertools import combinations_with_replacement
+from fractions import Fraction
 
+from selfconf.model.cost import CostTerm
+from selfconf.model.optimum import Optimum
+from selfconf.model.partition import ANY_VALUE, Candidate
+from selfconf.model.profile import Profile
+from selfconf.model.refusal import Undecided
+from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.budget import Budget
+from selfconf.search.engines import any_by_clauses
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import possible_with_recruits
-from selfconf.search.strategies import possible
+from selfconf.search.reduction import LazyReduction
+from selfconf.search.strategies import best_configuration, solution
 
-MOST_ADDITIONS = 3
-"""How many components are added at most."""
-MOST_CHOICES = 60
-"""How many choices of roles are tried at most."""
+MOST_OF_A_ROLE = 64
+"""How many components of one optional role are asked for at most."""
 CHOICE_STEPS = 20_000
-"""Steps for the question whether a choice makes a solution possible."""
+"""Steps for each question about a choice of optional roles, unless more are allowed."""
+ABSENT = IRI("urn:selfconf:absent")
+"""The property by which a candidate says that it stands for an empty slot."""
+_ABSENT_ONCE = ((ABSENT, Literal("1", IRI(XSD_NAMESPACE + "integer"))),)
 
 
-def with_additions(problem: Problem) -> Problem | None:
+def with_additions(problem: Problem, steps: int | None = None) -> Problem | Undecided | None:
     """Return a problem that has no solution with the fewest of its optional roles asked for that give it one.
 
-    None where no choice was found that does.
+    None if no choice of them does, and `Undecided` if that was not decided within the steps for one question.
     """
     if any(role.minimum and not some for role, some in zip(problem.roles, problem.candidates, strict=True)):
         return None
-    for number, minima in enumerate(_choices(problem)):
-        if number == MOST_CHOICES:
-            return None
-        raised = asking_for(problem, minima)
-        if possible(raised, Budget(CHOICE_STEPS)) and (
-            not any(role.recruits for role in problem.roles) or possible_with_recruits(raised, CHOICE_STEPS)
-        ):
-            return raised
+    steps = max(CHOICE_STEPS, steps or 0)
+    needed = _needed(problem)
+    if not needed:
+        return None
+    most = max(needed.values())
+    found = _fewest(problem, needed, min(most, MOST_OF_A_ROLE), steps)
+    if found is None and most > MOST_OF_A_ROLE:
+        return Undecided(steps)
+    return asking_for(problem, found) if isinstance(found, Counter) else found
+
+
+def _fewest(problem: Problem, needed: Mapping[int, int], most: int, steps: int) -> Counter[int] | Undecided | None:
+    """Return the fewest components that make a solution possible, by role, with at most so many of each."""
+    solvable = _is_solvable(_optional(problem, needed, most), steps)
+    if solvable is not True:
+        return solvable or None
+    for room in (*(1 << k for k in range(most.bit_length()) if 1 << k < most), most):
+        optional = _optional(problem, needed, room)
+        found = _chosen(problem, optional, steps) if room == most or _is_solvable(optional, steps) is True else None
+        if isinstance(found, Counter) and room < min(found.total(), most):  # with more of one role it may take fewer
+            fewer = _chosen(problem, _optional(problem, needed, min(found.total(), most)), steps)
+            found = fewer if isinstance(fewer, Counter) else found
+        if found is not None:
+            return found
     return None
 
 
-def _choices(problem: Problem) -> Iterator[Counter[int]]:
-    """Yield how many components are asked for of which optional roles, the fewest first."""
-    optional = [
-        number
+def _is_solvable(problem: Problem, steps: int) -> Undecided | bool:
+    found = solution(LazyReduction(problem), Budget(steps), any_by_clauses)
+    return Undecided(steps) if isinstance(found, Undecided) else found is not None
+
+
+def _chosen(problem: Problem, optional: Problem, steps: int) -> Counter[int] | Undecided | None:
+    """Return how many components of each optional role the best solution asks for; None if recruits allow none."""
+    best = best_configuration(optional, steps)
+    if not isinstance(best, Optimum):
+        return best if isinstance(best, Undecided) else None
+    numbers = {role.iri: number for number, role in enumerate(problem.roles) if role.minimum == 0}
+    return Counter(
+        numbers[one.role]
+        for one in best.configuration.assignments
+        if one.role in numbers
+        for component in one.components
+        if not component.startswith(ABSENT)
+    )
+
+
+def _needed(problem: Problem) -> dict[int, int]:
+    """Return the optional roles that may help, by number, with how many of their components could be of use at most.
+
+    Each that is asked for feeds an input that none of the others feeds.
+    """
+    unvalued = {number for number, _ in problem.unvalued}
+    room = {
+        number: _room(problem, number)
         for number, role in enumerate(problem.roles)
-        if role.minimum == 0 and problem.sinks[number] and problem.candidates[number]
-    ]
-    for size in range(1, MOST_ADDITIONS + 1):
-        for chosen in combinations_with_replacement(optional, size):
-            minima = Counter(chosen)
-            if all(count <= _room(problem, number) for number, count in minima.items()):
-                yield minima
+        if role.minimum == 0 and problem.sinks[number] and problem.candidates[number] and number not in unvalued
+    }
+    inputs = [max((len(c.profile.required) for c in some), default=0) for some in problem.candidates]
+    needed = dict.fromkeys(room, 0)
+    for _ in room:  # along a chain of optional roles
+        slots = [needed.get(number, role.minimum) for number, role in enumerate(problem.roles)]
+        fed = {number: sum(slots[sink] * inputs[sink] for sink in problem.sinks[number]) for number in room}
+        needed = {number: min(room[number], fed[number]) for number in room}
+    return {number: count for number, count in needed.items() if count}
 
 
 def _room(problem: Problem, number: int) -> int:
@@ -62,7 +118,32 @@ def _room(problem: Problem, number: int) -> int:
     return candidates if maximum is None else min(maximum, candidates)
 
 
-def asking_for(problem: Problem, minima: Counter[int]) -> Problem:
+def _optional(problem: Problem, needed: Mapping[int, int], room: int) -> Problem:
+    """Return a problem in which optional roles have slots that may stay empty, and solutions cost what they ask for."""
+    slots = {number: min(count, room) for number, count in needed.items()}
+    roles = tuple(
+        replace(role, minimum=slots.get(number, 0), maximum=slots.get(number, 0)) if role.minimum == 0 else role
+        for number, role in enumerate(problem.roles)
+    )
+    admits = (ANY_VALUE,) * len(problem.variables)
+    candidates = tuple(
+        (
+            *some,
+            *(
+                Candidate(Profile(IRI(f"{ABSENT}:{number}:{place}"), properties=_ABSENT_ONCE), admits)
+                for place in range(slots.get(number, 0))
+            ),
+        )
+        for number, some in enumerate(problem.candidates)
+    )
+    fewest = CostTerm(ABSENT, Fraction(-1), otherwise=Fraction(0))
+    earliest = (CostTerm(ABSENT, otherwise=Fraction(0), role=problem.roles[number].iri) for number in slots)
+    template = replace(problem.task.template, roles=roles, cost=((fewest,), *((term,) for term in earliest)))
+    partition = replace(problem.partition, candidates=candidates)
+    return Problem(replace(problem.task, template=template), partition, problem.hierarchy)
+
+
+def asking_for(problem: Problem, minima: Mapping[int, int]) -> Problem:
     """Return a problem with other minima for some roles, by number."""
     roles = tuple(replace(role, minimum=minima.get(number, role.minimum)) for number, role in enumerate(problem.roles))
     template = replace(problem.task.template, roles=roles)

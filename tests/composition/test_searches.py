@@ -23,7 +23,7 @@ from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Input, Output, needed_operation, offered_operation
 from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.template import TemplatePort
-from selfconf.search.additions import MOST_ADDITIONS, asking_for
+from selfconf.search.additions import asking_for
 from selfconf.search.problem import Problem
 from selfconf.search.relaxations import relaxed_by, with_relaxations
 from tests.effort import NIGHTLY
@@ -72,7 +72,7 @@ def raised(problem: Problem) -> Iterator[Problem]:
     """The problem, and those in which optional roles that feed others are asked for, the fewest first."""
     yield problem
     optional = [k for k, role in enumerate(problem.roles) if role.minimum == 0 and problem.sinks[k]]
-    for size in range(1, MOST_ADDITIONS + 1):
+    for size in range(1, sum(len(problem.candidates[k]) for k in optional) + 1):
         for chosen in combinations_with_replacement(optional, size):
             minima = Counter(chosen)
             if all(

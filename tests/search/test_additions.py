@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from itertools import product
 
+import pytest
 from hypothesis import given
 
-from selfconf.search.additions import MOST_ADDITIONS, asking_for, with_additions
+from selfconf.model.refusal import Undecided
+from selfconf.search.additions import MOST_OF_A_ROLE, asking_for, with_additions
 from selfconf.search.problem import Problem
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, problem, problems
@@ -18,34 +20,64 @@ def solvable(problem: Problem) -> bool:
     return World(problem.task, problem.partition, problem.hierarchy).first() is not None
 
 
+def choices(problem: Problem) -> list[Counter[int]]:
+    """What may be asked for of the optional roles that feed others, the fewest first, then by their order."""
+    optional = [k for k, role in enumerate(problem.roles) if role.minimum == 0 and problem.sinks[k]]
+    most = [min(len(problem.candidates[k]), problem.roles[k].maximum or 99) for k in optional]
+    counts = (dict(zip(optional, some, strict=True)) for some in product(*(range(n + 1) for n in most)))
+    return sorted((+Counter(some) for some in counts), key=lambda some: (some.total(), sorted(some.elements())))
+
+
 @given(problems(roles=3, components=4))
 @agreement(0.5)
 def test_the_fewest_optional_roles_are_asked_for_that_make_a_solution_possible(problem: Problem) -> None:
     if solvable(problem):
         return
     found = with_additions(problem)
-    counts = [range(MOST_ADDITIONS + 1) if role.minimum == 0 else range(1) for role in problem.roles]
-    choices = (Counter(dict(enumerate(chosen))) for chosen in product(*counts) if 0 < sum(chosen) <= MOST_ADDITIONS)
-    fewest = min(
-        (
-            sum(chosen.values())
-            for chosen in choices
-            if all(
-                role.maximum is None or chosen[number] <= role.maximum
-                for number, role in enumerate(problem.roles)
-                if role.minimum == 0
-            )
-            and solvable(asking_for(problem, +chosen))
-        ),
-        default=None,
+    expected = next((one for one in choices(problem) if solvable(asking_for(problem, one))), None)
+    assert not isinstance(found, Undecided)
+    assert (found and found.roles) == (expected and asking_for(problem, expected).roles)
+
+
+def fan(number: int, optional: int, most: int = 1) -> Problem:
+    """A user of so many signals, the last of so many optional roles that issue a signal each."""
+    names = [f"r{k:02}" for k in range(optional)]
+    parts = {name: [component(f"{name}-{c}", outputs=f"o:S{k}") for c in range(most)] for k, name in enumerate(names)}
+    wanted = " ".join(f"i{k}:S{k}" for k in range(optional - number, optional))
+    return problem(
+        {**parts, "user": [component("user", wanted)]},
+        " ".join(f"{name}>user" for name in names),
+        counts=dict.fromkeys(names, (0, most)),
     )
-    if found is None:
-        # A role that feeds none is not asked for: it could help nobody.
-        assert fewest is None
-    else:
-        added = sum(new.minimum - old.minimum for new, old in zip(found.roles, problem.roles, strict=True))
-        assert added == fewest
-        assert solvable(found)
+
+
+@pytest.mark.parametrize(("number", "optional"), [(1, 70), (2, 30), (6, 12), (20, 20)])
+def test_as_many_optional_roles_are_asked_for_as_it_takes(number: int, optional: int) -> None:
+    given_ = fan(number, optional)
+    found = with_additions(given_)
+    assert isinstance(found, Problem)
+    assert [role.minimum for role in found.roles] == [*(0,) * (optional - number), *(1,) * number, 1]
+
+
+def test_one_role_may_be_asked_for_several_components() -> None:
+    sources = [component(f"s{k}", outputs=f"o:S{k}") for k in range(5)]
+    both = component("both", outputs="o:S0 p:S1 q:S2 r:S3")
+    given_ = problem(
+        {"many": sources, "rare": [both], "user": [component("user", "i0:S0 i1:S1 i2:S2 i3:S3 i4:S4")]},
+        "many>user rare>user",
+        counts={"many": (0, None), "rare": (0, 1)},
+    )
+    found = with_additions(given_)
+    assert isinstance(found, Problem)
+    assert [role.minimum for role in found.roles] == [1, 1, 1]
+
+
+def test_more_of_one_role_than_are_tried_is_not_decided() -> None:
+    many = MOST_OF_A_ROLE + 1
+    sources = [component(f"s{k:02}", outputs=f"o:S{k}") for k in range(many)]
+    wanted = " ".join(f"i{k}:S{k}" for k in range(many))
+    given_ = problem({"many": sources, "user": [component("user", wanted)]}, "many>user", counts={"many": (0, None)})
+    assert isinstance(with_additions(given_), Undecided)
 
 
 def test_of_equally_few_the_first_role_is_asked() -> None:
@@ -56,7 +88,7 @@ def test_of_equally_few_the_first_role_is_asked() -> None:
         counts={"one": (0, 1), "two": (0, 1)},
     )
     found = with_additions(given_)
-    assert found is not None
+    assert isinstance(found, Problem)
     assert [role.minimum for role in found.roles] == [1, 0, 1]
 
 
