@@ -60,7 +60,7 @@ def _fewest(problem: Problem, needed: Mapping[int, int], most: int, steps: int) 
     """Return the fewest components that make a solution possible, by role, with at most so many of each."""
     solvable = _is_solvable(_optional(problem, needed, most), steps)
     if solvable is not True:
-        return solvable or None
+        return solvable if isinstance(solvable, Undecided) else None
     for room in (*(1 << k for k in range(most.bit_length()) if 1 << k < most), most):
         optional = _optional(problem, needed, room)
         found = _chosen(problem, optional, steps) if room == most or _is_solvable(optional, steps) is True else None
@@ -98,11 +98,8 @@ def _needed(problem: Problem) -> dict[int, int]:
     Each that is asked for feeds an input that none of the others feeds.
     """
     unvalued = {number for number, _ in problem.unvalued}
-    room = {
-        number: _room(problem, number)
-        for number, role in enumerate(problem.roles)
-        if role.minimum == 0 and problem.sinks[number] and problem.candidates[number] and number not in unvalued
-    }
+    roles = (number for number in range(len(problem.roles)) if number not in unvalued)
+    room = {number: some for number in roles if (some := _room(problem, number))}
     inputs = [max((len(c.profile.required) for c in some), default=0) for some in problem.candidates]
     needed = dict.fromkeys(room, 0)
     for _ in room:  # along a chain of optional roles
@@ -113,9 +110,11 @@ def _needed(problem: Problem) -> dict[int, int]:
 
 
 def _room(problem: Problem, number: int) -> int:
-    """Return how many components may play a role at most."""
-    maximum, candidates = problem.roles[number].maximum, len(problem.candidates[number])
-    return candidates if maximum is None else min(maximum, candidates)
+    """Return how many components may play a role at most that is optional and feeds another; else zero."""
+    role, candidates = problem.roles[number], len(problem.candidates[number])
+    if role.minimum or not problem.sinks[number]:
+        return 0
+    return candidates if role.maximum is None else min(role.maximum, candidates)
 
 
 def _optional(problem: Problem, needed: Mapping[int, int], room: int) -> Problem:
