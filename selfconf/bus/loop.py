@@ -132,9 +132,11 @@ class Loop:
 
     def poll(self, seconds: float = 0.0) -> None:
         """Run every callback that is due; if there is none, wait up to that long for the first."""
-        deadline = self.now() + seconds
+        deadline, was_timer = self.now() + seconds, False
         for already_run in range(self.MOST_AT_ONCE):
-            action = self._due() or self._next(None if already_run else deadline)
+            # In turns: timers that are due again at once may not hold up what has arrived, nor that them.
+            timer = None if was_timer else self._due()
+            action, was_timer = timer or self._next(None if already_run else deadline), timer is not None
             if action is None or self._ended:
                 return
             self._run_callback(action)

@@ -28,6 +28,11 @@ def one_line(text: str, most: int = LONGEST_REMARK) -> str:
     return _STEERING_OR_BREAKING.sub(_spelt_out, shown)
 
 
+def sayable(said: object, most: int = LONGEST_REMARK) -> str:
+    """What somebody says as a text that can travel: cut to a length, and with what is no character replaced."""
+    return str(said)[:most].encode(errors="replace").decode()
+
+
 def is_one_line(text: str) -> bool:
     """Whether a text can stand in a line as it is: it steers no terminal, and ends no line."""
     return _STEERING_OR_BREAKING.search(text) is None

@@ -2,8 +2,9 @@
 
 What a component does with a signal may take its time; a call of a configurator, or the end of its life, may not wait
 for that. So the bus has a thread of its own, and hands to the code's thread what is to be done there: calls before
-signals, calls in their order, signals in the order in which their queues have begun to wait. A queue of signals is
-bounded, so a slow component costs neither memory nor supervision.
+signals, calls in their order, signals in the order in which their queues have begun to wait; what is to be done at
+intervals waits as a signal does. A queue of signals is bounded, so a slow component costs neither memory nor
+supervision.
 
 `CodeThread.watch` is for the bus's thread: it names the code that has not returned within its deadline, without any
 help of that code. On a bus in simulated time all of this happens at once, in the one thread there is.
@@ -51,11 +52,11 @@ class CodeThread:
         """An entry for each action that waits, put after it, and for each time that the thread is to look around."""
 
     def call(self, action: Action) -> None:
-        """Run what a call, a timer or the end of a supervision asks for; before any signal that waits."""
+        """Run what a call or the end of a supervision asks for; before any signal that waits."""
         self._put(self._calls, action)
 
     def signal(self, action: Action) -> None:
-        """Run what a signal asks for. May be called from any thread."""
+        """Run what a signal or a timer asks for. May be called from any thread."""
         self._put(self._signals, action)
 
     def _put(self, actions: deque[Action], action: Action) -> None:

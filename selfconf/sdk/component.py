@@ -174,7 +174,7 @@ class Component:
         self._attached().fail(reason)
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
-        """Call `action` at that interval as long as the component stays active."""
+        """Call `action` at that interval, in seconds above zero, as long as the component stays active."""
         self._attached().every(seconds, action)
 
     @property

@@ -57,6 +57,7 @@ HANDOVER_CHECK = 0.01
 LATE = 10_000
 """By how many signals one that is late can be behind the newest. One that is further behind is not late: the number of
 the newest was none of its source's, and may not mute it."""
+PASSED_OVER = "passed over a signal on %s: %s"
 LAST_SIGNAL = 1.0
 """Seconds that an output may take to say its last signal; a later one comes by itself."""
 ASK_FOR_LAST = (0.3, 1.0, 3.0)
@@ -286,6 +287,9 @@ class InputSubscription:
         self._stamps = StampReader()
         self._heard_at = -JUST_COME
         """When the newest signal came, in seconds of the bus's clock."""
+        self._understood_at = self._heard_at
+        """When the newest signal was read that could be: what cannot be read is no sign that the output issues."""
+        self._complained = False
         self._lives: set[str] = set()
         self._ended = False
         self._deadline: Undo | None = None
@@ -356,8 +360,12 @@ class InputSubscription:
             raw, stamp = self._stamps.read(sample.attachment)
             value = self._read_value(read_payload(sample.payload, raw, stamp.encoding), stamp.encoding.media)
         except (PeerError, ValueError, RecursionError) as error:
-            log.warning("passed over a signal on %s: %s", sample.key, error)
+            log.log(logging.DEBUG if self._complained else logging.WARNING, PASSED_OVER, sample.key, error)
+            self._complained, self._heard_at = True, self._understood_at
             return
+        if self._complained:
+            self._complained, self._heard_at = False, self._bus.now()
+        self._understood_at = self._heard_at
         if stamp.component != self._wire.component:
             return
         if self.muted or (self.lost and not lost):  # while it was read

@@ -8,6 +8,7 @@ not noticed. Inputs pass over what they have had already.
 from __future__ import annotations
 
 import itertools
+import math
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -73,6 +74,8 @@ class Outputs:
 
         A signal that is not of the kind that the output promises is not issued.
         """
+        if moment is not None and not math.isfinite(moment):
+            raise ProgrammerError(f"{self._profile.component.short} cannot emit a signal of the time {moment!r}")
         output = self._publishers.get(port)
         if output is None:
             raise ProgrammerError(f"{self._profile.component.short} advertises no output {port!r}")

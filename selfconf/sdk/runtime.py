@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 import logging
+import math
 import os
 import secrets
 import socket
@@ -18,10 +19,11 @@ from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Request, Undo, Urgency
-from selfconf.errors import PeerError
+from selfconf.errors import PeerError, ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
+from selfconf.model.wording import sayable
 from selfconf.protocol import activation as table
 from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
 from selfconf.protocol.codec import decode, encode
@@ -181,7 +183,12 @@ class ComponentRuntime:
             self._failed()
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
-        """Call `action` at that interval until the component stops or fails; a call that is late is not made up for."""
+        """Call `action` at that interval until the component stops or fails; a call that is late is not made up for.
+
+        Raises ProgrammerError for an interval that is none.
+        """
+        if not 0.0 < seconds < math.inf:
+            raise ProgrammerError(f"`every` takes an interval of more than zero seconds, not {seconds!r}")
         number, stint = next(self._timer_numbers), self.code.stint
         due = False
 
@@ -216,7 +223,7 @@ class ComponentRuntime:
     def _put_fail(self, cause: Cause, detail: str, task: str = "", epoch: int | None = None) -> None:
         epoch = self.activation.epoch if epoch is None else epoch
         newest = self.outputs.newest
-        self._fail.put(encode(Fail(self.profile.component, self.life, epoch, cause, detail, task, newest)))
+        self._fail.put(encode(Fail(self.profile.component, self.life, epoch, cause, sayable(detail), task, newest)))
 
     # Control calls.
 
@@ -351,7 +358,7 @@ class ComponentRuntime:
             self.life,
             self.activation.epoch_of(task),
             self.code.started and self.inputs.settled and hold is not None and hold.active,
-            detail,
+            sayable(detail),
             claim.supervisor,
             claim.task,
             claim.priority,

@@ -127,6 +127,21 @@ def test_timers_that_were_undone_are_not_kept_until_their_time() -> None:
     assert sum(timer.action is not None for _, _, timer in loop._timers) == len(kept)
 
 
+def test_timers_that_are_due_again_at_once_hold_up_nothing_that_arrives() -> None:
+    loop = Loop()
+    said: list[str] = []
+
+    def again() -> None:
+        said.append("timer")
+        loop.later(0.0, again)
+
+    again()
+    again()
+    loop.wake_up(lambda: said.append("call"))
+    loop.poll()
+    assert said.index("call") <= 4
+
+
 def test_timers_go_off_in_order_though_others_between_them_were_undone() -> None:
     class TurnedByHand(Loop):
         time = 0.0

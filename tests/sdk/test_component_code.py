@@ -31,6 +31,7 @@ from tests.sdk.stage import (
     THEM,
     TRACKER,
     US,
+    Stage,
     apply,
     follow,
     release,
@@ -385,3 +386,19 @@ def test_a_component_that_leaves_does_not_start_for_a_call_that_waited_for_its_r
     split.run_code()
     assert recorder.said == [("started",), ("stopped",)]
     assert split.verdicts[-1] is Verdict.REFUSED
+
+
+def test_what_is_done_at_intervals_takes_turns_with_signals_however_long_it_takes() -> None:
+    stage, thread = Stage(), CodeThread(inline=False)
+    stage.call(apply(1, US))
+    code, said = stage.runtime.code, list[str]()
+    code._thread = thread
+
+    def tick() -> None:
+        said.append("tick")
+        code.tick(tick)  # due again before it has returned
+
+    code.tick(tick)
+    thread.signal(lambda: said.append("signal"))
+    thread.run(lambda: len(said) > 2)
+    assert said == ["tick", "signal", "tick"]

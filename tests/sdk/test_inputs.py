@@ -220,6 +220,20 @@ def test_a_signal_that_is_overtaken_by_its_sources_fail_feeds_nothing() -> None:
     assert stage.recorder.said[3:] == [("fed", "position"), ("position", 3)]
 
 
+def test_an_output_of_which_nothing_can_be_read_counts_as_silent(caplog: pytest.LogCaptureFixture) -> None:
+    stage = Stage(Watchful())
+    stage.neighbour().component.emit("pose", 1)
+    stage.call(follow(period=0.1))
+    stage.let_pass(0.1)
+    liar = stage.others.publisher(KEYS.output(TRACKER, "pose"), Urgency.SIGNAL)
+    for _ in range(20):
+        liar.put(b"{}", b"no stamp")
+        stage.let_pass(0.1)
+    assert silence(stage)
+    assert stage.recorder.said[-1] == ("unfed", "position")
+    assert [record.levelname for record in caplog.records if "passed over" in record.message].count("WARNING") == 1
+
+
 def test_an_input_whose_source_was_never_in_reach_says_so_and_is_fed_when_it_is() -> None:
     stage = Stage(Watchful())
     stage.call(follow())

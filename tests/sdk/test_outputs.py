@@ -16,7 +16,7 @@ from selfconf.protocol.codec import encode
 from selfconf.sdk.component import Signal
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.lab import Recorder
-from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, US, Stage, apply, follow, release
+from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, TRACKER_PROFILE, US, Stage, apply, follow, release
 
 POSE = IRI("urn:s:Pose")
 
@@ -175,3 +175,11 @@ def test_a_signal_of_an_earlier_activation_is_not_latched() -> None:
     stage.call(follow())
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",)]
+
+
+@pytest.mark.parametrize("moment", [math.nan, math.inf])
+def test_a_signal_of_no_time_is_refused(moment: float) -> None:
+    stage = Stage(profile=TRACKER_PROFILE)
+    stage.call(apply(1, US))
+    with pytest.raises(ProgrammerError, match="cannot emit a signal of the time"):
+        stage.component.emit("pose", 1, moment)

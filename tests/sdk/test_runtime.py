@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import os
 import socket
 from dataclasses import replace
@@ -14,6 +15,7 @@ from selfconf.bus.port import Replies
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import OperationalParameter
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.wording import LONGEST_REMARK
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Apply, Cause, Fail, Release, Reserve, Verdict, Wire
@@ -324,6 +326,38 @@ def test_a_timer_that_has_ticked_for_a_long_time_is_kept_once() -> None:
     assert len(stage.runtime._timers) == 1
     stage.call(release(2, US))
     assert not stage.runtime._timers
+
+
+@pytest.mark.parametrize("seconds", [0, -1.0, math.nan, math.inf])
+def test_an_interval_that_is_none_is_refused(seconds: float) -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    with pytest.raises(ProgrammerError, match="more than zero seconds"):
+        stage.component.every(seconds, print)
+
+
+@pytest.mark.parametrize(
+    ("reason", "heard"),
+    [
+        pytest.param("x" * 3_000_000, "x" * LONGEST_REMARK, id="too long"),
+        pytest.param("\ud800 broken", "? broken", id="half a character"),
+        pytest.param(None, "None", id="no text"),
+    ],
+)
+def test_a_failure_is_heard_whatever_its_reason(reason: Any, heard: str) -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    stage.component.fail(reason)
+    stage.let_pass(0.1)
+    assert [fail.detail for fail in stage.fails] == [heard]
+
+
+def test_a_refusal_to_start_is_heard_whatever_its_reason() -> None:
+    stage = Stage()
+    stage.recorder.refusal = ValueError("x" * 3_000_000)
+    answer = stage.call(apply(1, US))
+    assert answer.verdict is Verdict.REFUSED
+    assert len(answer.detail) == LONGEST_REMARK
 
 
 def test_a_timer_of_a_component_that_is_not_active_is_not_kept() -> None:
