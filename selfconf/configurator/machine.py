@@ -110,7 +110,7 @@ def step(state: State, event: Event) -> Reaction:
         case Rewired():
             return _rewired(state, event.component)
         case Improvable():
-            return _improve(state)
+            return _look_for_better(state)
         case Reconnected():
             return _reconnected(state)
         case Stopped():
@@ -131,11 +131,12 @@ def _adopted(state: State, event: Adopted) -> Reaction:
 
 
 def _discover(state: State) -> Reaction:
-    return replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False, repeats={}), (Discover(),)
+    asking = replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False, repeats={}, improving=False)
+    return asking, (Discover(),)
 
 
 def _discovered(state: State, event: Discovered) -> Reaction:
-    if state.phase is not Phase.DISCOVERING:
+    if state.phase is not Phase.DISCOVERING and not state.improving:
         return state, ()
     taken = {
         component: holder
@@ -143,7 +144,8 @@ def _discovered(state: State, event: Discovered) -> Reaction:
         if holder.priority >= state.priority and component not in state.held and component not in state.free
     }
     lost = {component: loss for component, loss in state.lost.items() if not loss.busy}
-    return _compose(replace(state, taken=taken, lost=lost, free=frozenset()))
+    known = replace(state, taken=taken, lost=lost, free=frozenset(), improving=False)
+    return _compose(known) if state.phase is Phase.DISCOVERING else _improve(known)
 
 
 def _compose(state: State, despite: bool = False) -> Reaction:
@@ -405,6 +407,13 @@ def _stays_lost(component: IRI, loss: Loss, lives: Mapping[IRI, str]) -> bool:
     if component not in lives:
         return loss.answered or bool(lives)
     return loss.cause is not Cause.CRASH and loss.answered and lives[component] == loss.life
+
+
+def _look_for_better(state: State) -> Reaction:
+    """Ask the ecology anew, while everything runs on: what has appeared may not have been advertised before."""
+    if state.phase is not Phase.RUNNING:
+        return state, ()
+    return replace(state, improving=True), (Discover(),)
 
 
 def _improve(state: State) -> Reaction:

@@ -118,6 +118,8 @@ class State:
     """The components whose outputs are issued by others than before, since the deployment that goes on began."""
     news: bool = False
     """Whether something has appeared since the ecology was last asked."""
+    improving: bool = False
+    """Whether the ecology was asked for what the strategy would rather have than what runs."""
     put_off: int = 0
     """How many searches in a row have found nothing and did not count, because something had appeared meanwhile."""
 

@@ -51,12 +51,20 @@ def test_the_experiment_and_a_component_that_is_killed(home: Home) -> None:
     assert home.active(*EVERYBODY) == set()
 
 
-def test_a_run_that_upgrades_changes_to_what_is_rather_had_and_back_when_that_is_lost(home: Home) -> None:
+@pytest.mark.parametrize("advertised", [pytest.param(True, id="advertised"), pytest.param(False, id="new")])
+def test_a_run_that_upgrades_changes_to_what_is_rather_had_and_back_when_that_is_lost(
+    home: Home, advertised: bool
+) -> None:
+    advertisement, elsewhere = home.folder / "ads" / "tracker.ttl", home.folder / "tracker.ttl"
+    if not advertised:
+        advertisement.rename(elsewhere)
     home.site("peis-home", "ads")
     home.components(*REST)
     run = home.run("--upgrade", "--settle", "0.2")
     run.act("running")
     assert home.active(*EVERYBODY) == TASK | {"odometry"}
+    if not advertised:
+        elsewhere.rename(advertisement)
     tracker = home.components("tracker")
     better = run.act("running")["configuration"]
     assert better["roles"][2]["components"] == [component_of("tracker")]

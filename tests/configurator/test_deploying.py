@@ -218,13 +218,30 @@ def test_a_repair_that_lacks_several_components_reserves_them_before_any_change(
 
 def test_a_change_for_the_better_is_made_before_the_old_source_is_let_go() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
-    history.hear(Improvable())
+    history.hear(Improvable(), Discovered())
     history.composed(navigation())
     assert applied(history.answer(TRACKER, Call.WAKE)) == [TRACKER]  # not yet the controller
     assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
     effects = history.answer(CONTROL, Call.APPLY)
     assert effects == [Running(navigation()), ReleaseFrom(ODOMETRY, history.state.epoch), Unwatch(ODOMETRY)]
     assert history.state.owed.keys() == {ODOMETRY}
+
+
+def test_before_a_change_for_the_better_the_ecology_is_asked_anew_while_everything_runs_on() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    assert history.hear(Improvable()) == [Discover()]
+    assert history.state.phase is Phase.RUNNING
+    assert kinds(history.hear(Discovered())) == [Compose]
+    assert history.hear(Discovered()) == []
+
+
+def test_what_an_ecology_has_answered_to_a_look_for_better_starts_no_search_after_a_failure() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    history.hear(Improvable(), Failed(ODOMETRY, "1", Cause.FAIL))
+    assert history.state.phase is Phase.COMPOSING
+    assert history.hear(Discovered()) == []
+    history.composed(navigation())
+    assert history.state.phase is Phase.RESERVING
 
 
 def test_who_follows_a_component_behind_which_others_stand_now_is_applied_to_again_and_nobody_else() -> None:
@@ -237,7 +254,7 @@ def test_who_follows_a_component_behind_which_others_stand_now_is_applied_to_aga
 
 def test_what_moves_while_a_configuration_is_deployed_is_told_at_its_end() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
-    history.hear(Improvable())
+    history.hear(Improvable(), Discovered())
     history.composed(navigation())
     assert history.hear(Rewired(TRACKER)) == []
     assert applied(history.answer(TRACKER, Call.WAKE)) == [TRACKER]
@@ -260,7 +277,7 @@ def test_what_gets_another_input_waits_for_its_source() -> None:
     more = replace(first, connections=(*first.connections, Connection(ODOMETRY, "pose", CONTROL, "hint")))
     more = replace(more, assignments=(*first.assignments, Assignment(IRI("urn:r:hint"), (ODOMETRY,))))
     history = History(TASK).running(first)
-    history.hear(Improvable())
+    history.hear(Improvable(), Discovered())
     history.composed(more)
     assert applied(history.answer(ODOMETRY, Call.WAKE)) == [ODOMETRY]
     assert applied(history.answer(ODOMETRY, Call.APPLY)) == [CONTROL]
@@ -278,7 +295,7 @@ def test_a_change_of_a_value_alone_waits_for_nothing() -> None:
 
 def test_a_better_configuration_that_does_not_come_about_leaves_what_ran() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
-    history.hear(Improvable())
+    history.hear(Improvable(), Discovered())
     history.composed(navigation())
     history.answer(TRACKER, Call.WAKE)
     history.answer(TRACKER, Call.APPLY)
@@ -501,6 +518,6 @@ def test_what_is_given_up_while_it_was_waited_for_does_not_remember_that_this_ta
 def test_a_search_that_ends_while_everything_runs_changes_nothing_if_it_finds_nothing_else() -> None:
     history = History(TASK).running()
     for outcome in (navigation(), REFUSAL):
-        history.hear(Improvable())
+        history.hear(Improvable(), Discovered())
         assert history.hear(Composed(history.state.attempt, outcome)) == []
         assert history.state.phase is Phase.RUNNING
