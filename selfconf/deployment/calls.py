@@ -24,6 +24,7 @@ from selfconf.configurator import (
     Callers,
     Decline,
     Event,
+    Failed,
     QueueFor,
     ReleaseFrom,
     ReserveOf,
@@ -59,6 +60,7 @@ from selfconf.protocol.keys import component_chunk, owner_of
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
+    Cause,
     End,
     Release,
     Reserve,
@@ -243,7 +245,7 @@ class Calls:
         """Activate a component with its parameters, and connect its inputs."""
         life = self._life(effect.component)
         if life is None or not self.ecology.lives_on(effect.component, life):
-            self._unreachable(effect.component, Call.APPLY, effect.epoch, "it does not live any more")
+            self._ended(effect.component, life or "")
             return
         inputs = self._with_promises(effect.inputs)
         claim = self._claim(effect.component, effect.epoch)
@@ -256,6 +258,14 @@ class Calls:
             self._report(InputConnected(c.source, c.output, c.sink, c.input))
         self._connections[effect.component] = life, frozenset(connections)
         self._report(ActivationSent(effect.component))
+
+    def _ended(self, component: IRI, life: str) -> None:
+        """A component that is to act has ended, which nobody has told: its site may start it again."""
+        detail, now = "it does not live any more", self.ecology.life(component)
+        self._report(ComponentUnreachable(component, Call.APPLY.value, detail))
+        self._step(Failed(component, life, Cause.CRASH, detail))
+        if now is not None:
+            self._step(Appeared({component: now}))
 
     def forget_connections(self) -> None:
         """Components may have turned themselves off: all that is applied to from now on is connected anew."""

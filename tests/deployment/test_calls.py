@@ -156,24 +156,24 @@ def test_a_component_that_is_advertised_but_does_not_run_is_passed_over(tmp_path
     assert lab.active() == TASK | {"odometry"}
 
 
-def living_room(lab: Lab, life: str, wake: Callable[[MemoryBus], object]) -> MemoryBus:
+def living_room(lab: Lab, life: str, wake: Callable[[MemoryBus], object], name: str = "living-room") -> MemoryBus:
     """A site that can start the tracker, as `wake` does; its node."""
     tracker, node = iri("person-tracker"), lab.network.node()
     page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
 
     def advertise(request: Request) -> None:
         payload = (PREFIXES + ADVERTISEMENTS["tracker"]).encode()
-        request.reply(lab.keys.advertisement("living-room", tracker), payload, page)
+        request.reply(lab.keys.advertisement(name, tracker), payload, page)
         request.finish()
 
     def asked(request: Request) -> None:
-        request.reply(lab.keys.wake("living-room"), b"started")
+        request.reply(lab.keys.wake(name), b"started")
         request.finish()
         wake(node)
 
-    node.announce(lab.keys.site_life("living-room", life))
-    node.serve(lab.keys.advertisements("living-room"), advertise)
-    node.serve(lab.keys.wake("living-room"), asked)
+    node.announce(lab.keys.site_life(name, life))
+    node.serve(lab.keys.advertisements(name), advertise)
+    node.serve(lab.keys.wake(name), asked)
     return node
 
 
@@ -184,6 +184,24 @@ def home_without_a_tracker(folder: Path) -> Lab:
     for name in (*TASK, "odometry"):
         lab.component(name)
     return lab
+
+
+def test_a_component_that_has_ended_unseen_is_started_again_by_a_site_that_can(tmp_path: Path) -> None:
+    """It ended, with its site, while the configurator was cut off; another site can start it, and nothing else will."""
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    first = living_room(lab, "1", lambda node: None)
+    living_room(lab, "2", lambda node: lab.component("tracker"), "attic")
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.isolate(agent)
+    lab.crash("tracker")
+    first.close()
+    lab.let_pass(0.3)
+    lab.rejoin(agent)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING and lab.active() == TASK | {"tracker"}, 10.0)
 
 
 def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:
