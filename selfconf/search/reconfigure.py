@@ -12,9 +12,11 @@ first number with a solution is the least; among its solutions, one that keeps e
 the search. In the usual case, one component lost and the rest can stay, the first descent is the answer: a few
 microseconds for each role.
 
-When that takes long and every role asks for a fixed number, so that nothing is added to a solution, clause learning
-takes over: maximise the running components, then the running connections, then minimise the solution. The answer is
-the one that depth-first search would find.
+When that takes long, what runs is tried by itself: a solution of those components alone that loses none of them, nor a
+connection, is as near as can be, and the answer, though another one may come before it in lexicographic order. Else,
+when every role asks for a fixed number, so that nothing is added to a solution, clause learning takes over: maximise
+the running components, then the running connections, then minimise the solution. The answer is the one that depth-first
+search would find.
 
 *Budget.* The steps are limited. When they are used up, the answer is the incumbent: the nearest configuration that any
 engine has met, the strategy `first` included. Then `proved` says that a nearer one may exist.
@@ -23,6 +25,7 @@ engine has met, the strategy `first` included. Then `proved` says that a nearer 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from operator import attrgetter
 
 from selfconf.model.configuration import Configuration, Connection
@@ -43,6 +46,8 @@ LEAST_STEPS = 20_000
 """Steps at least until the search for the nearest configuration answers with the incumbent."""
 WORK = 2_000_000
 """The steps are this number divided by the number of slots, if that is more: a step costs in proportion to them."""
+EXTENDED_IN_A_STEP = 6
+"""How many candidates are tried, when a solution is extended, in the time of a step."""
 
 Score = tuple[int, int]
 """Running components that stay in their roles, and running connections that stay: more is nearer."""
@@ -79,8 +84,14 @@ def nearest(problem: Problem, running: Configuration, steps: int | None = None) 
         steps = max(LEAST_STEPS, WORK // (1 + sum(role.minimum for role in problem.roles)))
     fixed = all(role.minimum == role.maximum for role in problem.roles) and solver_available()
     search = _NearestSearch(problem, running)
-    budget = Budget(min(steps, DEPTH_FIRST_STEPS) if fixed else steps)
+    budget = Budget(min(steps, DEPTH_FIRST_STEPS))
     found = None if problem.valueless else search.with_losses(0, budget)
+    if found is None and not budget.steps:
+        alone = search.running_alone()
+        if alone is not None and search.meet(alone) == (search.whole, search.possible):
+            return Reconfiguration(alone, *preserved(alone, running), proved=True)
+        budget = budget if fixed else Budget(steps)
+        found = None if fixed else search.with_losses(0, budget)
     if found is None:
         given = LazyReduction(problem)
         playing = solution(given, Budget())
@@ -118,6 +129,9 @@ class _NearestSearch:
         self.available = self._available()
         self.possible = sum(c.source in self.available and c.sink in self.available for c in running.connections)
         """How many running connections could stay, at most."""
+        fixed = all(role.minimum == role.maximum for role in problem.roles)
+        self.extension = 0 if fixed else sum(map(len, problem.candidates)) // EXTENDED_IN_A_STEP
+        """The steps that it takes to extend a solution."""
         self.incumbent: Configuration | None = None
         self._score: Score = (-1, -1)
 
@@ -143,6 +157,16 @@ class _NearestSearch:
         met = [configuration for configuration in configurations if configuration is not None]
         return max(met, key=lambda configuration: preserved(configuration, self.running))
 
+    def running_alone(self) -> Configuration | None:
+        """Return what the components that run make up without any other; None if that is not found in few steps."""
+        problem = self.problem
+        left = tuple(tuple(candidate for _, candidate in some) for some in self.eligible)
+        if any(len(some) < role.minimum for role, some in zip(problem.roles, left, strict=True)):
+            return None
+        alone = Problem(problem.task, replace(problem.partition, candidates=left), problem.hierarchy)
+        found = CandidateSearch(alone, Budget(DEPTH_FIRST_STEPS)).first()
+        return None if found is None else problem.solved(found, self.running)
+
     def with_fewest_losses(self, budget: Budget) -> Configuration | None:
         """Return the best configuration with the fewest losses, one at least; None if the budget ends before."""
         for losses in range(1, 1 + self.whole):
@@ -156,6 +180,7 @@ class _NearestSearch:
         best: tuple[Score, Configuration] | None = None
         for playing in _LossBoundedSearch(self.problem, self.eligible, losses, budget).solutions():
             configuration = self.problem.solved(playing, self.running)
+            budget.spend(self.extension)
             score = self.meet(configuration)
             # The bound of the search assumes that a role can be filled up again by the extension. Where it cannot, the
             # configuration has more losses than that: it is an incumbent only, and its turn comes with that number.

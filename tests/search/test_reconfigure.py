@@ -181,6 +181,23 @@ def test_when_the_steps_end_the_answer_is_the_nearest_configuration_that_was_met
     ] == [("blind", 0, False), ("half", 1, False), ("full", 2, False), ("full", 2, True)]
 
 
+def test_what_runs_stays_where_it_is_enough_by_itself_though_many_could_come_before_it() -> None:
+    """Six roles in a ring, each with room for all: c0 is lost, and what is left of those that run needs no other."""
+    names = [f"r{number}" for number in range(6)]
+
+    def ring(*components: int) -> Problem:
+        parts = [component(f"c{k:02}", f"i:X{k % 7}", f"o:X{3 * k % 7}") for k in components]
+        interactions = " ".join(f"{name}>{names[(place + 1) % 6]}" for place, name in enumerate(names))
+        return problem(dict.fromkeys(names, parts), interactions, dict.fromkeys(names, (1, 100)))
+
+    running = first.search(ring(*range(0, 50, 7)))
+    assert isinstance(running, Configuration)
+    found = reconfigure.nearest(ring(*range(1, 50)), running)
+    assert isinstance(found, reconfigure.Reconfiguration)
+    assert (found.kept, found.proved) == (len(running.components) - 1, True)
+    assert set(found.configuration.components) == {c for c in running.components if c.short != "c00"}
+
+
 @given(problems(), st.data())
 @agreement(0.2)
 def test_more_steps_never_find_a_configuration_farther_away(problem: Problem, data: st.DataObject) -> None:
