@@ -17,7 +17,7 @@ from selfconf.search.additions import with_additions
 from selfconf.search.problem import Problem
 from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
 from selfconf.search.recruit_refusal import refusal_of_recruits
-from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, recruited
+from selfconf.search.recruiting import RECRUIT_STEPS, REPAIR_STEPS, first_recruited, recruited
 from selfconf.search.strategies import BEST_STEPS, algorithm_1, answers, best_configuration
 
 SLICES = (10_000, 200_000, BEST_STEPS)
@@ -63,7 +63,7 @@ class Searches:
             if not isinstance(answer, Configuration) or not any(role.recruits for role in problem.roles):
                 yield answer
                 continue
-            steps = RECRUIT_STEPS if self.steps is None else self.steps
+            steps = self.steps or (RECRUIT_STEPS if running is None else REPAIR_STEPS)
             whole = recruited(problem, answer, running, steps)
             other = first_recruited(problem, steps, running) if whole is None else whole[0]
             yield refusal_of_recruits(problem) if other is None else other

@@ -84,14 +84,7 @@ def nearest(problem: Problem, running: Configuration, steps: int | None = None) 
         steps = max(LEAST_STEPS, WORK // (1 + sum(role.minimum for role in problem.roles)))
     fixed = all(role.minimum == role.maximum for role in problem.roles) and solver_available()
     search = _NearestSearch(problem, running)
-    budget = Budget(min(steps, DEPTH_FIRST_STEPS))
-    found = None if problem.valueless else search.with_losses(0, budget)
-    if found is None and not budget.steps:
-        alone = search.running_alone()
-        if alone is not None and search.meet(alone) == (search.whole, search.possible):
-            return Reconfiguration(alone, *preserved(alone, running), proved=True)
-        budget = budget if fixed else Budget(steps)
-        found = None if fixed else search.with_losses(0, budget)
+    found, budget = search.without_losses(steps, fixed)
     if found is None:
         given = LazyReduction(problem)
         playing = solution(given, Budget())
@@ -156,6 +149,23 @@ class _NearestSearch:
         """Return the nearest of some configurations, at least one of which is there; of equals the first one."""
         met = [configuration for configuration in configurations if configuration is not None]
         return max(met, key=lambda configuration: preserved(configuration, self.running))
+
+    def without_losses(self, steps: int, fixed: bool) -> tuple[Configuration | None, Budget]:
+        """Return the best configuration without losses, if one is met, and what is left of the steps.
+
+        `fixed` says that clauses can go on from there.
+        """
+        budget = Budget(min(steps, DEPTH_FIRST_STEPS))
+        found = None if self.problem.valueless else self.with_losses(0, budget)
+        if budget.steps or self.problem.valueless or (fixed and found is not None):
+            return found, budget
+        alone = self.running_alone()
+        if alone is not None and self.meet(alone) == (self.whole, self.possible):
+            return alone, Budget(0)  # none is nearer, but another one may be the first of the nearest
+        if not fixed:
+            budget = Budget(steps)
+            found = self.with_losses(0, budget)
+        return found, budget
 
     def running_alone(self) -> Configuration | None:
         """Return what the components that run make up without any other; None if that is not found in few steps."""

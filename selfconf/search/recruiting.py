@@ -33,8 +33,10 @@ from selfconf.search.reduction import (
     with_recruits,
 )
 
-RECRUIT_STEPS = 5_000
-"""Steps spent at most on finding the fewest recruits, each a conflict of the solver or a call of it: seconds."""
+RECRUIT_STEPS = 250_000
+"""Steps spent at most on finding the fewest recruits, each a conflict of the solver or a call of it: two seconds."""
+REPAIR_STEPS = 5_000
+"""Steps spent at most on that while components wait to act again: a part of a second."""
 
 
 def recruited(
