@@ -20,6 +20,7 @@ COMMANDS = (
     "status",
     "tasks",
     "stop",
+    "why",
     "access",
     "keys",
     "echo",

@@ -383,6 +383,7 @@ def test_what_a_living_ecology_answers_keeps_to_the_schema(home: Home, capsys: p
         ("status", ()),
         ("top", ("--every", "0.2")),
         ("echo", ("clock", "time", "--count", "1")),
+        ("why", ("source",)),
         ("stop", ()),
     ):
         body = printed(capsys, command, *where, *choice)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import json
+from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 
 EXAMPLE = """  selfconf why position
+  selfconf why position --format json
   selfconf why Astrid --at 14:02
   selfconf why :position --at 14:02 --history history"""
 
@@ -32,29 +35,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="ask what `selfconf serve --history DIR` has kept, in place of the living ecology; it goes on meanwhile",
     )
+    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_ecology_arguments(parser)
 
 
 def run(given: argparse.Namespace) -> int:
     """0 with an answer, 1 if no task that is remembered has to do with the term."""
     if given.history is not None:
-        return _then(given)
+        from selfconf.api.past import past_why
+
+        return _tell(given, past_why(given.history, given.term, given.at), f" in {given.history}")
     with joined(given) as ecology:
         sentences = ecology.why(given.term, given.at)
         complain_of(ecology)
-    if not sentences:
-        print(f"no task has to do with {given.term}, as far as the configurators remember")
-        return 1
-    print("\n".join(sentences))
-    return 0
+    return _tell(given, sentences, ", as far as the configurators remember")
 
 
-def _then(given: argparse.Namespace) -> int:
-    """The answer of what was kept."""
-    from selfconf.api.past import past_why
-
-    sentences = past_why(given.history, given.term, given.at)
-    print("\n".join(sentences) if sentences else f"no task has to do with {given.term} in {given.history}")
+def _tell(given: argparse.Namespace, sentences: Sequence[str], where: str) -> int:
+    """Print the answer, and return the exit code."""
+    if given.format == "json":
+        print(json.dumps({"term": given.term, "at": given.at, "sentences": list(sentences)}, indent=2))
+    elif sentences:
+        print("\n".join(sentences))
+    else:
+        print(f"no task has to do with {given.term}{where}")
     return 0 if sentences else 1
 
 
