@@ -43,7 +43,6 @@ WITHOUT_SCHEMA = {
     "site": "prints no results",
     "serve": "prints no results",
     "bridge": "prints no results",
-    "why": "prints sentences for people",
     "demo": "shows the lines of `run` in words",
 }
 """Commands that print no JSON, and why."""
