@@ -42,7 +42,7 @@ class PastConfiguration:
     """The IRI of the one that it has taken the place of; empty if of none."""
     configurator: str
     task: str
-    """The local name of the task or, where that has none, of its template."""
+    """The name of the task; in what older versions have kept its local name, or that of its template."""
     generated: float
     """When it was deployed, in seconds of the Unix epoch."""
     ended: float | None
@@ -122,7 +122,8 @@ def _configuration(name: str, document: Document) -> PastConfiguration | None:
         return None
     asked = document.value(node, SC.task)
     agent = document.value(node, PROV.wasAttributedTo)
-    task = asked.short if isinstance(asked, IRI) else IRI(body["template"]).short
+    named = None if asked is None else document.value(asked, SC.name)
+    task = _text(named) or (asked.short if isinstance(asked, IRI) else IRI(body["template"]).short)
     failures = sorted(_failures(document, node), key=lambda failure: failure["time"])
     ended = _moment(document.value(node, PROV.invalidatedAtTime))
     revises = str(document.value(node, PROV.wasRevisionOf) or "")

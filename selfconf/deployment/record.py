@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from selfconf.bus.port import Bus, Request, Urgency
+from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.run_request import RunRequest
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
@@ -24,11 +25,13 @@ class DeploymentRecord:
         bus: Bus,
         keys: Keys,
         name: str,
+        identity: TaskIdentity,
         request: RunRequest,
         status: Callable[[], Status],
         stop: Callable[[], None],
     ) -> None:
         self.bus, self._keys, self._name, self._request = bus, keys, name, request
+        self._running_as = identity.name, identity.priority
         self._status, self._stop = status, stop
         self._deployed: tuple[IRI, Configuration, int, float] | None = None
         self._revises: tuple[IRI, Configuration] | None = None
@@ -92,6 +95,7 @@ class DeploymentRecord:
             failures=self._failures.values(),
             passed_over=self._request.passed_over(configuration),
             outside=None if self._request.outside is None else self._request.outside.composite,
+            running_as=self._running_as,
         )
         return to_turtle(triples)
 

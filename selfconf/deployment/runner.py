@@ -140,7 +140,7 @@ class TaskRunner:
             request.outside,
         )
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
-        self._record = DeploymentRecord(bus, self.keys, self.name, request, self.status, self.stop)
+        self._record = DeploymentRecord(bus, self.keys, self.name, self.identity, request, self.status, self.stop)
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self._watched: set[IRI] = set()
         self._left_out: set[IRI] = set()

@@ -40,11 +40,13 @@ def configuration_triples(
     failures: Iterable[tuple[IRI, str, str, float]] = (),
     passed_over: Mapping[IRI, Iterable[IRI]] = MappingProxyType({}),
     outside: IRI | None = None,
+    running_as: tuple[str, int] | None = None,
 ) -> Iterator[Triple]:
     """A configuration as the ontology describes it: what it is, which task it answers, and how it came about.
 
     `revises` is the one before it with its name, `failures` are (component, cause, detail, seconds), `passed_over` are
-    by role the candidates that came before the chosen ones. `outside` is the composite that it is the inside of.
+    by role the candidates that came before the chosen ones. `outside` is the composite that it is the inside of,
+    `running_as` the name and the priority of the task where it runs.
     """
     yield name, TYPE, SC.Configuration
     yield name, TYPE, PROV.Entity
@@ -62,6 +64,9 @@ def configuration_triples(
     yield name, SC.task, asked
     yield asked, TYPE, SC.Task
     yield asked, SC.template, task.template.iri
+    if running_as is not None:
+        yield asked, SC.name, Literal(running_as[0])
+        yield asked, SC.priority, Literal(str(running_as[1]), XSD.integer)
     for parameter in task.template.parameters:
         if parameter.name in configuration.bindings:
             node = blank()

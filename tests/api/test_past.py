@@ -9,6 +9,7 @@ import pytest
 from selfconf.api.past import past_configurations, past_graphs, past_why
 from selfconf.errors import AuthorError
 from selfconf.rdf.turtle import ntriples, parse
+from selfconf.rdf.vocabulary import SC
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.history import DEPLOYED, History
 from selfconf.serve.watcher import EcologyWatcher
@@ -109,6 +110,17 @@ def test_a_real_configuration_is_told(tmp_path: Path) -> None:
     assert sentence.startswith("position in navigate: person-tracker, since ")
     assert why == "  no other candidate goes before it"
     assert past_why(tmp_path / "history", "Astrid", None)
+
+
+def test_a_task_goes_by_the_name_that_it_ran_by(tmp_path: Path) -> None:
+    history = History(tmp_path, Clock())
+    lines = told(1, "tracker", at=Clock.now).decode().splitlines()
+    (task,) = (line.split()[2] for line in lines if line.split()[1].endswith("#task>"))
+    history.note({GRAPH: "\n".join((*lines, f'{task} <{SC.name}> "patrol" .', "")).encode()})
+    history.close()
+    (found,) = past_configurations(past_graphs(tmp_path))
+    assert found.task == "patrol"
+    assert past_why(tmp_path, "patrol", None)
 
 
 def test_a_folder_without_a_history_and_one_that_is_broken_are_sentences(tmp_path: Path, kept: Path) -> None:

@@ -53,6 +53,17 @@ def test_a_configuration_says_which_task_it_answers_with_which_values() -> None:
         to_turtle(write.configuration_triples(CONFIGURATION, NAME, replace(TASK, iri=iri("fetch")))), "configuration"
     )
     assert named.value(NAME, SC.task) == iri("fetch")
+    assert task is not None
+    assert document.value(task, SC.name) is None
+
+
+def test_a_configuration_that_runs_says_as_which_task() -> None:
+    text = to_turtle(write.configuration_triples(CONFIGURATION, NAME, TASK, running_as=("clocktask", -3)))
+    document = turtle.parse(text, "configuration")
+    task = document.value(NAME, SC.task)
+    assert task is not None
+    assert document.value(task, SC.name) == Literal("clocktask")
+    assert document.value(task, SC.priority) == Literal("-3", XSD.integer)
 
 
 def test_a_deployed_configuration_says_when_by_whom_and_after_which_failures() -> None:
