@@ -16,7 +16,7 @@ judges the survivors by the whole shape. That both ways give one partition is a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import TypeGuard
@@ -34,7 +34,7 @@ from selfconf.rdf.eligibility.role_tests import (
     SelfTest,
 )
 from selfconf.rdf.permitted_fields import STRUCTURE
-from selfconf.rdf.shacl import PAIRS, PairTest, compiled
+from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
 from selfconf.rdf.tasks import ROLE_STRUCTURE
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE
@@ -108,6 +108,12 @@ def bound_shape(document: Document, bindings: Mapping[IRI, Term]) -> list[Triple
 _INNER = _SHAPES | _SHAPES_OF_A_LIST
 
 
+def _constraining(document: Document, predicates: Iterable[IRI]) -> set[IRI]:
+    """Those of some predicates that constrain: SHACL's, and those of the document's own constraint components."""
+    own = component_parameters(document)
+    return {predicate for predicate in predicates if predicate in SH or predicate in own}
+
+
 def local(document: Document, shape: Term, at_value: bool = False, above: frozenset[Term] = frozenset()) -> bool:
     """Whether a shape looks at nothing but statements about the node it is asked about."""
     if shape in above:
@@ -123,7 +129,7 @@ def local(document: Document, shape: Term, at_value: bool = False, above: frozen
         if predicate in _INNER
     )
     known = _INNER | _SILENT | _OWN_VALUES | (frozenset() if at_value else _OWN_STATEMENTS)
-    return all(predicate in known or predicate not in SH for predicate, _ in said) and all(
+    return _constraining(document, (predicate for predicate, _ in said)) <= known and all(
         local(document, one, at_value, above | {shape}) for one in inner
     )
 
@@ -163,6 +169,8 @@ class _Compiler:
 
     def __init__(self, document: Document, bindings: Mapping[IRI, Term], free: frozenset[IRI]) -> None:
         self.document, self.bindings, self.free = document, bindings, free
+        self.own = component_parameters(document)
+        """The predicates by which shapes use constraint components of the document."""
         self.rest = False
         self._above: list[Term] = []
 
@@ -195,7 +203,7 @@ class _Compiler:
             yield from self._property(raw)
         elif predicate in _LOGIC:
             yield from self._logic(predicate, raw)
-        elif predicate in SH and predicate not in _SILENT:
+        elif predicate in self.own or (predicate in SH and predicate not in _SILENT):
             self.rest = True
 
     def _logic(self, predicate: IRI, raw: Term) -> Iterator[RoleTest]:
@@ -295,6 +303,8 @@ class _Compiler:
             parts.qualified.setdefault(predicate, []).append(value)
         elif predicate in PAIRS and self._plain(value):
             parts.compared.append(PairTest(predicate, value))
+        elif predicate in self.own:
+            self.rest = True
         elif predicate in SH and predicate not in _SILENT and not parts.takes(predicate, value):
             if self._mentions(raw):
                 self.rest = True

@@ -2,11 +2,13 @@
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
 makes tests of the constraints that can be. `misfit`, `unfit`, `of_values`, `said_twice`, `LITERAL`, `ONLY_WITH_A_PATH`,
-`STATED_ONCE` and `ILL_FORMED` say what may stand as a value of SHACL's own properties. `pattern` is a regular
+`STATED_ONCE` and `ILL_FORMED` say what may stand as a value of SHACL's own properties. `component_parameters` are the
+predicates by which a document constrains by components of its own. `pattern` is a regular
 expression that a text cannot make expensive; where that cannot be, it is `MatchTooCostly`.
 Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
+from selfconf.rdf.shacl.constraint_components import component_parameters
 from selfconf.rdf.shacl.patterns import MatchTooCostly, pattern
 from selfconf.rdf.shacl.shape_syntax import (
     ILL_FORMED,
@@ -30,6 +32,7 @@ __all__ = [
     "PairTest",
     "ValueTest",
     "compiled",
+    "component_parameters",
     "misfit",
     "of_values",
     "pattern",

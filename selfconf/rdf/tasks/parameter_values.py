@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
-from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled
+from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SH, TYPE
 
@@ -44,8 +44,9 @@ def _passes(tests: Iterable[ValueTest], value: Term) -> bool:
 def _constraints(parameter: IRI, document: Document) -> dict[IRI, list[Term]]:
     """What a parameter asks of its value: the SHACL parameters that it states, each with its values."""
     found: dict[IRI, list[Term]] = {}
+    own = component_parameters(document)
     for predicate, value in document.statements.get(parameter, ()):
-        if predicate in SH and predicate != SH.defaultValue:
+        if predicate in own or (predicate in SH and predicate != SH.defaultValue):
             found.setdefault(predicate, []).append(value)
     return found
 
@@ -65,8 +66,8 @@ def _judged(parameter: Parameter, values: Iterable[Term], document: Document) ->
     shapes.add((node, rdflib.URIRef(TYPE), rdflib.URIRef(SH.NodeShape)))
     shapes.add((node, rdflib.URIRef(SH.property), path))
     shapes.add((path, rdflib.URIRef(SH.path), rdflib.URIRef(probe)))
-    for predicate, constraint in document.statements[parameter.iri]:
-        if predicate in SH and predicate != SH.defaultValue:
+    for predicate, constraints in _constraints(parameter.iri, document).items():
+        for constraint in constraints:
             shapes.add((path, rdflib.URIRef(predicate), rdflib_term(constraint)))
     subjects = rdflib.Graph()
     for one, value in probes.items():

@@ -147,6 +147,27 @@ def test_sparql_in_a_role_is_judged() -> None:
     assert names(partitioner(text).partition(ads)) == [["a"]]
 
 
+OWN_COMPONENT = """
+:AtMost a sh:ConstraintComponent ; sh:parameter [ sh:path :atMost ; sh:datatype xsd:integer ] ;
+    sh:validator [ a sh:SPARQLAskValidator ; sh:ask "ASK { FILTER ($value <= $atMost) }" ] .
+"""
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "sh:property [ sh:path :p ; :atMost 1 ]",
+        "sh:node [ sh:property [ sh:path :p ; :atMost 1 ] ]",
+        "sh:not [ sh:not [ sh:property [ sh:path :p ; :atMost 1 ] ] ]",
+        "sh:property [ sh:path :p ; sh:qualifiedMinCount 1 ; sh:qualifiedValueShape [ :atMost 1 ] ]",
+    ],
+)
+def test_a_constraint_component_that_the_template_brings_along_is_judged(shape: str) -> None:
+    ads = read([":a a sc:Component, :Lamp ; :p 1 .", ":b a sc:Component, :Lamp ; :p 2 ."])
+    role = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Lamp ; {shape} ."
+    assert names(partitioner(role + OWN_COMPONENT).partition(ads)) == [["a"]]
+
+
 @pytest.mark.parametrize("constraint", ['sh:pattern "("', "sh:minCount 1", "sh:property [ sh:minCount 1 ]"])
 def test_a_shape_that_is_none_is_the_authors_error(constraint: str) -> None:
     ads = read([":a a sc:Component, :Lamp ."])

@@ -26,6 +26,16 @@ def test_what_is_not_compiled_is_judged_by_pyshacl() -> None:
     assert suitable(LEVEL, frozenset((one, three)), document) == {one}
 
 
+def test_a_constraint_component_of_the_document_is_judged() -> None:
+    text = """:level a sc:Parameter ; sc:name 'level' ; :atMost 1 .
+        :AtMost a sh:ConstraintComponent ; sh:parameter [ sh:path :atMost ] ;
+            sh:validator [ a sh:SPARQLAskValidator ; sh:ask "ASK { FILTER ($value <= $atMost) }" ] ."""
+    document = parse(PREFIXES + text, "t.ttl")
+    one, three = Literal("1", XSD.integer), Literal("3", XSD.integer)
+    assert suitable(LEVEL, frozenset((one, three)), document) == {one}
+    assert misfits(LEVEL, (one, three), document).keys() == {three}
+
+
 def test_a_parameter_that_asks_for_nothing_takes_anything() -> None:
     document = parse(PREFIXES + ":level a sc:Parameter ; sc:name 'level' .", "t.ttl")
     assert misfits(LEVEL, (IRI("urn:a"), Literal("a")), document) == {}
