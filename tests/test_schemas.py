@@ -15,13 +15,14 @@ import pytest
 from referencing import Registry, Resource
 
 from docs import json_schemas
-from selfconf import library
+from selfconf import Ecology, library
 from selfconf.cli import run, status
 from selfconf.cli.main import COMMANDS, main
 from selfconf.configurator.events import Call
 from selfconf.configurator.machine import Phase
 from selfconf.model import run_event
 from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.run_event import RunEvent
@@ -244,6 +245,17 @@ def test_recruits_to_add_keep_to_the_schema(
     added = next(one for one in body["repairs"] if one["code"] == "add-recruits")
     assert added["message"] == f"add one more component for the role eye to recruit that {said}"
     assert added["additions"] == [{"role": "urn:t:eye", "count": 1, "outputs": [output], "values": {}}]
+
+
+def test_a_refusal_for_what_other_tasks_hold_keeps_to_the_schema(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    screen = IRI("https://example.org/my-home#display")
+    monkeypatch.setattr(Ecology, "holders", lambda _: {screen: Holder("watch~1", 2, 1.5, "c1")})
+    monkeypatch.chdir(ROOT)
+    body = printed(capsys, "configure", *CLOCK)
+    validator("configure").validate(body)
+    assert body["held"] == [{"component": screen, "task": "watch", "priority": 2, "since": 1.5, "configurator": "c1"}]
 
 
 @pytest.mark.usefixtures("asked_here")

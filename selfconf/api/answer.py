@@ -26,7 +26,7 @@ from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Place
-from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.refusal import Reason, Refusal, TooFewEligible, Undecided
 from selfconf.model.term import IRI
 from selfconf.model.wording import plain
 from selfconf.rdf.advertisements import Advertisement
@@ -216,6 +216,10 @@ class Inquiry:
             for role, candidates in zip(self.task.roles, partition.candidates, strict=True)
         }
         """How many components are eligible for each role."""
+        self._held_eligible = {
+            role.iri: sum(candidate.profile.component in self.holders for candidate in candidates)
+            for role, candidates in zip(self.task.roles, partition.candidates, strict=True)
+        }
         self.left_out = tuple(
             LeftOut(self._place(component), component, why.reason)
             for component, why in sorted(self.composer.not_judged().items())
@@ -246,7 +250,7 @@ class Inquiry:
             return found
         if isinstance(found, Refusal):
             free = {c: one for c, one in self.ecology.items() if c not in self.holders}
-            found = replace(found, held=self._held(limit))
+            found = replace(found, held=self._held(limit), reasons=tuple(map(self._told_of_held, found.reasons)))
             return refusal_with_places(self.composer, free if self.holders else self.ecology, found, self.method, limit)
         optimum = found if isinstance(found, Optimum) else None
         plain = found.configuration if isinstance(found, Optimum) else found
@@ -263,6 +267,12 @@ class Inquiry:
             unknown=() if optimum is None else self._unknown(optimum),
             what_if=None if consequences is None else tuple(consequences),
         )
+
+    def _told_of_held(self, reason: Reason) -> Reason:
+        """A reason that counts eligible components, with how many more there are that other tasks hold."""
+        if not isinstance(reason, TooFewEligible):
+            return reason
+        return replace(reason, held=self._held_eligible[reason.role])
 
     def _held(self, limit: TimeLimit) -> tuple[tuple[IRI, Holder], ...]:
         """The components of other tasks that there would be a configuration with."""

@@ -73,6 +73,8 @@ class TooFewEligible:
     role: IRI
     wanted: int
     found: int
+    held: int = field(default=0, kw_only=True, compare=False)
+    """How many more are eligible, but held by other tasks that this one cannot take them from."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the role or component that it speaks of is described, if that is known."""
 
@@ -83,8 +85,9 @@ class TooFewEligible:
 
     def __str__(self) -> str:
         if not self.found:
-            return f"no component is eligible for the role {self.role.short}"
-        return f"the role {self.role.short} asks for {self.wanted} components, and only {_eligible(self.found)}"
+            return f"no component {'that is free ' if self.held else ''}is eligible for the role {self.role.short}"
+        among = "of those that are free only" if self.held else "only"
+        return f"the role {self.role.short} asks for {self.wanted} components, and {among} {_eligible(self.found)}"
 
 
 @immutable

@@ -18,6 +18,7 @@ from selfconf.composition import Strategy
 from selfconf.errors import AuthorError, BindingError, ProgrammerError, SelfconfError, TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Reasoning
+from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle import parse
@@ -103,6 +104,19 @@ def test_reasons_near_misses_and_repairs_have_sentences_and_places(refusal: sc.R
     assert (str(miss), str(miss.place)) == ("its place is kitchen, not cellar", "examples/clock/display.ttl:5")
     assert {repair.code for repair in refusal.repairs} >= {"accept-near-miss", "add-components"}
     assert all(repair.place for repair in refusal.repairs)
+
+
+def test_a_component_that_another_task_holds_is_told_apart_from_one_that_is_not_eligible(
+    clock: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    screen = sc.IRI("https://example.org/my-home#display")
+    monkeypatch.setattr(sc.Ecology, "holders", lambda _: {screen: Holder("watch~1")})
+    inquiry = Inquiry(clock, sc.read("examples/clock"), Method())
+    refusal = inquiry.answer()
+    assert isinstance(refusal, Refusal)
+    assert [str(reason) for reason in refusal.reasons] == ["no component that is free is eligible for the role screen"]
+    assert [component for component, _ in refusal.held] == [screen]
+    assert inquiry.eligible["https://example.org/my-home#screen"] == 1
 
 
 def test_a_refusal_of_what_has_no_file_has_no_places(clock: sc.TaskSpecification) -> None:

@@ -35,6 +35,11 @@ WORDED: list[tuple[Reason, str]] = [
     ),
     (TooFewEligible(EYE, 1, 0), "no component is eligible for the role eye"),
     (TooFewEligible(EYE, 2, 1), "the role eye asks for 2 components, and only one is eligible"),
+    (TooFewEligible(EYE, 1, 0, held=1), "no component that is free is eligible for the role eye"),
+    (
+        TooFewEligible(EYE, 3, 2, held=1),
+        "the role eye asks for 3 components, and of those that are free only 2 are eligible",
+    ),
     (TooFewEligible(EYE, 3, 2), "the role eye asks for 3 components, and only 2 are eligible"),
     (
         TooFewDistinct((EYE, MIND), 2, 1),
