@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import stat
+import sys
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
@@ -122,6 +123,16 @@ def octets(path: Path) -> bytes:
         raise AuthorError(f"there is no file or folder {path}") from None
     except OSError as error:
         raise AuthorError(f"cannot read {path}: {error.strerror}") from None
+
+
+def standard_input() -> bytes:
+    """What comes in on standard input, to its end. Raises AuthorError where it is closed or cannot be read."""
+    if sys.stdin is None:  # so Python says that the file descriptor was closed when it began
+        raise AuthorError("standard input is closed")
+    try:
+        return sys.stdin.buffer.read()
+    except OSError as error:
+        raise AuthorError(f"cannot read standard input: {error.strerror}") from None
 
 
 def text(found: bytes, name: str) -> bytes:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,6 +15,16 @@ from selfconf.errors import AuthorError, TurtleError
 from selfconf.site import Shelf
 
 CLOCK = "@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:x:> . :clock a sc:Component, :Clock ."
+
+
+class Folder(io.RawIOBase):
+    """Standard input as a shell gives it by `< folder`."""
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, into: object) -> int:
+        raise IsADirectoryError(21, "Is a directory")
 
 
 @pytest.fixture
@@ -90,3 +102,15 @@ def test_what_cannot_be_read_as_turtle_is_said(tmp_path: Path) -> None:
     ):
         with pytest.raises(kind, match=words):
             files.advertisements(path)
+
+
+def test_standard_input_that_is_closed_or_cannot_be_read_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(CLOCK.encode())))
+    assert files.standard_input() == CLOCK.encode()
+    monkeypatch.setattr(sys, "stdin", None)
+    with pytest.raises(AuthorError, match=r"^standard input is closed$"):
+        files.standard_input()
+    with io.TextIOWrapper(io.BufferedReader(Folder())) as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        with pytest.raises(AuthorError, match=r"^cannot read standard input: Is a directory$"):
+            files.standard_input()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -127,7 +126,7 @@ def _path(source: str | Path) -> Path:
 
 def file_text(path: Path) -> Text:
     """What is in a file, or in standard input. Raises AuthorError."""
-    octets = sys.stdin.buffer.read() if path == files.STDIN else files.octets(path)
+    octets = files.standard_input() if path == files.STDIN else files.octets(path)
     return files.text(octets, file_name(path)), file_name(path), files.base(path)
 
 

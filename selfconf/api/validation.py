@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -128,7 +127,7 @@ def _files(given: str, endings: tuple[str, ...] = CHECKED) -> Iterator[str]:
 
 def _read(name: str) -> SourceText:
     if name == "-":
-        return SourceText("<stdin>", sys.stdin.buffer.read())
+        return SourceText("<stdin>", files.standard_input())
     return _load(Path(name))
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from selfconf import files
 from selfconf.cli.options import (
     add_ads_argument,
     add_ecology_arguments,
@@ -110,7 +110,7 @@ def _told(shown: Shown, rows: int) -> int:
 def _text(given: str) -> str:
     if given == "-":
         try:
-            return sys.stdin.read().removeprefix("\ufeff")
+            return files.standard_input().decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise AuthorError(f"cannot read stdin: {error}") from None
     if given.endswith(".rq") or (len(given) < 255 and "\n" not in given and Path(given).is_file()):

@@ -513,6 +513,12 @@ def test_template_or_advertisements_come_in_on_stdin_but_not_both(desk: Desk, mo
     assert piped("garbage", "-", "--ads", str(desk.ads)).is_one_sentence("<stdin>:1:")
 
 
+def test_standard_input_that_is_closed_is_one_sentence(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", None)
+    for given in (("-", "--ads", str(desk.ads)), (str(desk.template), "--ads", "-")):
+        assert run(desk.capsys, "configure", *given, *BOUND).is_one_sentence("standard input is closed")
+
+
 def test_of_two_descriptions_the_first_by_path_counts_in_whatever_order_they_are_given(desk: Desk) -> None:
     for name, text in (("a", ":lamp a sc:Component, :A ."), ("b", ":lamp a sc:Component, :B .")):
         (desk.folder / f"{name}.ttl").write_text(PREFIXES + text)

@@ -99,9 +99,13 @@ def test_no_file_of_this_machine_is_read(desk: Desk) -> None:
         assert (outcome.code, outcome.out.split()) == (0, ["s"])
 
 
-def test_bytes_that_are_no_text_are_one_sentence(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bytes_that_are_no_text_and_a_closed_stdin_are_one_sentence(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"SELECT \xff"), encoding="utf-8"))
     assert desk.query("-").is_one_sentence("stdin")
+    monkeypatch.setattr("sys.stdin", None)
+    assert desk.query("-").is_one_sentence("standard input is closed")
     path = desk.folder / "bytes.rq"
     path.write_bytes(b"\xff\xfe")
     assert desk.query(str(path)).is_one_sentence("bytes.rq")

@@ -16,6 +16,7 @@ from selfconf.cli.reports import RENDERERS
 from selfconf.cli.validate import reference
 from selfconf.model.codes import CODES
 from selfconf.model.diagnostic import report
+from tests.cli.command import run
 from tests.cli.diagnosed import WRONG
 
 BAD = Path(__file__).parents[1] / "bad"
@@ -84,6 +85,13 @@ def test_standard_input_can_be_validated(monkeypatch: pytest.MonkeyPatch, capsys
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(WRONG.encode())))
     assert main(["validate", "-"]) == 1
     assert capsys.readouterr().out.startswith("<stdin>:10:1: error[SC-A03]: ")
+
+
+def test_standard_input_that_is_closed_is_one_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "stdin", None)
+    assert run(capsys, "validate", "-").is_one_sentence("standard input is closed")
 
 
 @pytest.mark.parametrize("name", RENDERERS)
