@@ -132,16 +132,26 @@ _UNUSUAL = {"inf": "INF", "-inf": "-INF", "nan": "NaN"}
 """What XSD writes otherwise than Python does."""
 
 
-def _text(name: str, value: Value) -> str | Term:
-    """A value as the reader of terms takes it: text, or a term."""
+def _number(name: str, value: bool | int | float | Decimal) -> Literal:
+    """The literal of a number or truth value. Their classes may have heirs that print otherwise."""
     if isinstance(value, bool):
         return Literal(str(value).lower(), XSD.boolean)
     if isinstance(value, int):
-        return Literal(str(value), XSD.integer)
+        return Literal(int.__repr__(value), XSD.integer)
     if isinstance(value, float):
-        return Literal(_UNUSUAL.get(repr(value), repr(value)), XSD.double)
-    if isinstance(value, Decimal):
-        return Literal(str(value), XSD.decimal)
+        text = float.__repr__(value)
+        return Literal(_UNUSUAL.get(text, text), XSD.double)
+    if not value.is_finite():
+        raise BindingError(f"{name} cannot be {value}: xsd:decimal has no such number; float({str(value)!r}) has")
+    return Literal(format(value, "f"), XSD.decimal)  # xsd:decimal knows no exponents
+
+
+def _text(name: str, value: Value) -> str | Term:
+    """A value as the reader of terms takes it: text, or a term."""
+    if getattr(value, "shape", None) == ():  # a number or truth value of NumPy: what Python has for it
+        value = value.item()  # type: ignore[union-attr]  # what has a shape has this, too
+    if isinstance(value, bool | int | float | Decimal):
+        return _number(name, value)
     if isinstance(value, IRI | Literal):
         return value
     if hasattr(value, "n3"):  # one of rdflib's terms; they are strings too

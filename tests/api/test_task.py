@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import FrozenInstanceError
 from decimal import Decimal
+from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,12 @@ from tests.lab import PREFIXES, iri
 NAVIGATE = "examples/navigate.ttl"
 HOME = "https://w3id.org/selfconf/peis-home#"
 ASTRID = f"{HOME}Astrid"
+ANY_GOAL = (
+    (Path(__file__).resolve().parents[2] / NAVIGATE)
+    .read_text()
+    .replace("sh:datatype xsd:string", "sh:nodeKind sh:Literal")
+)
+"""The template of the paper with a goal that may be any literal."""
 
 
 def test_a_template_is_read_from_a_path_from_text_and_from_a_graph() -> None:
@@ -69,18 +76,43 @@ def test_what_is_no_template_is_refused_with_line_and_column() -> None:
         (float("-inf"), "-INF", XSD.double),
         (float("nan"), "NaN", XSD.double),
         (Decimal("1.50"), "1.50", XSD.decimal),
+        (Decimal("1E+3"), "1000", XSD.decimal),
+        (Decimal("-1E-9"), "-0.000000001", XSD.decimal),
+        (HTTPStatus.OK, "200", XSD.integer),
         (sc.Literal("x"), "x", XSD.string),
         (rdflib.Literal(3), "3", XSD.integer),
     ],
 )
 def test_a_value_of_python_stands_for_the_literal_of_its_kind(value: Any, lexical: str, datatype: sc.IRI) -> None:
-    text = Path(NAVIGATE).read_text().replace("sh:datatype xsd:string", "sh:nodeKind sh:Literal")
-    assert sc.template(text).bind(goal=value).bindings["goal"] == sc.Literal(lexical, datatype)
+    assert sc.template(ANY_GOAL).bind(goal=value).bindings["goal"] == sc.Literal(lexical, datatype)
+
+
+def test_a_number_of_numpy_stands_for_the_literal_of_its_kind() -> None:
+    np = pytest.importorskip("numpy", reason="numbers of NumPy are bound")
+    for value, lexical, datatype in (
+        (np.float64(1.5), "1.5", XSD.double),
+        (np.float32(0.5), "0.5", XSD.double),
+        (np.float64("nan"), "NaN", XSD.double),
+        (np.int64(-3), "-3", XSD.integer),
+        (np.uint8(200), "200", XSD.integer),
+        (np.bool_(True), "true", XSD.boolean),
+        (np.array(2), "2", XSD.integer),
+        (np.str_("plain"), "plain", XSD.string),
+    ):
+        assert sc.template(ANY_GOAL).bind(goal=value).bindings["goal"] == sc.Literal(lexical, datatype)
+    with pytest.raises(BindingError, match="goal is not"):
+        sc.template(ANY_GOAL).bind(goal=np.array([1, 2]))
 
 
 @pytest.mark.parametrize("value", [":Astrid", f"<{ASTRID}>", sc.IRI(ASTRID), rdflib.URIRef(ASTRID)])
 def test_an_iri_is_bound_by_curie_or_as_itself(value: Any, task: sc.TaskSpecification) -> None:
     assert sc.template(NAVIGATE).bind(robot=value).bindings["robot"] == task.bindings["robot"]
+
+
+@pytest.mark.parametrize("text", ["NaN", "Infinity", "-Infinity"])
+def test_a_decimal_that_is_no_number_is_refused_in_a_sentence(text: str) -> None:
+    with pytest.raises(BindingError, match=f"^goal cannot be {text}: xsd:decimal has no such number"):
+        sc.template(NAVIGATE).bind(goal=Decimal(text))
 
 
 @pytest.mark.parametrize("value", [None, [":Astrid"], {"a": 1}, b":Astrid", "_:b", rdflib.BNode("b"), "nope:Astrid"])
