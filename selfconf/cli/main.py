@@ -52,6 +52,20 @@ FOR_PEOPLE = ("text", "table")
 class Parser(argparse.ArgumentParser):
     """Says in one sentence what is wrong with the arguments; the usage is a question of its own."""
 
+    def parse_known_args(  # type: ignore[override]  # of its overloads one is used here
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse the arguments; where a command takes several of a kind, they may stand after its options, too.
+
+        By itself argparse has given them none, or those before the first option, once it comes to an option.
+        """
+        given, unknown = super().parse_known_args(args, namespace)
+        several = next((one.dest for one in self._actions if one.nargs in ("*", "+") and not one.option_strings), "")
+        if several and all(word == "-" or not word.startswith("-") for word in unknown):
+            setattr(given, several, [*(getattr(given, several) or ()), *unknown])
+            unknown = []
+        return given, unknown
+
     def error(self, message: str) -> NoReturn:
         """End with exit code 2."""
         self.exit(2, f"{self.prog}: {message}; see `{self.prog} --help`\n")
