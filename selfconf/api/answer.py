@@ -80,10 +80,11 @@ class Method:
 
 
 @dataclass(frozen=True)
-class Answer(Configuration):
+class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     """A configuration as the library answers with it: also what it costs, and what would replace what.
 
-    `answer["position"]` are the components of a role, by its local name, CURIE or IRI.
+    It is a mapping: `answer["position"]` are the components of a role, by its local name, CURIE or IRI, and
+    `dict(answer)` are those of all roles by their local names.
     """
 
     task: TaskDocument = field(kw_only=True, repr=False, compare=False)
@@ -115,6 +116,12 @@ class Answer(Configuration):
     def __iter__(self) -> Iterator[str]:
         """The roles by their local names, as a dictionary gives its keys."""
         return (role.short for role in self.roles)
+
+    def __len__(self) -> int:
+        return len(self.assignments)
+
+    def __bool__(self) -> bool:
+        return True  # also where it has no roles: there is a configuration
 
     def __contains__(self, role: object) -> bool:
         return any(role in (one, one.short, self.names(one)) for one in self.roles)

@@ -24,7 +24,19 @@ LARGEST_FILE = 64 << 20
 
 @dataclass(frozen=True)
 class ValidationReport(Tabular, Report):
-    """A report as the library answers with it: prints a line for each problem, or a table in a notebook."""
+    """A report as the library answers with it: true if all conforms, and by iteration its problems in order.
+
+    It prints a line for each problem, or a table in a notebook.
+    """
+
+    def __bool__(self) -> bool:
+        return self.conforms
+
+    def __len__(self) -> int:
+        return len(self.diagnostics)
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self.diagnostics)
 
     def _head(self) -> Sequence[str]:
         return "file", "line", "severity", "code", "message"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 import pickle
-from dataclasses import FrozenInstanceError
+from collections.abc import Mapping
+from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -65,6 +66,17 @@ def test_the_roles_are_listed_and_an_unknown_one_is_answered_with_them(answer: A
     assert "pilot" not in answer
     with pytest.raises(KeyError, match="the roles are sonar, encoder"):
         answer["pilot"]
+
+
+def test_an_answer_is_a_mapping_of_its_roles_and_true_without_any(answer: Answer) -> None:
+    assert isinstance(answer, Mapping)
+    assert len(answer) == len(answer.roles) == 5
+    assert list(answer.keys()) == list(answer)
+    assert dict(answer) == dict(answer.items()) == {role: answer[role] for role in answer}
+    assert list(answer.values()) == [assignment.components for assignment in answer.assignments]
+    assert (answer.get("position"), answer.get("pilot")) == ((TRACKER,), None)
+    empty = replace(answer, assignments=())
+    assert (len(empty), bool(empty)) == (0, True)
 
 
 def test_an_answer_can_be_compared_hashed_copied_and_pickled(

@@ -25,6 +25,13 @@ def test_one_path_or_several_as_text_or_as_path_are_validated() -> None:
         assert (report.errors, report.warnings, report.conforms) == (1, 1, False)
 
 
+def test_a_report_is_true_if_all_conforms_and_has_its_problems() -> None:
+    good, bad, strange = sc.validate("examples/clock"), sc.validate(BAD), sc.validate("tests/supply")
+    assert (bool(good), len(good), list(good)) == (True, 0, [])
+    assert (bool(bad), len(bad), tuple(bad)) == (False, 2, bad.diagnostics)
+    assert (bool(strange), [one.code for one in strange]) == (True, ["SC-S04"])
+
+
 def test_each_diagnostic_has_its_place_code_and_message() -> None:
     (error,) = (one for one in sc.validate(BAD).diagnostics if one.severity is Severity.ERROR)
     assert isinstance(error, Diagnostic)
