@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from selfconf.api.arguments import Paths, listed_paths, option
+from selfconf.api.arguments import Paths, listed_paths, option, seconds_limit, steps_limit
 from selfconf.api.collector import collector_at_rest, collector_looking_at_new
 from selfconf.api.ecology import Ecology
 from selfconf.api.ontologies import hierarchy_of
@@ -65,9 +65,13 @@ class Method:
         steps: int | None = None,
         seconds: float | None = None,
     ) -> Method:
-        """A method by the words of the command line. Raises ProgrammerError for a word that is none of them."""
+        """A method by the words of the command line. Raises ProgrammerError for what is none.
+
+        The limits, if there are any, are numbers above zero.
+        """
         chosen, mode = option(Strategy, "strategy", strategy), option(Reasoning, "reasoning", reasoning)
-        return cls(chosen, mode, tuple(map(Path, listed_paths(ontologies))), steps, seconds)
+        paths = tuple(map(Path, listed_paths(ontologies)))
+        return cls(chosen, mode, paths, steps_limit(steps), seconds_limit(seconds))
 
     def composer(self, task: TaskSpecification) -> Composer:
         """The composer of a task, which has to be complete."""

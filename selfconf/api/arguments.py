@@ -1,9 +1,11 @@
-"""What the functions of the library take besides tasks and ecologies: words for options, and paths."""
+"""What the functions of the library take besides tasks and ecologies: words for options, paths, and limits."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from enum import Enum
+from numbers import Integral, Real
 from pathlib import Path
 from typing import TypeAlias, TypeVar
 
@@ -15,8 +17,35 @@ Choice = TypeVar("Choice", bound=Enum)
 
 
 def listed_paths(paths: Paths) -> list[str | Path]:
-    """The paths; one by itself is a list of one, and not of its letters."""
-    return [paths] if isinstance(paths, str | Path) else list(paths)
+    """The paths; one by itself is a list of one, and not of its letters. Raises ProgrammerError for what is none."""
+    listed = [paths] if isinstance(paths, str | Path) else list(paths) if isinstance(paths, Iterable) else None
+    if listed is None or not all(isinstance(path, str | os.PathLike) for path in listed):
+        raise ProgrammerError(f"paths are one path or several, as text or as Path, not {paths!r}")
+    return listed
+
+
+LONGEST_SECONDS = 1e6
+"""Seconds that an alarm can be set to everywhere."""
+
+
+def steps_limit(steps: int | None) -> int | None:
+    """The steps that a search may take, or None. Raises ProgrammerError for what is no number of steps."""
+    if steps is None:
+        return None
+    if isinstance(steps, bool) or not isinstance(steps, Integral) or steps < 1:
+        raise ProgrammerError(f"steps are a whole number above zero, or None for no limit, not {steps!r}")
+    return int(steps)
+
+
+def seconds_limit(seconds: float | None) -> float | None:
+    """The seconds that a search may take, or None. Raises ProgrammerError for what is no time."""
+    if seconds is None:
+        return None
+    if isinstance(seconds, bool) or not isinstance(seconds, Real) or not 0 < seconds <= LONGEST_SECONDS:
+        raise ProgrammerError(
+            f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, or None for no limit, not {seconds!r}"
+        )
+    return float(seconds)
 
 
 def option(kind: type[Choice], name: str, word: str) -> Choice:

@@ -126,13 +126,16 @@ class Ecology(ABC):
     def query(self, sparql: str, *, seconds: float = 60.0, rows: int = 100_000) -> Solutions | bool | str:
         """The answer to a SPARQL 1.1 query: solutions, a truth value, or for CONSTRUCT and DESCRIBE Turtle.
 
-        Runs in a process of its own, which is ended after `seconds`. Raises QueryError.
+        Runs in a process of its own, which is ended after `seconds`. Raises QueryError, and ProgrammerError for what is
+        no text.
 
         >>> home.query("ASK { ?c a rob:Display }")
         True
         """
         from selfconf.query import Question  # loads what a configuration does not need
 
+        if not isinstance(sparql, str):
+            raise ProgrammerError(f"a query is the text of one, not {type(sparql).__name__}")
         question = Question(sparql, "json", rows, seconds=seconds)
         shown = self.asked(question)
         body = json.loads(shown.text)

@@ -62,7 +62,8 @@ def validate(paths: Paths, *, ontologies: Paths = (), cache: bool = False) -> Va
     """The problems of files and folders, as the command `validate` reports them; `-` is standard input.
 
     `cache` remembers what was found, and checks only what has changed since the last run over the same paths.
-    Raises AuthorError for an ontology that cannot be read; a file that cannot be read is a diagnostic.
+    Raises AuthorError for an ontology that cannot be read, and ProgrammerError for what is no path; a file that cannot
+    be read is a diagnostic.
 
     >>> validate(["examples/clock"]).conforms
     True

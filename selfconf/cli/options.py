@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from selfconf.api.arguments import LONGEST_SECONDS
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, BindingError
 from selfconf.files import STDIN
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from selfconf.api.task import TaskSpecification, Value
     from selfconf.project import Project
 
-LONGEST_SECONDS = 1e6
-"""Seconds that an alarm can be set to everywhere."""
 MOST_DOMAIN = 232
 """The greatest ROS_DOMAIN_ID that ROS 2 takes."""
 

@@ -202,6 +202,12 @@ def test_arguments_of_another_kind_are_refused_in_a_sentence(task: sc.TaskSpecif
         sc.configure("examples/navigate.ttl", home)  # type: ignore[arg-type]  # refused when it runs, too
     with pytest.raises(ProgrammerError, match=r"selfconf.read\(\) or selfconf.join\(\) gives, not str"):
         sc.configure(task, "examples/peis-home")  # type: ignore[arg-type]  # refused when it runs, too
+    with pytest.raises(ProgrammerError, match="steps are a whole number"):
+        sc.configure(task, home, steps=0)
+    with pytest.raises(ProgrammerError, match="seconds are a number"):
+        sc.configure(task, home, seconds=-1)
+    with pytest.raises(ProgrammerError, match="paths are one path or several"):
+        sc.configure(task, home, ontologies=None)  # type: ignore[arg-type]  # refused when it runs, too
 
 
 def test_what_if_and_cost_come_with_the_answer_where_they_are_asked_for(answer: Answer) -> None:

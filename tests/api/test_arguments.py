@@ -1,13 +1,15 @@
-"""One path is not taken for its letters, and a word that is no option is answered with those that are."""
+"""One path is not taken for its letters, a word that is no option is answered with those that are, limits count."""
 
 from __future__ import annotations
 
 from enum import Enum
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from selfconf.api.arguments import listed_paths, option
+from selfconf.api.arguments import LONGEST_SECONDS, listed_paths, option, seconds_limit, steps_limit
 from selfconf.errors import ProgrammerError
 
 
@@ -29,3 +31,28 @@ def test_a_word_is_an_option_or_is_answered_with_the_options() -> None:
     with pytest.raises(ProgrammerError) as error:
         option(Colour, "colour", "green")
     assert str(error.value) == "there is no colour 'green'; choose one of 'red', 'blue'"
+
+
+@pytest.mark.parametrize("paths", [None, 5, b"examples", [None], ["examples", 5]])
+def test_what_is_no_path_is_refused_in_a_sentence(paths: Any) -> None:
+    with pytest.raises(ProgrammerError, match=r"^paths are one path or several, as text or as Path, not "):
+        listed_paths(paths)
+
+
+def test_limits_are_numbers_above_zero_or_none() -> None:
+    assert (steps_limit(None), steps_limit(1)) == (None, 1)
+    assert (seconds_limit(None), seconds_limit(1), seconds_limit(0.5)) == (None, 1.0, 0.5)
+    assert seconds_limit(Fraction(1, 4)) == 0.25  # type: ignore[arg-type]  # a number too, when it runs
+    assert seconds_limit(LONGEST_SECONDS) == LONGEST_SECONDS
+
+
+@pytest.mark.parametrize("steps", [0, -1, 1.5, 1.0, True, "5"])
+def test_what_is_no_number_of_steps_is_refused_in_a_sentence(steps: Any) -> None:
+    with pytest.raises(ProgrammerError, match=r"^steps are a whole number above zero, or None for no limit, not "):
+        steps_limit(steps)
+
+
+@pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf"), 1e300, True, "5"])
+def test_what_is_no_time_is_refused_in_a_sentence(seconds: Any) -> None:
+    with pytest.raises(ProgrammerError, match=r"^seconds are a number above zero and at most 1,000,000, or None "):
+        seconds_limit(seconds)

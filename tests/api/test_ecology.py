@@ -50,6 +50,11 @@ def test_the_solutions_of_a_query_are_terms_by_variable(home: sc.Ecology) -> Non
     assert repr(found).splitlines()[-1].split() == ["person-tracker", "living-room"]
 
 
+def test_a_query_that_is_no_text_is_a_mistake_of_the_program(home: sc.Ecology) -> None:
+    with pytest.raises(ProgrammerError, match=r"^a query is the text of one, not int$"):
+        home.query(5)  # type: ignore[arg-type]  # refused when it runs, too
+
+
 def test_every_kind_of_term_comes_back(home: sc.Ecology) -> None:
     (row,) = home.query('SELECT * { VALUES (?a ?b ?c ?d) { (<x:y> "text" "Wort"@de 1.5) } BIND(BNODE() AS ?e) }')
     assert row["a"] == sc.IRI("x:y")
