@@ -35,7 +35,9 @@ _VALUE_SPACES: tuple[tuple[type, ...], ...] = ((int, float, Decimal), (str,), (d
 
 
 def _value_space(literal: rdflib.Literal) -> object:
-    """What literals with an order have in common: the classes of their values, or else their datatype."""
+    """What literals with an order have in common: their language, or the classes of their values, or their datatype."""
+    if literal.language:
+        return literal.language.lower()
     kind = type(literal.value)
     return next((classes for classes in _VALUE_SPACES if kind in classes), literal.datatype)
 
@@ -44,6 +46,8 @@ def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
     """How two literals compare: negative, zero or positive. Raises one of UNORDERED where they have no order."""
     if _value_space(one) != _value_space(other):
         raise TypeError("the two have no order")
+    if one.language:  # rdflib orders by the tag first, as it is written: `en` comes after `EN`
+        return (str(one) > str(other)) - (str(one) < str(other))
     return _compare(one, other)
 
 

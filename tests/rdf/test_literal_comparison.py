@@ -11,7 +11,8 @@ from rdflib import Graph
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.literal_comparison import has_value, only_ordered, order, well_typed
-from selfconf.rdf.vocabulary import RDF, XSD
+from selfconf.rdf.shacl.value_tests import PairTest, ValueTest
+from selfconf.rdf.vocabulary import RDF, SH, XSD
 from tests.lab import PREFIXES, iri
 
 
@@ -110,7 +111,20 @@ def test_in_the_block_pyshacl_compares_two_properties_as_sparql_does(constraint:
     shape = f":s a sh:NodeShape ; sh:targetNode :a ; sh:property [ sh:path :p ; sh:{constraint} :q ] ."
     shapes = Graph().parse(data=PREFIXES + shape, format="turtle")
     less = "<" if constraint == "lessThan" else "<="
-    values = ('"2024-01-01"^^xsd:date', '"2024-01-02"^^xsd:date', "5", "5.0", "6", '"a"', '"b"', ":x", ":y", "[]")
+    values = (
+        '"2024-01-01"^^xsd:date',
+        '"2024-01-02"^^xsd:date',
+        "5",
+        "5.0",
+        "6",
+        '"a"',
+        '"b"',
+        '"b"@en',
+        '"c"@en',
+        ":x",
+        ":y",
+        "[]",
+    )
     for value, other in product(values, values):
         text = f"{PREFIXES}:a :p {value} ; :q {other} ."
         data = Graph().parse(data=text, format="turtle")
@@ -122,3 +136,16 @@ def test_in_the_block_pyshacl_compares_two_properties_as_sparql_does(constraint:
             f"ASK {{ ?a <{iri('p')}> ?p ; <{iri('q')}> ?q FILTER ( isLiteral(?p) && isLiteral(?q) && ?p {less} ?q ) }}"
         )
         assert found == bool(store.query(query)), (value, other)
+
+
+def test_text_in_a_language_has_an_order_with_text_in_the_same_language_alone_as_in_sparql() -> None:
+    texts = [Literal(text, RDF.langString, tag) for text in ("a", "b") for tag in ("en", "EN", "de", "en-GB")]
+    for value, other in product([Literal("a"), Literal("b"), *texts], repeat=2):
+        found = order(value, other)
+        for constraint, sign in (("lessThan", "<"), ("lessThanOrEquals", "<=")):
+            query = f"ASK {{ FILTER ( {value.turtle(str)} {sign} {other.turtle(str)} ) }}"
+            expected = bool(Store().query(query))
+            assert (found is not None and (found < 0 or (found == 0 and sign == "<="))) == expected, query
+            assert PairTest(SH[constraint], IRI("urn:x:q")).passes(value, [other]) == expected, query
+        least = ValueTest(SH.minInclusive, other)
+        assert least.passes(value) == (found is not None and found >= 0)
