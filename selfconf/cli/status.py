@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 from selfconf.cli.terminal import STATE_COLOURS, paint
 from selfconf.model.term import IRI
+from selfconf.model.wording import one_line
 
 if TYPE_CHECKING:
     from selfconf.protocol.messages import Status
@@ -95,7 +96,7 @@ def _held(status: Status, names: Names) -> Iterator[str]:
 def _configuration(body: Mapping[str, Any], status: Status, names: Names) -> Iterator[str]:
     """What is deployed: who plays which role, for whom values are bound, and who feeds whom."""
     for name, value in body["bindings"].items():
-        yield f"{name} = {_value(value, names)}"
+        yield f"{one_line(name)} = {_value(value, names)}"
     width = max((len(names(IRI(role["role"]))) for role in body["roles"]), default=0)
     for role in body["roles"]:
         yield f"{names(IRI(role['role'])):{width}}  {', '.join(names(IRI(one)) for one in role['components'])}"
@@ -104,10 +105,8 @@ def _configuration(body: Mapping[str, Any], status: Status, names: Names) -> Ite
     played = {*body["recruits"], *(one for role in body["roles"] for one in role["components"])}
     yield from (f"also held: {names(one)}" for one in status.components if one not in played)
     for wire in body["connections"]:
-        source, sink = wire["from"], wire["to"]
-        yield (
-            f"{names(IRI(source['component']))} {source['output']} -> {names(IRI(sink['component']))} {sink['input']}"
-        )
+        source, sink = (names(IRI(wire[end]["component"])) for end in ("from", "to"))
+        yield f"{source} {one_line(wire['from']['output'])} -> {sink} {one_line(wire['to']['input'])}"
 
 
 def _value(value: Any, names: Names) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.wording import one_line
 from selfconf.render.text import Name
 
 
@@ -21,4 +22,4 @@ def mermaid(configuration: Configuration, name: Name) -> str:
 
 
 def _quoted(text: str) -> str:
-    return text.replace("&", "&amp;").replace('"', "#quot;").replace("<", "&lt;").replace(">", "&gt;")
+    return one_line(text).replace("&", "&amp;").replace('"', "#quot;").replace("<", "&lt;").replace(">", "&gt;")

@@ -19,7 +19,7 @@ from selfconf.model.run_event import (
     TaskWaiting,
 )
 from selfconf.model.term import IRI
-from selfconf.model.wording import MANY
+from selfconf.model.wording import MANY, one_line
 from selfconf.render.bodies import configuration_body, refusal_body, undecided_body
 from selfconf.render.names import short
 from selfconf.render.tables import count
@@ -113,7 +113,7 @@ def _word(value: object, name: Name) -> object:
     if isinstance(value, tuple):
         more = f" and {len(value) - MANY} others" if len(value) > MANY else ""
         return ", ".join(map(str, value[:MANY])) + more or "no site"
-    return value
+    return one_line(value) if isinstance(value, str) else value  # the name of a port is any text
 
 
 def event_body(event: RunEvent) -> dict[str, Any]:

@@ -1,4 +1,7 @@
-"""Answers as text for people: a configuration, its cost, what would replace what, a refusal on one screen."""
+"""Answers as text for people: a configuration, its cost, what would replace what, a refusal on one screen.
+
+The names of ports and parameters are any text that strangers wrote: what would break or forge a line is spelt out.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,7 @@ from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.term import IRI, Term
+from selfconf.model.wording import one_line
 
 Name = Callable[[Term], str]
 """How a term is written: `Names` of a document, or `short`."""
@@ -35,14 +39,17 @@ def configuration_text(configuration: Configuration, name: Name) -> str:
 
 
 def _connections(configuration: Configuration, name: Name) -> list[str]:
-    ends = [(f"{name(c.source)} {c.output}", f"{name(c.sink)} {c.input}") for c in configuration.connections]
+    ends = [
+        (f"{name(c.source)} {one_line(c.output)}", f"{name(c.sink)} {one_line(c.input)}")
+        for c in configuration.connections
+    ]
     width = max((len(left) for left, _ in ends), default=0)
     return ["connections", *(f"  {left:<{width}}  ->  {right}" for left, right in ends)] if ends else []
 
 
 def _values(configuration: Configuration, name: Name) -> list[str]:
-    bindings = [f"  {parameter} = {name(value)}" for parameter, value in configuration.bindings.items()]
-    settings = [f"  {name(s.component)} {s.name} = {name(s.value)}" for s in configuration.settings]
+    bindings = [f"  {one_line(parameter)} = {name(value)}" for parameter, value in configuration.bindings.items()]
+    settings = [f"  {name(s.component)} {one_line(s.name)} = {name(s.value)}" for s in configuration.settings]
     return [*(["bindings", *bindings] if bindings else []), *(["parameters", *settings] if settings else [])]
 
 

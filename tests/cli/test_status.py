@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from selfconf.cli import status
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Status
+from selfconf.render import Names
 from tests.cli.command import run
 from tests.cli.processes import Home
 from tests.lab import iri
@@ -17,18 +21,18 @@ def test_what_is_deployed_is_shown_and_taken_down_by_stop(inhabited: Home, capsy
     where = inhabited.arguments()
     program = inhabited.run()
     program.act("running")
-    (status,) = run(capsys, "status", "--format", "json", *where).body
-    assert (status["phase"], status["process"], status["template"]) == ("running", program.number, iri("navigate"))
-    assert iri("person-tracker") in status["components"]
-    assert len(status["components"]) == 5
+    (told,) = run(capsys, "status", "--format", "json", *where).body
+    assert (told["phase"], told["process"], told["template"]) == ("running", program.number, iri("navigate"))
+    assert iri("person-tracker") in told["components"]
+    assert len(told["components"]) == 5
     text = run(capsys, "status", *where).out
     assert f"process {program.number} on" in text
     assert "running" in text
     outcome = run(capsys, "stop", "--configurator", "nobody", *where)
     assert outcome.is_one_sentence("no task or configurator 'nobody' answers")
     assert inhabited.active("drive") == {"drive"}
-    outcome = run(capsys, "stop", "--configurator", status["configurator"], *where)
-    assert (outcome.code, outcome.out) == (0, f"took down {status['task']} in ecology {inhabited.ecology}\n")
+    outcome = run(capsys, "stop", "--configurator", told["configurator"], *where)
+    assert (outcome.code, outcome.out) == (0, f"took down {told['task']} in ecology {inhabited.ecology}\n")
     assert program.ended() == 0
     assert inhabited.active(*EVERYBODY) == set()
 
@@ -39,3 +43,10 @@ def test_where_nothing_is_deployed_both_say_so(inhabited: Home, capsys: pytest.C
         outcome = run(capsys, command, *where)
         assert (outcome.code, outcome.out) == (0, f"nothing is deployed in ecology {inhabited.ecology}\n")
     assert run(capsys, "status", "--format", "json", *where).body == []
+
+
+def test_the_name_of_a_port_or_parameter_forges_no_line() -> None:
+    wire = {"from": {"component": "urn:x:a", "output": "o\n"}, "to": {"component": "urn:x:b", "input": "\x1b[2Ji"}}
+    body = {"bindings": {"room\n": 5}, "roles": [], "recruits": [], "connections": [wire]}
+    lines = status._configuration(body, Status("c", "running", IRI("urn:x:t"), 1, 0.0), Names({"": "urn:x:"}))
+    assert list(lines) == [r"room\n = 5", r":a o\n -> :b \x1b[2Ji"]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.term import IRI
 from selfconf.render import mermaid, short
-from tests.render.answers import CONFIGURATION, NAMES, SINK, SOURCE, TEMPLATE
+from tests.render.answers import CLOCK, CONFIGURATION, NAMES, SCREEN, SINK, SOURCE, TEMPLATE
 
 
 def test_a_configuration_is_a_chart_of_nodes_with_their_roles_and_named_arrows() -> None:
@@ -33,3 +35,9 @@ def test_words_that_would_end_a_label_or_begin_a_tag_are_escaped() -> None:
     assert node == '    c0["x#quot;]&lt;b&gt;&amp;amp;<br/><i>source</i>"]'
     assert arrow == '    c0 -->|"o#quot; → i|&lt;br&gt;"| c0'
     assert node.count('"') == arrow.count('"') == 2
+
+
+def test_the_name_of_a_port_forges_no_line_of_a_chart() -> None:
+    wire = Connection(CLOCK, "time\n    c9 --> c8", SCREEN, "text\x1b[2J")
+    *_, arrow = mermaid(replace(CONFIGURATION, connections=(wire,)), NAMES).splitlines()
+    assert arrow == r'    c0 -->|"time\n    c9 --&gt; c8 → text\x1b[2J"| c1'

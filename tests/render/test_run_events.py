@@ -106,6 +106,12 @@ def test_iris_are_shortened_by_the_names_that_are_given() -> None:
     assert event_body(event)["source"] == CLOCK
 
 
+def test_the_name_of_a_port_forges_no_line() -> None:
+    event = InputConnected(CLOCK, "time\nact 5  running", SCREEN, "text\x1b[2J")
+    assert sentence(event, NAMES) == r"act 4  :clock time\nact 5  running -> :screen text\x1b[2J"
+    assert event_body(event)["output"] == "time\nact 5  running"
+
+
 def test_a_discovery_names_the_sites_that_did_not_answer_in_full() -> None:
     plain = sentence(EcologyDiscovered(2, ("home", "hall")), NAMES)
     assert plain == "act 2  2 components at home, hall"

@@ -8,8 +8,10 @@ from decimal import Decimal
 import pytest
 
 from selfconf.model.alternative import Alternative
+from selfconf.model.configuration import Connection, ParameterSetting
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Refusal, TooFewEligible, Undecided
+from selfconf.model.term import Literal
 from selfconf.render import (
     alternative_text,
     configuration_text,
@@ -31,6 +33,7 @@ from tests.render.answers import (
     REASONS,
     REFUSAL,
     REPAIRS,
+    SCREEN,
     SOURCE,
     TEMPLATE,
     term,
@@ -50,6 +53,23 @@ def test_a_configuration_says_who_plays_what_is_connected_bound_and_set() -> Non
         '  greeting = "say \\"hello\\""',
         "parameters",
         "  :screen size = 12",
+    ]
+
+
+def test_a_name_of_a_port_or_parameter_forges_no_line() -> None:
+    forged = replace(
+        CONFIGURATION,
+        connections=(Connection(CLOCK, "time\n  :lamp time", SCREEN, "text\x1b[2J\u2028"),),
+        settings=(ParameterSetting(SCREEN, "size\r\nbindings", Literal("12")),),
+        bindings={"room\n": term("kitchen")},
+    )
+    assert configuration_text(forged, NAMES).splitlines()[4:] == [
+        "connections",
+        r"  :clock time\n  :lamp time  ->  :screen text\x1b[2J\u2028",
+        "bindings",
+        r"  room\n = :kitchen",
+        "parameters",
+        r'  :screen size\r\nbindings = "12"',
     ]
 
 
