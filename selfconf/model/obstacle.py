@@ -156,7 +156,8 @@ class ConstraintFailed:
             return f"{_LENGTHS[constraint]} {wanted} characters long"
         if constraint in _PAIRS:
             return f"{_PAIRS[constraint]} its {wanted}"
-        return f"like /{wanted}/" if constraint == "pattern" else f"a {wanted}"
+        article = "an" if wanted[:1] in tuple("AEIOaeiou") else "a"  # a datatype or a kind of node: an integer, an IRI
+        return f"like /{wanted}/" if constraint == "pattern" else f"{article} {wanted}"
 
 
 @immutable

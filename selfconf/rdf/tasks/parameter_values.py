@@ -2,26 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 
-from selfconf.model.obstacle import NotJudged, ShapeViolated
+from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, ShapeViolated
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SH, TYPE
 
+_PROBE = "urn:selfconf:probe"
+"""The property by which pySHACL is asked about a value; a node of that name and a number has it."""
+
 
 def misfits(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
     """Those of some values that cannot stand for a parameter, each with the reason.
 
     A parameter is a shape for its value (`sh:nodeKind`, `sh:datatype`, `sh:in` ...). Values that pass the compiled
-    tests of all its constraints conform; the others are judged, and the reason is worded, by pySHACL.
+    tests of all its constraints conform; the others are judged by pySHACL. The reason is worded as for a property of a
+    component, where the constraint is one of those; else as pySHACL, or the author by `sh:message`, words it.
     """
     constraints = _constraints(parameter.iri, document)
     tests, covered = compiled(constraints)
     left = [value for value in values if covered != constraints.keys() or not _passes(tests, value)]
-    return _judged(parameter, left, document) if constraints and left else {}
+    found = _judged(parameter, left, document) if constraints and left else {}
+    if SH.message in constraints:
+        return found
+    return {value: _worded(value, tests, constraints, document) or _without_names(found[value]) for value in found}
 
 
 def suitable(parameter: Parameter, values: frozenset[Term], document: Document) -> frozenset[Term]:
@@ -39,6 +47,33 @@ def _passes(tests: Iterable[ValueTest], value: Term) -> bool:
         return all(test.passes(value) for test in tests)
     except MatchTooCostly:
         return False
+
+
+def _worded(
+    value: Term, tests: Iterable[ValueTest], constraints: Mapping[IRI, list[Term]], document: Document
+) -> str | None:
+    """What is wrong with a value by the first of the constraints that have words here."""
+    values = frozenset((value,))
+    try:
+        for test in tests:
+            if not test.passes(value):
+                return ConstraintFailed(values, test.constraint, test.wanted).said("it")
+    except MatchTooCostly:  # which has been found out already, and has words of its own
+        return None
+    allowed = [frozenset(document.items(head)) for head in constraints.get(SH["in"], ())]
+    required = [frozenset((one,)) for one in constraints.get(SH.hasValue, ())]
+    return next((NotAmong(values, one).said("it") for one in (*allowed, *required) if value not in one), None)
+
+
+_ITSELF = re.compile(rf"<{_PROBE}:\d+>-><{_PROBE}>")
+_ITS = re.compile(rf"<{_PROBE}:\d+>->")
+_LITERAL = re.compile(r'Literal\("(.*?)"(, (datatype|lang)=[^)]*)?\)')
+
+
+def _without_names(message: str) -> str:
+    """A message of pySHACL without the names under which it was asked, and with literals as people write them."""
+    said = _LITERAL.sub(r'"\1"', _ITS.sub("its ", _ITSELF.sub("it", message)))
+    return said.removesuffix(" See details for more information.").removesuffix(".")
 
 
 def _constraints(parameter: IRI, document: Document) -> dict[IRI, list[Term]]:
@@ -59,8 +94,8 @@ def _judged(parameter: Parameter, values: Iterable[Term], document: Document) ->
     from selfconf.rdf.conformance import violations
     from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
 
-    probes = {IRI(f"urn:selfconf:probe:{number}"): value for number, value in enumerate(values)}
-    probe, probe_shape = IRI("urn:selfconf:probe"), IRI("urn:selfconf:probe-shape")
+    probes = {IRI(f"{_PROBE}:{number}"): value for number, value in enumerate(values)}
+    probe, probe_shape = IRI(_PROBE), IRI(f"{_PROBE}-shape")
     shapes = to_rdflib(document.triples())
     node, path = rdflib.URIRef(probe_shape), rdflib.BNode()
     shapes.add((node, rdflib.URIRef(TYPE), rdflib.URIRef(SH.NodeShape)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.tasks.parameter_values import misfits, suitable
@@ -39,6 +41,28 @@ def test_a_constraint_component_of_the_document_is_judged() -> None:
 def test_a_parameter_that_asks_for_nothing_takes_anything() -> None:
     document = parse(PREFIXES + ":level a sc:Parameter ; sc:name 'level' .", "t.ttl")
     assert misfits(LEVEL, (IRI("urn:a"), Literal("a")), document) == {}
+
+
+@pytest.mark.parametrize(
+    ("asked", "reason"),
+    [
+        ("sh:minInclusive 5", "it is 3, not at least 5"),
+        ("sh:datatype xsd:string", "it is 3, not a string"),
+        ("sh:nodeKind sh:IRI", "it is 3, not an IRI"),
+        ("sh:pattern '^a'", "it is 3, not like /^a/"),
+        ("sh:in ( :a 4 'x' )", 'it is 3, not "x" or 4 or a'),
+        ("sh:hasValue 7", "it is 3, not 7"),
+        ("sh:class :K", "Value does not have class <https://example.org/peis-home#K>"),
+        ("sh:node [ sh:datatype xsd:string ]", "Value does not conform to Shape [ sh:datatype xsd:string ]"),
+        ("sh:not [ sh:datatype xsd:integer ]", 'Node "3" must not conform to shape [ sh:datatype xsd:integer ]'),
+        ("sh:minCount 2", "Less than 2 values on it"),
+        ("sh:equals :q", 'Value of its <https://example.org/peis-home#q> != "3"'),
+        ("sh:minInclusive 5 ; sh:message 'Literal(\"a lot\") is asked for.'", 'Literal("a lot") is asked for.'),
+    ],
+)
+def test_the_reason_is_in_words_without_the_names_of_our_own(asked: str, reason: str) -> None:
+    document = parse(f"{PREFIXES}:level a sc:Parameter ; sc:name 'level' ; {asked} .", "t.ttl")
+    assert list(misfits(LEVEL, (Literal("3", XSD.integer),), document).values()) == [reason]
 
 
 def test_a_pattern_that_takes_too_long_is_said_of_the_value_and_not_of_a_shape_of_our_own() -> None:
