@@ -27,8 +27,8 @@ from selfconf.serve.sparql_endpoint import SparqlEndpoint
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
 """The names under which a server on this machine may be asked: a page elsewhere may know it under another one."""
-METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
-"""The methods that reach the SPARQL endpoint, which itself says which of them it knows."""
+SPARQL_METHODS = ("GET", "HEAD", "POST")
+"""The methods by which the SPARQL endpoint is asked; everything else is asked by the first two alone."""
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:;"
     " connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -90,7 +90,7 @@ def application(
         Route("/look", onlookers.respond),
         Route("/fit", fits.respond),
         Route("/mend", mends.respond),
-        *(Route(path, sparql.respond, methods=METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
+        *(Route(path, sparql.respond, methods=SPARQL_METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
         Route("/.well-known/wot", directory.itself),
         Route("/things", directory.things),
         Route("/things/{id:path}", directory.thing),
@@ -147,6 +147,11 @@ async def _nobody_left(_: Request, error: Exception) -> Response:
 
 async def _refused(_: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
+    if (
+        error.status_code == 405
+    ):  # Starlette has the methods in the order of a set, which is another one in each process
+        allowed = ", ".join(sorted((error.headers or {})["Allow"].split(", ")))
+        return problem(405, f"this is asked by one of {allowed}", {"Allow": allowed})
     return problem(error.status_code, error.detail, error.headers)
 
 

@@ -47,8 +47,6 @@ class SparqlEndpoint:
 
     async def respond(self, request: Request) -> Response:
         """The response to a request."""
-        if request.method not in ("GET", "HEAD", "POST"):
-            return problem(405, "a query is asked by GET or POST", {"Allow": "GET, POST"})
         try:
             body = await body_of(request)
             method = "POST" if request.method == "POST" else "GET"

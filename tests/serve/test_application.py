@@ -34,6 +34,16 @@ def test_a_name_of_this_machine_is_answered(board: Board, host: str) -> None:
     assert ask(served(board), "/state", host=host).status == 200
 
 
+@pytest.mark.parametrize("method", ["TRACE", "OPTIONS", "PUT", "PATCH", "DELETE", "FOO"])
+def test_a_method_that_is_not_known_is_answered_with_those_that_are(board: Board, method: str) -> None:
+    known = {"/sparql": "GET, HEAD, POST", "/sparql/": "GET, HEAD, POST", "/things": "GET, HEAD", "/": "GET, HEAD"}
+    for path, methods in known.items():
+        answer = ask(served(board), path, method)
+        assert (answer.status, answer.media) == (405, "application/problem+json")
+        assert answer.headers["allow"] == methods
+        assert answer.json["detail"] == f"this is asked by one of {methods}"
+
+
 def test_health_is_whether_the_ecology_is_heard(board: Board) -> None:
     assert ask(served(board), "/healthz").status == 200
     assert ask(served(board, linked=False), "/healthz").status == 503
