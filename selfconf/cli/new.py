@@ -14,7 +14,6 @@ EXAMPLE = """  selfconf new component kitchen-thermometer
   selfconf new template watch-the-temperature
   selfconf configure watch-the-temperature.ttl --ads ."""
 
-__NAMESPACE = re.compile(r"[a-z][a-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*[#/:]", re.IGNORECASE)
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:[-_][A-Za-z0-9]+)*")
 _NAMESPACE = re.compile(r"[a-z][a-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*[#/:]", re.IGNORECASE)
 _HOME = "https://example.org/my-home#"
@@ -30,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--namespace",
         metavar="IRI",
-        help=f"what the IRIs of your own terms start with, up to # or / (default: {_HOME}; "
+        help=f"what the IRIs of your own terms start with, up to #, / or : (default: {_HOME}; "
         "of an ontology https://example.org/NAME#)",
     )
 
@@ -50,7 +49,7 @@ def scaffold(kind: str, name: str, folder: Path, namespace: str | None = None) -
         raise AuthorError(f"{name!r} cannot be a name; start with a letter, go on with letters, digits and hyphens")
     namespace = namespace or (f"https://example.org/{name}#" if kind == "ontology" else _HOME)
     if not _NAMESPACE.fullmatch(namespace):
-        raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with # or /")
+        raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with #, / or :")
     words = " ".join(re.split("[-_]", name))
     fillings = {
         "name": name,

@@ -9,6 +9,7 @@ import pytest
 from selfconf.api.validation import check
 from selfconf.cli.main import main
 from selfconf.cli.scaffolds import SCAFFOLDS
+from tests.cli.command import run
 
 
 @pytest.mark.parametrize("namespace", ["https://example.org/else/", "urn:home:"])
@@ -35,8 +36,11 @@ def test_a_name_that_could_not_be_a_file_and_a_term_is_refused(name: str, tmp_pa
 
 
 @pytest.mark.parametrize("namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#"])
-def test_a_namespace_that_is_no_iri_is_refused(namespace: str, tmp_path: Path) -> None:
-    assert main(["new", "component", "x", "--dir", str(tmp_path), "--namespace", namespace]) == 2
+def test_a_namespace_that_is_no_iri_is_refused(
+    namespace: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    outcome = run(capsys, "new", "component", "x", "--dir", str(tmp_path), "--namespace", namespace)
+    assert outcome.is_one_sentence(repr(namespace), "it is an absolute IRI that ends with #, / or :")
 
 
 def test_a_folder_that_is_not_there_is_made(tmp_path: Path) -> None:
