@@ -62,8 +62,8 @@ def validate(paths: Paths, *, ontologies: Paths = (), cache: bool = False) -> Va
     """The problems of files and folders, as the command `validate` reports them; `-` is standard input.
 
     `cache` remembers what was found, and checks only what has changed since the last run over the same paths.
-    Raises AuthorError for an ontology that cannot be read, and ProgrammerError for what is no path; a file that cannot
-    be read is a diagnostic.
+    Raises AuthorError for an ontology that cannot be read and an empty path, and ProgrammerError for what is no path; a
+    file that cannot be read is a diagnostic.
 
     >>> validate(["examples/clock"]).conforms
     True
@@ -129,7 +129,12 @@ def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
 
 
 def _files(given: str, endings: tuple[str, ...] = CHECKED) -> Iterator[str]:
-    """The files that a path stands for: those of a folder that end so, by name, or itself."""
+    """The files that a path stands for: those of a folder that end so, by name, or itself.
+
+    Raises AuthorError for an empty text, which `Path` takes for the current folder.
+    """
+    if not given:
+        raise AuthorError("an empty text is no path; the current folder is '.'")
     path = Path(given)
     if given == "-" or not path.is_dir():
         yield given

@@ -57,6 +57,12 @@ def test_what_cannot_be_read_is_a_diagnostic_and_an_ontology_that_cannot_be_is_a
         sc.validate(BAD, ontologies="no-such-ontology.ttl")
 
 
+def test_an_empty_text_is_not_the_current_folder() -> None:
+    for paths, ontologies in (("", ()), ([BAD, ""], ()), (BAD, [""])):
+        with pytest.raises(AuthorError, match=r"^an empty text is no path; the current folder is '\.'$"):
+            sc.validate(paths, ontologies=ontologies)
+
+
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The current folder, with a file that conforms, two with a problem each, and one that is not Turtle."""
