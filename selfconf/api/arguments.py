@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TypeAlias, TypeVar
 
 from selfconf.errors import ProgrammerError
+from selfconf.model.template import MOST_PRIORITY
 
 Paths: TypeAlias = str | Path | Iterable[str | Path]
 """One path, or several."""
@@ -22,6 +23,15 @@ def listed_paths(paths: Paths) -> list[str | Path]:
     if listed is None or not all(isinstance(path, str | os.PathLike) for path in listed):
         raise ProgrammerError(f"paths are one path or several, as text or as Path, not {paths!r}")
     return listed
+
+
+def checked_priority(priority: int) -> int:
+    """The priority of a task. Raises ProgrammerError for what is none."""
+    if isinstance(priority, bool) or not isinstance(priority, Integral) or abs(priority) > MOST_PRIORITY:
+        raise ProgrammerError(
+            f"a priority is a whole number from {-MOST_PRIORITY} to {MOST_PRIORITY}, not {priority!r}"
+        )
+    return int(priority)
 
 
 LONGEST_SECONDS = 1e6

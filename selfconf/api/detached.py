@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from selfconf.api.answer import Method
-from selfconf.api.arguments import option
+from selfconf.api.arguments import checked_priority, option
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Policy
@@ -38,7 +38,10 @@ def task_record(
     priority: int | None = None,
     upgrade: float | None = None,
 ) -> TaskRecord:
-    """What the sites are given of a task that is to live in the ecology. Raises AuthorError for a name that is none."""
+    """What the sites are given of a task that is to live in the ecology.
+
+    Raises AuthorError for a name that is none, and ProgrammerError for a priority that is none.
+    """
     document = task.document.document
     name = checked_name(name, "a task") if name else safe_name(task.iri.short)
     options: dict[str, Any] = {
@@ -52,7 +55,7 @@ def task_record(
     return TaskRecord(
         task=task_identity(name, secrets.token_hex(4)),
         revision=1,
-        priority=task.document.task.priority if priority is None else priority,
+        priority=task.document.task.priority if priority is None else checked_priority(priority),
         beginning=time.time(),
         document=turtle.to_turtle(document.triples()),
         source=document.source,

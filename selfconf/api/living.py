@@ -390,8 +390,9 @@ class LivingEcology(Ecology):
 
         `policy` says what to do with the rest when a component is lost, `repair` or `dismantle`; `wait` waits for the
         ecology to change where there is no configuration. A task of higher `priority` gets the components that one of
-        lower priority holds. `upgrade` are the seconds after which a component that the strategy would rather have is
-        changed to; without it, none is.
+        lower priority holds; it is a whole number from -1,000,000 to 1,000,000, else ProgrammerError is raised.
+        `upgrade` are the seconds after which a component that the strategy would rather have is changed to; without it,
+        none is.
         """
         from selfconf.api.answer import Method
         from selfconf.api.run import Run

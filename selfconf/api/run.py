@@ -61,7 +61,8 @@ class Run:
     ) -> None:
         """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
 
-        Raises BindingError and NetworkError, also for credentials that do not let it run tasks.
+        Raises BindingError, ProgrammerError for a priority that is none, and NetworkError, also for credentials that do
+        not let it run tasks.
         """
         check_may_run(credentials)
         self.task, self.method = task.complete(), method
@@ -87,7 +88,7 @@ class Run:
                 patient=wait,
                 believed=beliefs(credentials),
                 name=name,
-                priority=self.task.document.task.priority if priority is None else priority,
+                priority=record.priority,
                 upgrade=upgrade,
                 aside=self._work.work,
                 record=record,

@@ -59,7 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--priority",
         metavar="N",
-        type=int,
+        type=_priority,
         help="a task gets components that one of lower priority holds (default: its sc:priority, or 0)",
     )
     parser.add_argument(
@@ -82,6 +82,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_budget_arguments(parser)
     add_ecology_arguments(parser)
+
+
+def _priority(text: str) -> int:
+    """A priority, as the option takes it."""
+    from selfconf.api.arguments import checked_priority
+    from selfconf.errors import ProgrammerError
+
+    try:
+        return checked_priority(int(text))
+    except (ValueError, ProgrammerError):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no priority; it takes a whole number from -1000000 to 1000000"
+        ) from None
 
 
 def run(given: argparse.Namespace) -> int:

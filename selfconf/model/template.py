@@ -14,6 +14,9 @@ from selfconf.model.immutable import immutable
 from selfconf.model.profile import Input, Output, Place
 from selfconf.model.term import IRI, Term
 
+MOST_PRIORITY = 1_000_000
+"""The highest priority of a task; the lowest is the same below zero. It travels as a whole number of 64 bits."""
+
 
 @immutable
 class Setting:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.api.arguments import LONGEST_SECONDS, listed_paths, option, seconds_limit, steps_limit
+from selfconf.api.arguments import LONGEST_SECONDS, checked_priority, listed_paths, option, seconds_limit, steps_limit
 from selfconf.errors import ProgrammerError
 
 
@@ -50,6 +50,13 @@ def test_limits_are_numbers_above_zero_or_none() -> None:
 def test_what_is_no_number_of_steps_is_refused_in_a_sentence(steps: Any) -> None:
     with pytest.raises(ProgrammerError, match=r"^steps are a whole number above zero, or None for no limit, not "):
         steps_limit(steps)
+
+
+@pytest.mark.parametrize("priority", [10**6 + 1, -(10**23), 1.0, True, "5", None])
+def test_what_is_no_priority_is_refused_in_a_sentence(priority: Any) -> None:
+    assert [checked_priority(one) for one in (-(10**6), 0, 10**6)] == [-(10**6), 0, 10**6]
+    with pytest.raises(ProgrammerError, match=r"^a priority is a whole number from -1000000 to 1000000, not "):
+        checked_priority(priority)
 
 
 @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf"), 1e300, True, "5"])

@@ -12,7 +12,7 @@ import selfconf as sc
 from selfconf.api.answer import Method
 from selfconf.api.detached import request_of, task_record
 from selfconf.configurator.state import Policy
-from selfconf.errors import AuthorError, SelfconfError
+from selfconf.errors import AuthorError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
@@ -42,6 +42,12 @@ def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> Non
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")
     with pytest.raises(AuthorError, match="cannot name a task"):
         task_record(task, Method.of(), Policy.REPAIR, "no/name")
+
+
+def test_a_priority_that_no_component_would_take_is_refused() -> None:
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")
+    with pytest.raises(ProgrammerError, match="a priority is a whole number"):
+        task_record(task, Method.of(), Policy.REPAIR, priority=10**23)
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,8 @@ def test_a_command_that_there_is_not_is_misuse(capsys: pytest.CaptureFixture[str
         ([], "COMMAND"),
         (["validate", "--formt"], "see `selfconf validate --help`"),
         (["configure", "t.ttl", "--strategy", "worst"], "'worst'"),
+        (["run", "t.ttl", "--priority", "9" * 23], "a whole number from -1000000 to 1000000"),
+        (["run", "t.ttl", "--priority", "high"], "'high' is no priority"),
     ],
 )
 def test_misuse_is_one_sentence_that_points_to_the_help(

@@ -13,7 +13,7 @@ from collections import Counter
 from selfconf.errors import TemplateError
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import Place
-from selfconf.model.template import Role, Setting, Task, Template
+from selfconf.model.template import MOST_PRIORITY, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.shacl import ONLY_WITH_A_PATH, misfit
 from selfconf.rdf.tasks.costs import cost_of
@@ -28,7 +28,6 @@ from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, SH, TYPE, XSD
 WHOLE = frozenset(XSD[name] for name in ("integer", "int", "long", "short", "nonNegativeInteger", "positiveInteger"))
 _COUNT = re.compile(r"\+?[0-9]{1,18}")
 _PRIORITY = re.compile(r"[+-]?[0-9]{1,300}")
-_MOST_PRIORITY = 1_000_000
 _SAID_OF = {
     **dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits), (SC.Role,)),
     SC.cost: (SC.Template,),
@@ -126,8 +125,10 @@ class _Reader(DocumentReader):
             return None
         value = values[0]
         whole = isinstance(value, Literal) and value.datatype == XSD.integer and _PRIORITY.fullmatch(value.lexical)
-        if len(values) > 1 or not isinstance(value, Literal) or not whole or abs(int(value.lexical)) > _MOST_PRIORITY:
-            problem = f"the sc:priority of {worded(subject)} is one whole number from -1000000 to 1000000"
+        if len(values) > 1 or not isinstance(value, Literal) or not whole or abs(int(value.lexical)) > MOST_PRIORITY:
+            problem = (
+                f"the sc:priority of {worded(subject)} is one whole number from {-MOST_PRIORITY} to {MOST_PRIORITY}"
+            )
             raise self.mistake(problem, subject, SC.priority, values[-1])
         return int(value.lexical)
 
