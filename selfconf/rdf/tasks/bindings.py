@@ -71,10 +71,22 @@ def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> 
             raise BindingError(f"the template has no parameter {name!r}; it has: {known}")
         if parameter.iri in bindings:
             raise BindingError(f"the parameter {name!r} is bound twice")
+        _writable(name, value)
         bindings[parameter.iri] = (
             value if isinstance(value, IRI | Literal | BlankNode) else read_term(value, document.prefixes)
         )
     return TaskDocument(replace(task, bindings=bindings), document)
+
+
+def _writable(name: str, value: str | Term) -> None:
+    """Raises BindingError for the value of a parameter that cannot be written in UTF-8.
+
+    What was typed in another encoding, as `$'\\xff'`, arrives as half a character, which no other program takes.
+    """
+    try:
+        str(value).encode()
+    except UnicodeEncodeError:
+        raise BindingError(f"the value of {name!r} is no text in UTF-8: {str(value)!r}") from None
 
 
 def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:

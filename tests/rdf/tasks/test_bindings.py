@@ -94,6 +94,13 @@ def test_a_value_that_does_not_fit_is_refused(bound: tuple[tuple[str, str], ...]
         completed(*bound)
 
 
+@pytest.mark.parametrize("value", ["\udcff", '"\ud800"', Literal("a\udcff"), IRI("urn:\ud800")])
+def test_half_a_character_is_refused_in_a_sentence(value: str | Term) -> None:
+    task = templates.read_task(turtle.parse(PREFIXES + TEMPLATE, "t.ttl"))
+    with pytest.raises(BindingError, match=r"^the value of 'goal' is no text in UTF-8: '.*\\ud[8c]"):
+        bindings.bind(task, [("goal", value)])
+
+
 @pytest.mark.parametrize(
     ("bound", "shown", "hint"),
     [
