@@ -51,14 +51,26 @@ def serve_things(
 ) -> None:
     """Bridge the things that some files, folders and URLs describe. Raises AuthorError and NetworkError.
 
+    Sources are read again and again, so that things come and go; but files of which none can be read now are a mistake.
+
     `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with what
     origins are told; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
     """
-    from selfconf.bridging.wot import ThingCredentials, ThingSettings, ThingWorld, is_url, read_credentials
+    from selfconf.bridging.wot import (
+        ThingCredentials,
+        ThingSettings,
+        ThingWorld,
+        is_url,
+        read_credentials,
+        unreadable_file,
+    )
 
     for source in sources:
         if not is_url(source):
             existing(Path(source))
+    wrong = [unreadable_file(source) for source in sources]
+    if wrong[0] is not None and all(wrong):
+        raise wrong[0]
     told = ThingCredentials() if credentials is None else read_credentials(credentials)
     serve_bridge(ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts))), site, complain)
 

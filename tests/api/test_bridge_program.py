@@ -41,3 +41,22 @@ def test_sources_and_credentials_have_to_be_there(tmp_path: Path) -> None:
     ):
         with pytest.raises(sc.SelfconfError, match=words):
             serve_things(sources, 1.0, credentials, (), BridgeSite("home"), print)
+
+
+def test_files_of_which_none_can_be_read_end_it_and_a_folder_may_fill_later(tmp_path: Path) -> None:
+    pytest.importorskip("aiohttp", reason="the extra `wot` is not installed")
+    bad, worse, lamp = (tmp_path / f"{name}.json" for name in ("bad", "worse", "lamp"))
+    bad.write_text("lamp")
+    worse.write_text('{"title": ')
+    lamp.write_text('{"id": "urn:x:lamp", "title": "Lamp"}')
+    (tmp_path / "things").mkdir()
+    nowhere = BridgeSite(None)  # which is refused once the sources are accepted
+    for sources, words in (
+        ([bad], r"bad\.json:1:1: this is not JSON"),
+        ([bad, worse], r"bad\.json:1:1: this is not JSON"),
+        ([bad, lamp], "give --ecology NAME"),
+        ([bad, tmp_path / "things"], "give --ecology NAME"),
+        ([bad, "http://127.0.0.1:1/"], "give --ecology NAME"),
+    ):
+        with pytest.raises(sc.SelfconfError, match=words):
+            serve_things([str(source) for source in sources], 1.0, None, (), nowhere, print)

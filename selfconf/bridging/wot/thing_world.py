@@ -14,6 +14,7 @@ import asyncio
 import threading
 from collections.abc import Coroutine, Sequence
 from dataclasses import field
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -265,6 +266,14 @@ def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[Describ
     ledger = ImportLedger(NAMESPACE, unreadable.append)
     documents = fetched or gather([source], DESCRIPTIONS, unreadable.append)
     return list(described_things(documents, ledger)), unreadable
+
+
+def unreadable_file(source: str) -> AuthorError | None:
+    """Why no thing is described in a source that is one file; None for any other source, which may fill later."""
+    if is_url(source) or not Path(source).is_file():
+        return None
+    found, unreadable = _things_in(source, [])
+    return None if found or not unreadable else unreadable[0]
 
 
 def is_url(source: str) -> bool:
