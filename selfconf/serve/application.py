@@ -147,9 +147,8 @@ async def _nobody_left(_: Request, error: Exception) -> Response:
 
 async def _refused(_: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
-    if (
-        error.status_code == 405
-    ):  # Starlette has the methods in the order of a set, which is another one in each process
+    if error.status_code == 405:
+        # Starlette has the methods in the order of a set, which is another one in each process.
         allowed = ", ".join(sorted((error.headers or {})["Allow"].split(", ")))
         return problem(405, f"this is asked by one of {allowed}", {"Allow": allowed})
     return problem(error.status_code, error.detail, error.headers)
