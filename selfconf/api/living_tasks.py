@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
 from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.bus.port import Replies
 from selfconf.errors import NetworkError, PeerError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
-from selfconf.protocol.messages import Status, TaskRecord
+from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
+
+COMING_TO_REST = 5.0
+"""Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""
+STATE = 1.0
+"""Seconds that a component may take to say how it is."""
+REST_CHECK = 0.1
+"""Seconds between two looks at components that have not obeyed yet."""
 
 
 @immutable
@@ -146,20 +154,22 @@ class LivingTasks:
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them; returns their names.
 
-        Raises NetworkError if there is none of that name, or if one does not answer or does not end in time; of all
-        tasks those are taken down first that answer.
+        Raises NetworkError if there is none of that name, or if one does not answer or does not end in time, or if a
+        component was turned off and does not obey; of all tasks those are taken down first that answer.
         """
         running = [s for s in self.running() if name in (None, s.configurator, task_name(s.task))]
         kept = self.kept(name)
         silent = [one for one in self.silent if name in (None, one)]
         if name is not None:
-            _refuse_silent(silent)
+            _raise_for(map(_said_of_silent, silent))
             if not running and not kept:
                 raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
         self._take_down(running, kept)
+        troubles = self._disobedience(running)
         if silent:  # one that was only slow may have ended meanwhile
             lives = self._bus.living(self._keys.any_configurator_life())
-            _refuse_silent(sorted({owner_of(key) for key in lives}.intersection(silent)))
+            troubles += map(_said_of_silent, sorted({owner_of(key) for key in lives}.intersection(silent)))
+        _raise_for(troubles)
         names = {task_name(status.task) or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
@@ -170,6 +180,35 @@ class LivingTasks:
         for status in running:
             self._bus.ask(self._keys.configurator_call(status.configurator, "stop"))
         self._await_end({status.configurator for status in running})
+
+    def _disobedience(self, ended: Sequence[Status]) -> list[str]:
+        """What is to be said of components that do not obey in time though their task has ended: they may act on."""
+        asked = {(component, status.task) for status in ended for component in (*status.components, *status.owed)}
+        deadline = self._bus.now() + COMING_TO_REST
+        while (troubles := self._disobedient(asked)) and self._bus.now() < deadline:
+            asked = set(troubles)
+            self._bus.pause(REST_CHECK)
+        return sorted(
+            {
+                f"{component.short} was turned off and has not obeyed: {why}; it is out of control until it is gone"
+                for (component, _), why in troubles.items()
+            }
+        )
+
+    def _disobedient(self, asked: Iterable[tuple[IRI, str]]) -> dict[tuple[IRI, str], str]:
+        """Of components and the tasks that they were released by, those that are not at rest, and how they are."""
+        pairs, keys = sorted(asked), self._keys
+        questions = [(keys.call(component, "state"), encode(StateOf(task))) for component, task in pairs]
+        troubles = {}
+        for (component, task), replies in zip(pairs, self._bus.ask_each(questions, STATE), strict=True):
+            answers = _states(replies, keys.call(component, "state"))
+            acting = [one for one in answers if one.stopping or (one.active and one.task == task)]
+            if acting:
+                what = "its code has not come to rest" if acting[0].stopping else "it acts on"
+                troubles[component, task] = f"{what} ({acting[0].place})"
+            elif not answers and self._bus.living(keys.lives(component)):
+                troubles[component, task] = "it lives, but does not answer"
+        return troubles
 
     def _end_record(self, record: TaskRecord) -> None:
         self._keep(replace(record, revision=record.revision + 1, ended=True))
@@ -191,11 +230,22 @@ class LivingTasks:
             self._bus.pause(0.02)
 
 
+def _states(replies: Replies, key: str) -> list[CallAnswer]:
+    """What the lives of a component have answered on its key."""
+    found = []
+    for sample in replies.samples:
+        with suppress(PeerError):
+            if sample.key == key:
+                found.append(decode(sample.payload, CallAnswer))
+    return found
+
+
 def _said_of_silent(configurator: str) -> str:
     return f"the configurator {configurator!r} lives, but does not answer"
 
 
-def _refuse_silent(silent: Sequence[str]) -> None:
-    """Raise NetworkError if there are configurators that live, but do not answer."""
-    if silent:
-        raise NetworkError("; ".join(map(_said_of_silent, silent)))
+def _raise_for(troubles: Iterable[str]) -> None:
+    """Raise NetworkError if there is trouble to be told."""
+    said = "; ".join(troubles)
+    if said:
+        raise NetworkError(said)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TypeVar
 
 from selfconf.bus.port import Bus, Replies
@@ -38,6 +39,21 @@ class SynchronousBus:
             self._bus.ask(key, payload, seconds, done)
 
         return self.wait(begin)
+
+    def ask_each(self, questions: Sequence[tuple[str, bytes]], seconds: float = ROLL_CALL) -> list[Replies]:
+        """Return the answers to several questions, each a key and a payload, that are asked all at once; in order."""
+        found: dict[int, Replies] = {}
+
+        def begin(done: Callable[[list[Replies]], None]) -> None:
+            def answered(index: int, replies: Replies) -> None:
+                found[index] = replies
+                if len(found) == len(questions):
+                    done([found[place] for place in range(len(questions))])
+
+            for index, (key, payload) in enumerate(questions):
+                self._bus.ask(key, payload, seconds, partial(answered, index))
+
+        return self.wait(begin) if questions else []
 
     def demand(self, key: str, payload: bytes, trouble: str, seconds: float = ROLL_CALL) -> None:
         """Have something done. Raises NetworkError, which begins with the trouble, where nobody has done it."""

@@ -14,10 +14,12 @@ from selfconf.errors import NetworkError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Status, TaskRecord
+from selfconf.protocol.messages import CallAnswer, Status, TaskRecord, Verdict
 
 KEYS = Keys("lab")
 TEMPLATE = IRI("urn:t:navigate")
+DRIVE = IRI("urn:c#drive")
+AT_REST = CallAnswer(Verdict.DONE, DRIVE, "l1", place="process 7 on lab")
 PATROL, TIDY = TaskRecord("patrol~1", 1, beginning=5.0, wanted=TEMPLATE), TaskRecord("tidy~2", 1, wanted=TEMPLATE)
 
 
@@ -29,11 +31,13 @@ class Tasks:
         self.asked = LivingTasks(SynchronousBus(self.network.node()), KEYS)
         self.kept: list[TaskRecord] = []
 
-    def configurator(self, name: str, task: str, answers: bool = True, speaks_of: str = "") -> MemoryBus:
+    def configurator(
+        self, name: str, task: str, *components: IRI, answers: bool = True, speaks_of: str = ""
+    ) -> MemoryBus:
         """A configurator that runs a task until it is stopped."""
         node = self.network.node()
         node.announce(KEYS.configurator_life(name, "1"))
-        status = Status(speaks_of or name, "running", TEMPLATE, 3, 1.5, task=task)
+        status = Status(speaks_of or name, "running", TEMPLATE, 3, 1.5, components=components, task=task)
 
         def answer(request: Request) -> None:
             if answers:
@@ -47,6 +51,19 @@ class Tasks:
 
         node.serve(KEYS.configurator_call(name, "status"), answer)
         node.serve(KEYS.configurator_call(name, "stop"), stop)
+        return node
+
+    def component(self, component: IRI, *states: CallAnswer, answers: bool = True) -> MemoryBus:
+        """A component that is in one state after the other whenever it is asked; in the last one it stays."""
+        node, left = self.network.node(), list(states)
+        node.announce(KEYS.life(component, "l1"))
+
+        def tell(request: Request) -> None:
+            state = left.pop(0) if len(left) > 1 else left[0]
+            request.reply(request.key, encode(state))
+            request.finish()
+
+        node.serve(KEYS.call(component, "state"), tell if answers else lambda request: None)
         return node
 
     def site(self, *records: TaskRecord, keeps: bool = True) -> None:
@@ -133,6 +150,38 @@ def test_of_all_tasks_those_that_answer_are_stopped_before_one_that_does_not_is_
         tasks.asked.stop()
     assert tasks.asked.running() == ()
     assert tasks.asked.silent == ("c2",)
+
+
+def test_a_component_may_take_its_time_to_come_to_rest(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1", DRIVE)
+    acts = replace(AT_REST, active=True, task="patrol~1")
+    tasks.component(DRIVE, acts, replace(AT_REST, stopping=True), AT_REST)
+    assert tasks.asked.stop("patrol") == ("patrol",)
+
+
+def test_what_acts_for_another_task_or_is_gone_has_obeyed(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1", DRIVE, IRI("urn:c#gone"))
+    tasks.component(DRIVE, replace(AT_REST, active=True, task="tidy~2"))
+    assert tasks.asked.stop("patrol") == ("patrol",)
+
+
+@pytest.mark.parametrize(
+    ("state", "how"),
+    [
+        (replace(AT_REST, active=True, task="patrol~1"), r"it acts on \(process 7 on lab\)"),
+        (replace(AT_REST, stopping=True), r"its code has not come to rest \(process 7 on lab\)"),
+        (None, "it lives, but does not answer"),
+    ],
+)
+def test_a_component_that_does_not_obey_is_named_after_all_is_taken_down(
+    tasks: Tasks, state: CallAnswer | None, how: str
+) -> None:
+    tasks.configurator("c1", "patrol~1", DRIVE)
+    tasks.configurator("c2", "tidy~2")
+    tasks.component(DRIVE, state or AT_REST, answers=state is not None)
+    with pytest.raises(NetworkError, match=f"drive was turned off and has not obeyed: {how}"):
+        tasks.asked.stop()
+    assert tasks.asked.running() == ()
 
 
 def test_a_task_is_handed_over_once(tasks: Tasks) -> None:

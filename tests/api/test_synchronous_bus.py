@@ -36,6 +36,16 @@ def test_a_question_returns_its_answers(network: Network) -> None:
     assert bus.living("k/life/*") == ("k/life/1",)
 
 
+def test_several_questions_are_asked_at_once_and_answered_in_order(network: Network) -> None:
+    bus = SynchronousBus(network.node())
+    network.node().serve("k/mute", lambda request: None)
+    began = bus.now()
+    mute, nobody, said = bus.ask_each([("k/mute", b""), ("k/nobody", b""), ("k/answers", b"x")], seconds=2.0)
+    assert (mute.complete, nobody.complete, [sample.payload for sample in said.samples]) == (False, True, [b"said x"])
+    assert bus.now() - began < 3.0
+    assert bus.ask_each([]) == []
+
+
 def test_what_is_not_done_is_trouble_with_its_reason(network: Network) -> None:
     bus = SynchronousBus(network.node())
     bus.demand("k/answers", b"", "it did not move")
